@@ -24,7 +24,7 @@ struct Answer {
 };
 
 // {"outcome": "done", "only_checked": false, "file": "merlin.json", "findings": [...], "swapped":
-// [{"setting": "/devices/bindings/0/action", "from": "\"grab\"", "to": "\"fly\""}], "restart":
+// [{"setting": "/bindings/0/action", "from": "\"grab\"", "to": "\"fly\""}], "restart":
 // ["/wall/render/gpu"], "elsewhere": [...], "failure": ""}. `from` and `to` are values as JSON
 // text; empty: there is no such setting.
 std::string answerText(const Answer& answer);
