@@ -1,10 +1,10 @@
 #include "drivers/io/udp_stream.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <netdb.h>
@@ -39,7 +39,7 @@ std::uint32_t numberOf(const sockaddr_storage& from) noexcept {
 
 class UdpStream final : public ByteStream {
  public:
-  explicit UdpStream(UniqueFd fd) : fd_(std::move(fd)) {
+  explicit UdpStream(UniqueFd fd) : fd_(std::move(fd)), received_(kLongestDatagram) {
     ahead_.reserve(kDatagramHeader + kLongestDatagram);
   }
 
@@ -71,14 +71,16 @@ class UdpStream final : public ByteStream {
                                  reinterpret_cast<sockaddr*>(&from), &size);
     if (n < 0 && errno != EAGAIN && errno != EINTR) return ioError("recvfrom");
     if (n <= 0) return Error{Errc::kTimeout, "time-out"};
-    append({numberOf(from), std::span(received_).first(static_cast<std::size_t>(n))}, ahead_);
+    append(
+        {numberOf(from), std::span<const std::byte>(received_).first(static_cast<std::size_t>(n))},
+        ahead_);
     return Ok{};
   }
 
   UniqueFd fd_;
   FdWait wait_;
-  std::array<std::byte, kLongestDatagram> received_;  // NOLINT(*-member-init): filled by fill()
-  std::string ahead_;  // the record that read() has not returned yet, from next_ on
+  std::vector<std::byte> received_;  // kLongestDatagram bytes
+  std::string ahead_;                // the record that read() has not returned yet, from next_ on
   std::size_t next_ = 0;
 };
 

@@ -21,8 +21,8 @@ constexpr const char* kForms =
 
 // Ports whose bytes are of a form of their own, which only some drivers read.
 struct OwnForm {
-  PortKind kind;
-  const char* what;
+  PortKind kind = PortKind::kEvdev;
+  const char* what = "";
   std::array<std::string_view, 2> drivers;
 };
 constexpr OwnForm kOwnForms[] = {
