@@ -106,14 +106,15 @@ std::optional<Timestamp> PictureChecks::step() {
 
 void PictureChecks::check(Entry& entry) {
   const Timestamp began = clock_.now();
-  const auto readings = entry.checked.output->readBack();
-  PictureState state{};
-  if (readings)
-    state = judge(entry, *readings, began);
-  else
-    entry.steady.update(PictureVerdict::kUnchecked);
+  const auto read = entry.checked.output->readBack();
+  const auto readings = read ? *read : std::vector<DisplayReading>();
+  // What is being set up anew shows nothing for a while and is no better for that.
+  const bool is_mended = isWrong(entry.steady.current()) && began < entry.mend_at;
+  PictureState state = entry.last_state;
+  if (!readings.empty() || !is_mended) state = judge(entry, readings, began);
   const Timestamp now = clock_.now();
   state.took_ms = static_cast<float>(1000 * toSeconds(now - began));
+  entry.last_state = state;
   entry.state.publish(state);
   const bool soon = isWrong(state.verdict) || entry.steady.isUnsettled();
   if (isWrong(state.verdict) && now >= entry.mend_at) {

@@ -71,6 +71,7 @@ class PictureChecks {
     // Of the thread that checks.
     Timestamp due{}, mend_at{};
     SteadyVerdict steady{};
+    PictureState last_state{};
     std::map<std::string, PictureDigest> last_right{};  // by display
     shm::SeqSlot<PictureState> state{};
     std::atomic<bool> wants_frame{false};

@@ -35,12 +35,13 @@ struct FakeDisplay final : Output {
   Result<std::vector<DisplayReading>> readBack() override {
     ++readings;
     if (!why_not.empty()) return Error{Errc::kIo, why_not};
+    if (sets_mode) return std::vector<DisplayReading>();
     DisplayReading reading{where, {kind, digestOf({kSide, kSide, shown, std::size_t{kSide} * 4})}};
     return std::vector{reading};
   }
   void showAgain() override { ++times_mended; }
 
-  bool takes = true, readable = true;
+  bool takes = true, readable = true, sets_mode = false;
   FoundPicture::Kind kind = FoundPicture::Kind::kPixels;
   std::string why_not, where;
   Pixels shown = Pixels(static_cast<std::size_t>(kSide * kSide) * 4);
@@ -121,6 +122,25 @@ TEST_F(PictureChecksTest, ABlackDisplayIsFoundWithinSixSecondsAndMendedOnce) {
   pass(milliseconds(1100));
   EXPECT_EQ(verdict(1), PictureVerdict::kRight) << "two readings, half a second apart";
   EXPECT_EQ(displays_[1]->times_mended, 1);
+}
+
+TEST_F(PictureChecksTest, WhatIsBeingMendedStaysWrongUntilItShowsSomething) {
+  present(1);
+  pass(seconds(10));
+  displays_[0]->kind = FoundPicture::Kind::kOff;
+  while (displays_[0]->times_mended == 0) pass(milliseconds(100));
+  displays_[0]->sets_mode = true;
+  pass(seconds(3));
+  EXPECT_EQ(verdict(0), PictureVerdict::kBlack) << "its mode is set, which takes its time";
+  displays_[0]->sets_mode = false;
+  displays_[0]->kind = FoundPicture::Kind::kPixels;
+  pass(milliseconds(1100));
+  EXPECT_EQ(verdict(0), PictureVerdict::kRight);
+  displays_[0]->kind = FoundPicture::Kind::kOff;
+  while (displays_[0]->times_mended == 1) pass(milliseconds(100));
+  displays_[0]->sets_mode = true;
+  pass(seconds(6));
+  EXPECT_EQ(verdict(0), PictureVerdict::kUnchecked) << "not for ever";
 }
 
 TEST_F(PictureChecksTest, OneBadReadingIsNoAlarm) {
