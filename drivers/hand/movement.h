@@ -1,0 +1,65 @@
+// Movement: the path of a hand as a sum of single moves, each with a bell-shaped speed. Pure.
+//
+// Moves that overlap in time add up, so that one runs into the next as with people.
+// Sources: T. Flash, N. Hogan, "The coordination of arm movements: an experimentally confirmed
+// mathematical model", J. Neuroscience 5, 1985 (minimum jerk); T. Flash, E. Henis, "Arm trajectory
+// modifications during reaching towards visual targets", J. Cognitive Neuroscience 3, 1991 (sums).
+#pragma once
+
+#include <array>
+#include <numbers>
+#include <vector>
+
+namespace merlin::hand {
+
+using Vector3 = std::array<double, 3>;
+using Quaternion = std::array<double, 4>;  // w x y z
+
+// Coordinates of a person who faces the wall: x right, y up, z from the wall to the person [m].
+// `turn_rad`: pitch (fingers up), yaw (fingers to the left), roll (clockwise as the person sees it)
+// against a hand that points straight ahead, along -z.
+struct HandState {
+  Vector3 position_m{};
+  Vector3 turn_rad{};
+};
+
+// Rotation of the hand: q_person_hand.
+Quaternion orientationOf(const HandState& state);
+Quaternion product(const Quaternion& a, const Quaternion& b);
+Quaternion aboutAxis(std::size_t axis, double angle_rad);
+Vector3 rotated(const Quaternion& q, const Vector3& v);
+
+// From begin_s on, for `seconds`, position and turn change by `way`. Beyond that the path bends by
+// `bow_m` in the middle of the way, and follows an ellipse that returns to where it began.
+struct Move {
+  double begin_s = 0, seconds = 1;
+  HandState way{};
+  Vector3 bow_m{};
+  double skew = 1;  // above 1: the greatest speed comes later; 1: in the middle
+  // The ellipse: radii to the right and up, number of times around (clockwise positive), where on
+  // it the way begins (0: at the top, clockwise), and how far its plane is turned about the
+  // vertical axis.
+  std::array<double, 2> radius_m{};
+  double turns = 0, start_rad = 0, plane_rad = 0;
+};
+
+// Share of a move that is done at `share` of its time: 0..1, a bell-shaped speed.
+double minimumJerk(double share);
+
+// Thread-bound.
+class Movement {
+ public:
+  explicit Movement(const HandState& at) : base_(at) {}
+
+  void add(const Move& move) { moves_.push_back(move); }
+  // Where the hand is. REQUIRES: t_s never falls. Cost: linear in the moves that have not ended.
+  HandState at(double t_s);
+  // Where it will be when all moves have ended.
+  HandState end() const;
+
+ private:
+  HandState base_;  // with all moves that have ended
+  std::vector<Move> moves_;
+};
+
+}  // namespace merlin::hand

@@ -1,0 +1,97 @@
+// Synthetic people who move: how each of them makes gestures in time, and what a tracker on the
+// hand measures of it. Pure, seeded.
+//
+// Not measured on real people: README.md explains how the figures were chosen. Used for training,
+// for tests and for benchmarks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "daemon/base/random.h"
+#include "drivers/hand/movement.h"
+#include "drivers/port/samples.h"
+
+namespace merlin::hand {
+
+// A gesture in time, as the average person makes it.
+struct MovingGesture {
+  const char* name = "";
+  double seconds = 1;   // for a circle: of one turn
+  HandState way{};      // of a stroke
+  double radius_m = 0;  // of a circle; 0: it is a stroke
+  double turns = 0;     // of a circle: 1 clockwise, -1 the other way
+};
+
+// swipe_left, swipe_right, swipe_up, swipe_down, push, pull, circle_clockwise,
+// circle_counterclockwise, twist_left, twist_right. Directions as the person sees them.
+std::span<const MovingGesture> movingGestures();
+const MovingGesture* findMovingGesture(std::string_view name);  // nullptr if there is none
+
+// Standard deviations of the people; `person`: from one to another, `habit`: of one person's
+// gesture, `take`: each time. Sizes and times: of a factor's logarithm.
+struct MoverSettings {
+  double size_person = 0.14, size_habit = 0.12, size_take = 0.08;
+  double time_person = 0.14, time_habit = 0.10, time_take = 0.09;
+  double slant_habit_rad = 0.14, slant_take_rad = 0.07;  // of a stroke's direction
+  double body_yaw_rad = 0.20, body_lean_rad = 0.09;      // how the person stands to the wall
+  double mount_rad = 0.10;                               // how the receiver sits, about each axis
+  double bow_habit = 0.08, bow_take = 0.04;              // of a stroke's bend, share of its length
+};
+
+// What a tracker does to the path. One is drawn for each person.
+struct TrackerTraits {
+  double rate_hz = 120;
+  double jitter_s = 0.001;                      // of a record's arrival
+  double position_m = 0.001, turn_rad = 0.004;  // noise
+  double lost = 0.01;                           // share of single records that are lost
+  double gap_every_s = 20;  // mean time between gaps of up to a quarter of a second
+};
+
+// Thread-safe: immutable. Seed 0 is the average person; each other seed is a different one.
+class MovingPerson {
+ public:
+  explicit MovingPerson(std::uint64_t seed, const MoverSettings& settings = {});
+
+  // The moves of one take of the gesture, from 0 s on: a circle is one move, a stroke one or two
+  // (some people swing back first). `seconds`: set to the duration of all of them.
+  struct Take {
+    Move windup, stroke;
+    bool winds_up = false;
+  };
+  Take take(const MovingGesture& gesture, Random& random) const;
+
+  // Rotation that takes what the person sees to what the wall sees, and that of the receiver.
+  const Quaternion& body() const { return body_; }
+  const Quaternion& mount() const { return mount_; }
+  const TrackerTraits& tracker() const { return tracker_; }
+  double size() const { return size_; }   // of the arm: a factor
+  double tempo() const { return time_; }  // a factor on all durations
+  double tremor_m() const { return tremor_m_; }
+  // Share of takes after which the hand goes back at once, and how fast: share of the stroke's
+  // speed.
+  double returns() const { return returns_; }
+  double return_speed() const { return return_speed_; }
+
+ private:
+  struct Habit;
+  Habit habitOf(const MovingGesture& gesture) const;
+  // A factor and a difference of one take; 1 and 0 for the average person.
+  double vary(double deviation, Random& random) const;
+  double stray(double deviation, Random& random) const;
+  void goRound(Move& circle, const MovingGesture& gesture, const Habit& habit, double size,
+               Random& random) const;
+  void goAlong(Move& stroke, const MovingGesture& gesture, const Habit& habit, double size,
+               Random& random) const;
+
+  MoverSettings settings_;
+  std::uint64_t seed_;
+  double size_ = 1, time_ = 1, tremor_m_ = 0.0004, returns_ = 0.3, return_speed_ = 0.6;
+  Quaternion body_{1, 0, 0, 0}, mount_{1, 0, 0, 0};
+  TrackerTraits tracker_;
+};
+
+}  // namespace merlin::hand
