@@ -1,0 +1,34 @@
+#include "nn/gesture/pace.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace merlin::nn {
+namespace {
+
+// Greatest speed of an unhurried stroke by its length, of the synthetic people of drivers/hand: the
+// line through the logarithms of their ordinary strokes.
+constexpr float kSpeedAt1m = 0.60F, kSlope = 0.60F;
+constexpr float kShare = 1.0F / 15;
+constexpr float kMost = 0.4F;         // of one stroke's difference that counts
+constexpr float kFarthest = 0.35F;    // from the average person
+constexpr float kShortest_m = -1.9F;  // logarithm of 0.15 m
+constexpr float kMostRoll = 0.5F;
+
+float ratio(float log_length, float log_speed) noexcept {
+  return log_speed - (kSpeedAt1m + kSlope * log_length);
+}
+
+}  // namespace
+
+float UsualPace::hasteOf(float log_length, float log_speed) const noexcept {
+  return ratio(log_length, log_speed) - usual_;
+}
+
+void UsualPace::learn(float log_length, float log_speed, float roll_share) noexcept {
+  if (log_length < kShortest_m || std::abs(roll_share) > kMostRoll) return;
+  usual_ += kShare * std::clamp(hasteOf(log_length, log_speed), -kMost, kMost);
+  usual_ = std::clamp(usual_, -kFarthest, kFarthest);
+}
+
+}  // namespace merlin::nn

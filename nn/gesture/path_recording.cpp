@@ -1,0 +1,98 @@
+#include "nn/gesture/path_recording.h"
+
+#include <algorithm>
+
+namespace merlin::nn {
+namespace {
+
+constexpr std::int64_t kSessionGap_ns = 500'000'000;
+
+// Index of the take that shares at least half of the stroke's time.
+std::optional<std::size_t> takeOf(const std::vector<Take>& takes, std::int64_t first_ns,
+                                  std::int64_t last_ns) {
+  for (std::size_t n = 0; n < takes.size(); ++n) {
+    const std::int64_t shared =
+        std::min(last_ns, takes[n].last_ns) - std::max(first_ns, takes[n].first_ns);
+    if (2 * shared >= last_ns - first_ns) return n;
+  }
+  return std::nullopt;
+}
+
+bool isJustAfter(const std::vector<Take>& takes, std::int64_t first_ns, double after_s) {
+  return std::any_of(takes.begin(), takes.end(), [&](const Take& take) {
+    return first_ns > take.first_ns && static_cast<double>(first_ns - take.last_ns) < after_s * 1e9;
+  });
+}
+
+// Length times speed: both features are logarithms.
+float greatness(const StrokeFeatures& stroke) { return stroke[kLogLength] + stroke[kLogSpeed]; }
+
+}  // namespace
+
+std::uint32_t PathRecording::labelled(std::string_view name) {
+  const auto found = std::find(labels.begin(), labels.end(), name);
+  if (found != labels.end()) return static_cast<std::uint32_t>(found - labels.begin());
+  labels.emplace_back(name);
+  return static_cast<std::uint32_t>(labels.size() - 1);
+}
+
+std::vector<std::span<const LabelledPose>> sessionsOf(const PathRecording& recording) {
+  const std::span<const LabelledPose> all(recording.poses);
+  std::vector<std::span<const LabelledPose>> sessions;
+  std::size_t first = 0;
+  for (std::size_t n = 1; n <= all.size(); ++n) {
+    const std::int64_t step = n < all.size() ? all[n].pose.at_ns - all[n - 1].pose.at_ns : -1;
+    if (step >= 0 && step <= kSessionGap_ns) continue;
+    sessions.push_back(all.subspan(first, n - first));
+    first = n;
+  }
+  return sessions;
+}
+
+std::vector<Take> takesOf(std::span<const LabelledPose> session, const PathRecording& recording) {
+  std::vector<Take> takes;
+  bool open = false;
+  for (const LabelledPose& p : session) {
+    const bool none = recording.labels[p.label] == kNoGesture;
+    if (open && !none && takes.back().label == p.label) {
+      takes.back().last_ns = p.pose.at_ns;
+      continue;
+    }
+    open = !none;
+    if (open) takes.push_back({p.label, p.pose.at_ns, p.pose.at_ns});
+  }
+  return takes;
+}
+
+std::vector<LabelledStroke> strokesOf(const PathRecording& recording, double after_take_s,
+                                      std::size_t& lost) {
+  std::vector<LabelledStroke> strokes;
+  lost = 0;
+  for (const auto session : sessionsOf(recording)) {
+    const std::vector<Take> takes = takesOf(session, recording);
+    std::vector<std::optional<StrokeFeatures>> greatest(takes.size());
+    StrokeFinder finder;
+    UsualPace pace;
+    for (const LabelledPose& p : session) {
+      const auto stroke = finder.update(p.pose);
+      if (stroke.empty()) continue;
+      const auto features = featuresOf(stroke, finder.calmBefore_m_s(), pace);
+      if (!features) continue;
+      const std::int64_t first_ns = stroke.front().at_ns;
+      if (const auto take = takeOf(takes, first_ns, stroke.back().at_ns)) {
+        auto& best = greatest[*take];
+        if (!best || greatness(*features) > greatness(*best)) best = features;
+      } else if (!isJustAfter(takes, first_ns, after_take_s)) {
+        strokes.push_back({std::string(kNoGesture), *features});
+        pace.learn((*features)[kLogLength], (*features)[kLogSpeed], (*features)[kRoll]);
+      }
+    }
+    for (std::size_t n = 0; n < takes.size(); ++n) {
+      if (greatest[n]) strokes.push_back({recording.labels[takes[n].label], *greatest[n]});
+      if (!greatest[n]) ++lost;
+    }
+  }
+  return strokes;
+}
+
+}  // namespace merlin::nn
