@@ -37,7 +37,9 @@
 #include "drivers/tuio/device.h"
 #include "drivers/vrpn/device.h"
 #include "nn/io/data_set_file.h"
+#include "nn/io/gesture_file.h"
 #include "nn/io/network_file.h"
+#include "nn/io/path_file.h"
 #include "render/correct/io/mpcdi.h"
 #include "render/image/image_file.h"
 #include "render/lod/io/mrm_file.h"
@@ -178,6 +180,10 @@ void commandText(Bytes bytes) {
 void stateText(Bytes bytes) { (void)state::parseState(textOf(bytes), "state.json"); }
 
 void networkText(Bytes bytes) { (void)nn::parseNetwork(textOf(bytes), "network.json"); }
+
+void gesturesText(Bytes bytes) { (void)nn::parseGestures(textOf(bytes), "gestures.json"); }
+
+void pathsText(Bytes bytes) { (void)nn::parsePaths(textOf(bytes), "paths.csv"); }
 
 void recordingText(Bytes bytes) { (void)nn::parseRecording(textOf(bytes), "recording.csv"); }
 
@@ -361,6 +367,8 @@ constexpr Target kTargets[] = {
     {"state", stateText},
     {"network", networkText},
     {"recording", recordingText},
+    {"gestures", gesturesText},
+    {"paths", pathsText},
     {"mrm", mrmFile},
     {"mesh", meshFile},
     {"gzip", gzipFile},
