@@ -38,9 +38,9 @@ int runProgram(int argc, char** argv) {
   for (const auto add : {cli::addStatus, cli::addWatch}) add(program, run, remote);
   for (const auto add :
        {cli::addDevices, cli::addSnapshot, cli::addWall, cli::addShow, cli::addTrace, cli::addMesh,
-        cli::addImage, cli::addPosture, cli::addEmulate, cli::addRecord, cli::addReplay,
-        cli::addFlight, cli::addReload, cli::addReport, cli::addCalibrate, cli::addConfig,
-        cli::addKeys, cli::addShm}) {
+        cli::addImage, cli::addPosture, cli::addGesture, cli::addEmulate, cli::addRecord,
+        cli::addReplay, cli::addFlight, cli::addReload, cli::addReport, cli::addCalibrate,
+        cli::addConfig, cli::addKeys, cli::addShm}) {
     add(program, run);
   }
   cli::addCommandsByName(program, run, remote);

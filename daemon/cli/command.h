@@ -21,6 +21,7 @@ void addConfig(Command app, Run& run);
 void addDevices(Command app, Run& run);
 void addEmulate(Command app, Run& run);
 void addFlight(Command app, Run& run);
+void addGesture(Command app, Run& run);
 void addImage(Command app, Run& run);
 void addKeys(Command app, Run& run);
 void addMesh(Command app, Run& run);

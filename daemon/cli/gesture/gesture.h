@@ -1,0 +1,37 @@
+// The subcommands of `merlin gesture`: functions that add them, and shared helpers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "daemon/cli/arguments.h"
+#include "daemon/cli/command.h"
+#include "nn/gesture/path_recording.h"
+
+namespace merlin::cli {
+
+void addGestureRecord(Command gesture, Run& run);
+void addGestureTrain(Command gesture, Run& run);
+void addGestureTest(Command gesture, Run& run);
+void addGestureSynthesize(Command gesture, Run& run);
+
+// Synthetic people, numbered from `first`: each makes every ready gesture `times` times and then
+// goes about without making one for `ordinary_s`; then for `kind_s` in each kind of ordinary motion
+// alone.
+struct SyntheticMovers {
+  std::size_t first = 1, people = 20, times = 5;
+  double ordinary_s = 600, kind_s = 0;
+  std::uint64_t seed = 1;
+};
+
+// What the tracker of one of them records; `person`: its number. About 4 MB for ten minutes.
+nn::PathRecording recordingOf(const SyntheticMovers& movers, std::size_t person);
+
+// Strokes of all of them; `lost`: set to the number of takes in which there is none.
+std::vector<nn::LabelledStroke> strokesOf(const SyntheticMovers& movers, std::size_t& lost);
+
+// Time after a gesture in which strokes are neither the gesture nor ordinary motion.
+inline constexpr double kAfterTake_s = 0.8;
+
+}  // namespace merlin::cli

@@ -1,0 +1,145 @@
+// merlin gesture record: records takes of one gesture, or ordinary motion, from the tracked hand of
+// a running daemon into a CSV file.
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/log.h"
+#include "daemon/base/printable_text.h"
+#include "daemon/cli/exit_status.h"
+#include "daemon/cli/gesture/gesture.h"
+#include "daemon/cli/live_samples.h"
+#include "daemon/cli/print.h"
+#include "nn/io/path_file.h"
+
+namespace merlin::cli {
+namespace {
+
+constexpr Duration kHandPatience = std::chrono::seconds(3);  // longest time without a sample
+constexpr double kBetweenFiles_s = 10;  // from the last take in the file to the first new one
+
+struct RecordOptions {
+  std::string label, output = "gestures.csv", instance = "merlin";
+  std::vector<int> axes = {-2, -3, 1};
+  std::size_t times = 5;
+  double seconds = 2, pause = 1.5;
+};
+
+// Records the hand for `seconds`, or passes over what it does in that time.
+Result<Ok> listen(LiveSamples<HandSample>& hand, double seconds, const nn::WallAxes& axes,
+                  std::uint32_t label, std::vector<nn::LabelledPose>* poses) {
+  const SystemClock clock;
+  const Timestamp began = clock.now();
+  Timestamp heard = began;
+  while (clock.now() - began < fromSeconds(seconds)) {
+    const auto taken = hand.listen([&](const HandSample& s) {
+      heard = clock.now();
+      if (poses)
+        poses->push_back({label, axes.turned(s.received_ns, s.position_m, s.orientation_wxyz)});
+    });
+    if (!taken) return taken.error();
+    if (clock.now() - heard >= kHandPatience)
+      return Error{Errc::kTimeout,
+                   "the hand has sent nothing for 3 s: see merlin status, and /devices/hand for "
+                   "the tracker's station that is on it"};
+  }
+  return Ok{};
+}
+
+Result<nn::PathRecording> takes(const RecordOptions& options, const nn::WallAxes& axes) {
+  auto hand = LiveSamples<HandSample>::open(options.instance, "hand", "tracker");
+  if (!hand) return hand.error();
+  nn::PathRecording recording;
+  const std::uint32_t label = recording.labelled(options.label);
+  for (std::size_t n = 0; n < options.times; ++n) {
+    printError("{} of {}: hold the hand still ...\n", n + 1, options.times);
+    if (auto waited = listen(*hand, options.pause, axes, label, nullptr); !waited)
+      return waited.error();
+    printError("now: {}\n", options.label);
+    if (auto taken = listen(*hand, options.seconds, axes, label, &recording.poses); !taken)
+      return taken.error();
+  }
+  return recording;
+}
+
+// If the file exists, puts its takes before those of `recording`, whose times follow theirs.
+Result<Ok> addTo(nn::PathRecording& recording, const std::string& path) {
+  if (!std::filesystem::exists(path)) return Ok{};
+  auto before = nn::loadPaths(path);
+  if (!before) return before.error();
+  const std::int64_t later_ns = before->poses.back().pose.at_ns +
+                                static_cast<std::int64_t>(kBetweenFiles_s * 1e9) -
+                                recording.poses.front().pose.at_ns;
+  for (nn::LabelledPose p : recording.poses) {
+    p.label = before->labelled(recording.labels[p.label]);
+    p.pose.at_ns += later_ns;
+    before->poses.push_back(p);
+  }
+  recording = *std::move(before);
+  return Ok{};
+}
+
+int record(const RecordOptions& options) {
+  if (options.label != nn::kNoGesture && !nn::isGestureName(options.label))
+    return fail({Errc::kInvalidArgument,
+                 fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
+                             printable(options.label), nn::kLongestGestureName)});
+  const auto axes = nn::WallAxes::of({options.axes[0], options.axes[1], options.axes[2]});
+  if (!axes)
+    return fail({Errc::kInvalidArgument,
+                 fmt::format("--axes {}: allowed are the numbers 1, 2 and 3, each once, with or "
+                             "without a minus sign, that make a right-handed system, as in "
+                             "/wall/scene/tracker_axes",
+                             fmt::join(options.axes, " "))});
+  auto recording = takes(options, *axes);
+  if (!recording) return fail(recording.error());
+  if (recording->poses.empty())
+    return fail({Errc::kTimeout, "no sample of the hand has arrived: see merlin status"});
+  const std::size_t poses = recording->poses.size();
+  if (const auto added = addTo(*recording, options.output); !added) return fail(added.error());
+  if (const auto saved = nn::savePaths(options.output, *recording); !saved)
+    return fail(saved.error());
+  printOut("{}: {} takes of \"{}\" recorded, {} poses; {} poses in all\n", options.output,
+           options.times, options.label, poses, recording->poses.size());
+  return kExitDone;
+}
+
+}  // namespace
+
+void addGestureRecord(Command gesture, Run& run) {
+  const auto options = std::make_shared<RecordOptions>();
+  Command command = gesture.subcommand(
+      "record",
+      "Record takes of one gesture from the tracked hand of a running merlind and append them to a "
+      "CSV file: before each take the hand rests, and after \"now\" it makes the gesture once, "
+      "briskly. The label none records ordinary motion.\nExample: merlin gesture record wave -o "
+      "gestures.csv");
+  command.option("label", options->label, "The gesture's name, or none")
+      .required()
+      .typeName("LABEL");
+  command.option("-o", options->output, "The CSV file").showDefault().typeName("FILE.csv");
+  command.option("--times", options->times, "Number of takes")
+      .range(std::size_t{1}, std::size_t{1000})
+      .showDefault();
+  command.option("--seconds", options->seconds, "Duration of each take in seconds")
+      .range(0.5, 600.0)
+      .showDefault();
+  command.option("--pause", options->pause, "Rest before each take in seconds")
+      .range(0.6, 60.0)
+      .showDefault();
+  command
+      .option(
+          "--axes", options->axes,
+          "The tracker's axes that are the wall's x (right), y (up) and z (towards the person), "
+          "as in /wall/scene/tracker_axes: 1 is x, 2 is y, 3 is z; negative: the opposite "
+          "direction")
+      .expected(3)
+      .showDefault();
+  addInstance(command, options->instance);
+  command.callback([options, &run] { run = [options] { return record(*options); }; });
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,66 @@
+// merlin gesture, run as a person runs it: takes of an emulated hand, and of synthetic people.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "nn/io/path_file.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+TEST(GestureRecord, TakesPosesOfALiveHandAndAppendsThem) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "gestures", {.script = "still", .role = "devices"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs(shm::kTracker, HealthState::kOk));
+  const std::string file = dir / "takes.csv";
+  const auto record = [&](const std::string& label) {
+    return run({kMerlin, "gesture", "record", label, "-o", file, "--times", "2", "--seconds", "0.5",
+                "--pause", "0.6", "--instance", merlind.instance()});
+  };
+  const Outcome wave = record("wave");
+  ASSERT_EQ(wave.status, 0) << wave.output;
+  EXPECT_NE(wave.output.find("now: wave"), std::string::npos) << wave.output;
+  const Outcome none = record("none");
+  ASSERT_EQ(none.status, 0) << none.output;
+  const auto recording = nn::loadPaths(file);
+  ASSERT_TRUE(recording) << recording.error().what;
+  EXPECT_EQ(recording->labels, (std::vector<std::string>{"wave", "none"}));
+  EXPECT_GT(recording->poses.size(), 100u);
+  EXPECT_EQ(nn::sessionsOf(*recording).size(), 4u) << "a session for each take";
+  // The emulated hand is 0.6 m from the transmitter, to the right and above: z, -x, -y.
+  EXPECT_NEAR(recording->poses.front().pose.position_m[2], 0.6, 0.05);
+  const Outcome name = record("two words");
+  EXPECT_EQ(name.status, 2) << name.output;
+  EXPECT_NE(name.output.find("LABEL \"two words\": allowed are 1 to 31 letters"), std::string::npos)
+      << name.output;
+}
+
+TEST(GestureTrain, LearnsFromTakesAndIsTestedOnOthers) {
+  const TempDir dir;
+  const auto synthesize = [&](const char* file, const char* first) {
+    return run({kMerlin, "gesture", "synthesize", "-o", dir / file, "--people", "4", "--times", "4",
+                "--first", first, "--ordinary", "120"});
+  };
+  ASSERT_EQ(synthesize("train.csv", "1").status, 0);
+  ASSERT_EQ(synthesize("test.csv", "701").status, 0);
+  const Outcome trained =
+      run({kMerlin, "gesture", "train", dir / "train.csv", "-o", dir / "g.json"});
+  ASSERT_EQ(trained.status, 0) << trained.output;
+  EXPECT_NE(trained.output.find("10 gestures from 1"), std::string::npos) << trained.output;
+  const Outcome tested =
+      run({kMerlin, "gesture", "test", dir / "g.json", dir / "test.csv", "--json"});
+  ASSERT_EQ(tested.status, 0) << tested.output;
+  const auto json = nlohmann::json::parse(tested.output);
+  EXPECT_EQ(json["takes"], 160);
+  EXPECT_GT(json["accuracy"], 0.5);
+  EXPECT_EQ(json["synthetic"], true);
+  EXPECT_EQ(json["gestures"].size(), 10u);
+  const Outcome wrong = run({kMerlin, "gesture", "train", dir / "g.json", "-o", dir / "h.json"});
+  EXPECT_EQ(wrong.status, 2) << wrong.output;
+  EXPECT_NE(wrong.output.find("g.json:1: found the header"), std::string::npos) << wrong.output;
+  EXPECT_FALSE(std::filesystem::exists(dir / "h.json"));
+}
+
+}  // namespace
+}  // namespace merlin::test
