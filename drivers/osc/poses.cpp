@@ -25,6 +25,7 @@ bool isNumber(const OscArgument& argument) noexcept {
 // Whether an argument is this name: a text, or a number whose digits are the name.
 bool names(const OscArgument& argument, std::string_view name) noexcept {
   if (argument.kind == OscArgument::kText) return argument.text == name;
+  if (argument.kind != OscArgument::kInteger) return false;
   std::int32_t number = 0;
   const char* const end = name.data() + name.size();
   const auto [stop, error] = std::from_chars(name.data(), end, number);

@@ -119,6 +119,7 @@ TEST_F(OscTest, WithoutItsPlaceInTheAddressTheStationIsTheFirstArgument) {
   EXPECT_EQ(newest().station, 1u);
   EXPECT_EQ(newest().counter, 3u);
   feed(named(8, kAtRest));
+  feed(named(7.0F, kAtRest));  // a number with a fraction is no name
   EXPECT_EQ(sink_.tracker.size(), 4u);
   EXPECT_EQ(device_->counters().bad_packets, 0u);
 }
