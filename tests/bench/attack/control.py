@@ -1,6 +1,7 @@
 """Cases: clients who may not command. Each attacks the wall's encrypted address for commands, or its
-local sockets, for some seconds; what counts is that it gets nothing and that no more frames are late
-than without it."""
+local sockets, and in turn a sink; what counts is that it gets nothing and that no more frames are
+late than beside the sink."""
+import copy
 import json
 import os
 import socket
@@ -12,11 +13,11 @@ import time
 import figures
 import sockets
 import strangers
-from devices import RATE_HZ, free_port
+from devices import FLOODER, RATE_HZ, free_port
 from figures import Measured, did_not_run, mean_of
-from wall import WAY_OUT, Wall
+from wall import WAY_OUT, Children, Wall, wait_for
 
-LIMIT = 1.0  # percentage points of late frames more than in the worst turn without an attacker
+LIMIT = 1.0  # percentage points of late frames more than in the worst turn on a sink
 SERVER = "commands of the wall over the network"
 BLANK = json.dumps({"command": "blank"}).encode()
 OTHER_USER = 65534
@@ -44,6 +45,14 @@ class Attacked:
             "wall_endpoint": "tcp://%s:%d" % self.address, "commands_keys": self.server,
             "commands_clients": self.listed + ".public"}})
         self.local = os.path.join(options.folder, f"{self.wall.instance}-wall.command")
+
+    def on_sinks(self):
+        """The same for attackers, but for where they go: sinks that do nothing more than to hear a
+        client and send it away."""
+        sinks = copy.copy(self)
+        sinks.address = ("127.0.0.1", free_port())
+        sinks.local = os.path.join(self.options.folder, "sink")
+        return sinks
 
     def merlin(self, keys, *words):
         return subprocess.run(
@@ -160,7 +169,7 @@ def received(s):
 
 
 class Unauthorised:
-    """Each of the attackers: turns without and with it, ABBA."""
+    """Each of the attackers: turns on sinks and on merlind, ABBA."""
     name = "unauthorised"
     ATTACKERS = (no_key, wrong_key, other_user, connections, gigabyte, half_a_message)
 
@@ -183,28 +192,39 @@ class Unauthorised:
         assert not wrong, f"late frames: {', '.join(wrong)}"
 
     def bears(self, attacked, attacker, report):
-        """Whether no more frames are late than in the worst turn without the attacker, and LIMIT: on
-        a machine that does something else too, turns differ by themselves."""
-        options, tries, turns = attacked.options, 0, {"quiet": [], "attacked": []}
+        """Whether no more frames are late than in the worst turn on sinks, and LIMIT: on a machine
+        that does something else too, turns differ by themselves."""
+        options, tries, turns = attacked.options, 0, {"sink": [], "merlind": []}
         for turn in range(2 * options.rounds):
-            side = ("quiet", "attacked")[(turn + turn // 2) % 2]  # ABBA
-            result, end = [], time.monotonic() + options.seconds
-            work = (lambda: None) if side == "quiet" else lambda: result.extend(attacker(attacked, end))
-            turns[side].append(self.late(attacked.wall, options.seconds, work))
-            if side == "attacked":
-                tries += result[0]
-                assert not result[1], f"{attacker.__name__}: it got {result[1][:80]}"
+            side = ("sink", "merlind")[(turn + turn // 2) % 2]  # ABBA
+            share, (tried, got) = self.turn(attacked, attacker, side)
+            turns[side].append(share)
+            if side == "merlind":
+                tries += tried
+                assert not got, f"{attacker.__name__}: it got {got[:80]}"
         if not tries > 0:
             did_not_run(attacker.__name__, "it did not try", "see control.py")
-        name = f"{self.name}.{attacker.__name__}"
-        worst = max(turns["quiet"])
-        quiet, late = (mean_of(turns[side], "turns") for side in ("quiet", "attacked"))
+        name, worst = f"{self.name}.{attacker.__name__}", max(turns["sink"])
+        sink, late = (mean_of(turns[side], "turns") for side in ("sink", "merlind"))
         figures.note(f"{name}: {tries} tries")
-        report.text(f"{name:28} {tries:6d} tries: got nothing; late {late:5.2f} % beside {quiet:.2f} % "
-                    f"without it ({late - quiet:+.2f} points; the worst turn without it {worst:.2f} %)")
-        for side, share in (("without", quiet), ("with", late)):
-            report.figure(f"{name}.late_{side}", share, "%")
+        report.text(f"{name:28} {tries:6d} tries: got nothing; late {late:5.2f} % beside {sink:.2f} % "
+                    f"of the sink ({late - sink:+.2f} points; the sink's worst turn {worst:.2f} %)")
+        for side in turns:
+            report.figure(f"{name}.{side}.late", mean_of(turns[side], "turns"), "%")
         return late <= worst + LIMIT
+
+    def turn(self, attacked, attacker, side):
+        options, result = attacked.options, []
+        with Children() as children:
+            at = attacked
+            if side == "sink":
+                at = attacked.on_sinks()
+                for place in (str(at.address[1]), at.local):
+                    children.start([sys.executable, FLOODER, "answer", place])
+                wait_for(at.local)
+            end = time.monotonic() + options.seconds
+            share = self.late(attacked.wall, options.seconds, lambda: result.extend(attacker(at, end)))
+        return share, result
 
     def late(self, wall, seconds, work):
         """Share of late deadlines while `work` runs, at least `seconds`."""
