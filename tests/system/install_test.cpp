@@ -128,6 +128,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/usr/share/bash-completion/completions/merlin",
                            "/usr/share/merlin/ankylosaurus.mrm",
                            "/usr/share/merlin/wall.json",
+                           "/usr/share/merlin/gestures.json",
                            "/usr/share/merlin/merlind.service.d/network.conf",
                            "/usr/share/merlin/merlind.service.d/gpio.conf",
                            "/usr/share/merlin/merlind.service.d/input.conf",
