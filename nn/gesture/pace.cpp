@@ -6,10 +6,10 @@
 namespace merlin::nn {
 namespace {
 
-// Greatest speed of an unhurried stroke by its length, of the synthetic people of drivers/hand: the
-// line through the logarithms of their ordinary strokes.
+// Greatest speed of an unhurried reach by its length, both as logarithms: a straight line that fits
+// the synthetic people of drivers/hand.
 constexpr float kSpeedAt1m = 0.60F, kSlope = 0.60F;
-constexpr float kShare = 1.0F / 15;
+constexpr float kLongMemory = 15;     // strokes
 constexpr float kMost = 0.4F;         // of one stroke's difference that counts
 constexpr float kFarthest = 0.35F;    // from the average person
 constexpr float kShortest_m = -1.9F;  // logarithm of 0.15 m
@@ -27,7 +27,8 @@ float UsualPace::hasteOf(float log_length, float log_speed) const noexcept {
 
 void UsualPace::learn(float log_length, float log_speed, float roll_share) noexcept {
   if (log_length < kShortest_m || std::abs(roll_share) > kMostRoll) return;
-  usual_ += kShare * std::clamp(hasteOf(log_length, log_speed), -kMost, kMost);
+  strokes_ = std::min(strokes_ + 1, kLongMemory);
+  usual_ += std::clamp(hasteOf(log_length, log_speed), -kMost, kMost) / strokes_;
   usual_ = std::clamp(usual_, -kFarthest, kFarthest);
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 // What the shipped gestures were trained on; tests use people from 1001 on.
 const SyntheticMovers kTrained{
-    .first = 1, .people = 150, .times = 6, .ordinary_s = 600, .kind_s = 60, .seed = 1};
+    .first = 1, .people = 300, .times = 6, .ordinary_s = 600, .kind_s = 60, .seed = 1};
 // Ordinary motion for a recording that has none.
 const SyntheticMovers kOrdinary{
     .first = 1, .people = 40, .times = 0, .ordinary_s = 600, .kind_s = 60, .seed = 1};
