@@ -132,7 +132,9 @@ TEST(Atlas, ShowsEachTriangleWhatItsPictureShows) {
 ImageFile halved(const ImageFile& image) {
   ImageFile half{image.width / 2, image.height / 2, {}, {}};
   const auto at = [&](int x, int y, int k) {
-    return int{image.pixels[static_cast<std::size_t>(3 * (y * image.width + x) + k)]};
+    const std::size_t texel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                              static_cast<std::size_t>(x);
+    return int{image.pixels[3 * texel + static_cast<std::size_t>(k)]};
   };
   for (int y = 0; y < half.height; ++y) {
     for (int x = 0; x < half.width; ++x) {

@@ -12,6 +12,7 @@
 #include "render/image/image_file.h"
 #include "render/mesh/coincident.h"
 #include "render/mesh/io/mesh_file.h"
+#include "render/mesh/io/texture_pictures.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::render {
@@ -364,6 +365,19 @@ TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
             dir_ / "a.obj: line 7: a corner refers to texture coordinate 2, but there are 1");
   read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // defined after its use
   read(std::string(kSquare) + "vt 0 0\nvt 1 1\nf 1/-1 2/-2 3/-1\n");
+}
+
+TEST(TexturePictures, AreReadUpToALimitOfAllTogether) {
+  const test::TempDir dir;
+  writePngFile(dir / "four.png", 2, 2, kFour);
+  mesh::TexturePictures pictures(30);
+  EXPECT_TRUE(pictures.read(dir / "four.png"));
+  EXPECT_FALSE(pictures.read(dir / "none.png"));
+  EXPECT_TRUE(pictures.read(dir / "four.png")) << "24 of 30 bytes";
+  const auto more = pictures.read(dir / "four.png");
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error().what,
+            dir / "four.png: the model's texture images have more than 2^28 pixels together");
 }
 
 TEST(ImageFile, IsMixedOfTheNearestPixels) {

@@ -225,6 +225,48 @@ TEST_P(TexturedRoom, HasOneTextureOfAllItsPictures) {
   EXPECT_EQ(features(), "colour texcoord label normal ");
 }
 
+// The share of a picture's pixels that are like a colour, in percent.
+double shareOf(const render::image::ImageFile& picture, const std::array<int, 3>& like) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i + 2 < picture.pixels.size(); i += 3) {
+    bool same = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      same = same && std::abs(picture.pixels[i + k] - like[k]) <= 30;
+    n += same;
+  }
+  return 300.0 * static_cast<double>(n) / static_cast<double>(picture.pixels.size());
+}
+
+// Drawn by MERLIN from in front: the wall is red, the board has its yellow frame and its white
+// arrow, the pillar is green, the floor light and dark.
+TEST_P(TexturedRoom, LooksAsItsPicturesDo) {
+  ASSERT_EQ(
+      run({"python3", "-B", kSource + "/tests/support/textured_models.py", dir_.path()}).status, 0);
+  ASSERT_EQ(import(dir_ / GetParam()).status, 0);
+  const Outcome drawn = run({kMerlin, "mesh", "picture", out_, "-o", dir_ / "room.png", "--backend",
+                             "osmesa", "--yaw", "25", "--pitch", "25"});
+  ASSERT_EQ(drawn.status, 0) << drawn.output;
+  const auto picture = render::image::readImage(dir_ / "room.png");
+  ASSERT_TRUE(picture) << picture.error().what;
+  struct Seen {
+    const char* what;
+    std::array<int, 3> colour;
+    double least, most;  // [%] of the picture
+  };
+  const bool linear = std::string_view(GetParam()) == "room.gltf";  // of its colours
+  const Seen all[] = {
+      {"bricks", {140, 60, 40}, 5, 20},
+      {"the board's frame", {215, 170, 0}, 0.2, 1.5},
+      {"the arrow", {215, 215, 215}, 0.3, 9},
+      {"light tiles", {195, 195, 187}, 4, 12},
+      {"dark tiles", {52, 60, 77}, 4, 12},
+      {"the pillar", {linear ? 105 : 45, linear ? 175 : 140, linear ? 130 : 70}, 1, 5}};
+  for (const Seen& seen : all) {
+    EXPECT_GE(shareOf(*picture, seen.colour), seen.least) << seen.what;
+    EXPECT_LE(shareOf(*picture, seen.colour), seen.most) << seen.what;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, TexturedRoom, testing::Values("room.obj", "room.wrl", "room.gltf"));
 
 // Two squares side by side, of which each is a part.

@@ -95,7 +95,8 @@ void printFeature(const FeatureInfo& f) {
 void printAbout(std::string_view about) {
   while (!about.empty()) {
     const std::size_t n = std::min(about.find('\n'), about.size());
-    printOut("  made by   {}\n", about.substr(0, n));
+    const std::string_view line = about.substr(0, n);
+    if (!line.starts_with("unit=")) printOut("  made by   {}\n", line);  // is said already
     about.remove_prefix(std::min(n + 1, about.size()));
   }
 }

@@ -252,7 +252,9 @@ void addMeshImport(Command mesh, Run& run) {
                                         "a sandbox are " +
                                         foreignFormats() +
                                         ". Parts of a model become one mesh; the feature label "
-                                        "has the number of each vertex' part."
+                                        "has the number of each vertex' part. Parts that are one "
+                                        "surface are welded along their common edges, and several "
+                                        "textures become one."
                                         "\nExample: merlin mesh import scan.pgm --geometry "
                                         "orthogonal --angles 60 45 --scale 0.001 "
                                         "--feature colour=photo.ppm --spikes 2% -o scan.mrm");

@@ -12,6 +12,7 @@
 #include "daemon/base/printable_text.h"
 #include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/text_lines.h"
+#include "render/mesh/io/texture_pictures.h"
 
 namespace merlin::render::mesh {
 namespace {
@@ -97,7 +98,7 @@ class Library {
     const auto known = pictures_.find(path);
     if (known != pictures_.end()) return known->second;
     std::shared_ptr<const image::ImageFile> picture;
-    if (auto read = image::readImage(path))
+    if (auto read = reading_.read(path))
       picture = std::make_shared<const image::ImageFile>(*std::move(read));
     else
       notes_.push_back(read.error().what + "; its colours are left out");
@@ -109,6 +110,7 @@ class Library {
   std::string folder_;
   std::vector<std::string>& notes_;
   std::vector<ObjMaterial> materials_;
+  TexturePictures reading_;
   std::map<std::string, std::shared_ptr<const image::ImageFile>> pictures_;
 };
 

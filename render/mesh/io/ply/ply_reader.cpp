@@ -13,6 +13,7 @@
 #include "render/mesh/io/ply/ply.h"
 #include "render/mesh/io/ply/ply_header.h"
 #include "render/mesh/io/reader.h"
+#include "render/mesh/io/texture_pictures.h"
 #include "render/mesh/io/writer.h"
 
 namespace merlin::render::mesh {
@@ -23,13 +24,14 @@ std::vector<image::ImageFile> picturesOf(const std::vector<std::string>& names,
                                          const std::string& folder,
                                          std::vector<std::string>& notes) {
   std::vector<image::ImageFile> pictures;
+  TexturePictures reading;
   for (const std::string& name : names) {
     pictures.emplace_back();
     if (name.find('\0') != std::string::npos) {
       notes.push_back(name + ": is not a valid file name; the texture image is left out");
       continue;
     }
-    auto picture = image::readImage(pathBeside(folder, name));
+    auto picture = reading.read(pathBeside(folder, name));
     if (picture)
       pictures.back() = *std::move(picture);
     else
