@@ -213,6 +213,12 @@ bool isSame(const Json& written, const Json& used) {
   return used == (kFolder / path).lexically_normal().string();
 }
 
+// Whether the value says, as its help promises, that the driver's usual one is taken.
+bool isTheDriversOwn(const Pointer& at, const Json& written) {
+  if (!at.to_string().starts_with("/devices/")) return false;
+  return (at.back() == "baud" && written == 0) || (at.back() == "name" && written == "");
+}
+
 // The first value of the text that the settings do not have; empty: they have all of them.
 std::string ignoredIn(const Json& written, const Json& used, const LoadedSettings& loaded,
                       const Pointer& at = Pointer()) {
@@ -233,7 +239,8 @@ std::string ignoredIn(const Json& written, const Json& used, const LoadedSetting
     }
     return {};
   }
-  const bool known = isSame(written, used) || std::ranges::any_of(loaded.findings, adjusted);
+  const bool known = isSame(written, used) || isTheDriversOwn(at, written) ||
+                     std::ranges::any_of(loaded.findings, adjusted);
   return known ? "" : at.to_string();
 }
 

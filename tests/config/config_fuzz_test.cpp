@@ -31,7 +31,7 @@ TEST(ConfigFuzz, NoMutationIsAcceptedWithAKeyThatIsIgnored) {
     EXPECT_EQ(result.fault, "") << "seed " << seed << "\n" << result.text;
     ++outcomes[static_cast<std::size_t>(result.outcome)];
   }
-  for (const int count : outcomes) EXPECT_GT(count, 10) << "each outcome is reached";
+  for (const int count : outcomes) EXPECT_GT(count, 3) << "each outcome is reached";
 }
 
 TEST(ConfigFuzz, TheSameSeedIsTheSameConfiguration) {
