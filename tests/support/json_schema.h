@@ -95,7 +95,8 @@ class JsonSchema {
     if (value.size() < schema.value("minItems", std::size_t{0}) ||
         value.size() > schema.value("maxItems", ~std::size_t{0}))
       found.push_back(fmt::format("{}: has {} items", at, value.size()));
-    for (const Json& item : value) check(schema.at("items"), item, at + "/#", found);
+    if (!schema.contains("items")) return;  // of another type, which check() has told
+    for (const Json& item : value) check(schema["items"], item, at + "/#", found);
   }
 
   void checkMembers(const Json& schema, const Json& value, const std::string& at,
