@@ -6,6 +6,7 @@ wall has to find it, say it, put its picture back and say that, too.
 """
 import argparse
 import os
+import subprocess
 import sys
 import time
 import unittest
@@ -17,15 +18,39 @@ SPOILED, CONNECTOR = "centre", "Virtual-2"
 # Between two checks 5 s; a second reading after half a second; events are told every half second.
 # The rest is for a machine that is emulated.
 LONGEST_S = 12
+STANDS_S = 3  # without a frame
+
+
+def merlin(*arguments):
+    subprocess.run([f"{wall.OPTIONS.bin}/merlin", *arguments], check=True, stdout=subprocess.DEVNULL)
 
 
 def setUpModule():
+    """The wall with a model that an emulated machine soon has in full detail: then no frame is drawn any more."""
     wall.setUpModule()
+    small = f"{wall.OPTIONS.work}/small"
+    merlin("mesh", "export", f"{wall.OPTIONS.work}/model.mrm", "--percent", "2", "-o", f"{small}.ply")
+    merlin("mesh", "reduce", f"{small}.ply", "-o", f"{small}.mrm")
+    config = wall.read_config("wall")
+    config["wall"]["model"] = f"{small}.mrm"
+    wall.write_config("wall", config)
     wall.start_wall()
 
 
 def tearDownModule():
     wall.tearDownModule()
+
+
+def frames():
+    return [output["frames"] for output in wall.outputs().values()]
+
+
+def stands_still():
+    before, end = frames(), time.monotonic() + STANDS_S
+    while time.monotonic() < end:
+        if frames() != before:
+            return False
+    return True
 
 
 def pictures():
@@ -36,6 +61,7 @@ class Picture(unittest.TestCase):
     def setUp(self):
         until(lambda: set(pictures().values()) == {"right"}, "each output shows what was meant")
         until(wall.shows_signals, "each display shows the signal of its output")
+        until(stands_still, "nothing is drawn any more")
 
     def spoil(self, how, name=SPOILED, connector=CONNECTOR):
         """Spoils a display; returns when it was done."""
