@@ -6,10 +6,18 @@
 namespace merlin {
 namespace {
 
-constexpr std::uint8_t kMark[] = {0xDA, 0x67};
+constexpr std::uint8_t kMark = 0xDA, kCheck = 0x67;
 
-std::size_t lengthOf(const std::array<std::uint8_t, kDatagramHeader>& header) noexcept {
+using Header = std::array<std::uint8_t, kDatagramHeader>;
+
+std::size_t lengthOf(const Header& header) noexcept {
   return static_cast<std::size_t>(header[2] | header[3] << 8);
+}
+
+std::uint8_t checkOf(const Header& header) noexcept {
+  unsigned check = kCheck;
+  for (std::size_t i = 2; i < header.size(); ++i) check ^= header[i];
+  return static_cast<std::uint8_t>(check);
 }
 
 }  // namespace
@@ -18,11 +26,10 @@ DatagramParser::DatagramParser() : bytes_(kLongestDatagram) {}
 
 // Whether what is there of the header may begin one.
 bool DatagramParser::headerFits() const noexcept {
-  for (std::size_t i = 0; i < std::min(header_length_, std::size(kMark)); ++i) {
-    if (header_[i] != kMark[i]) return false;
-  }
+  if (header_length_ > 0 && header_[0] != kMark) return false;
   if (header_length_ < 4) return true;
-  return lengthOf(header_) > 0 && lengthOf(header_) <= kLongestDatagram;
+  if (lengthOf(header_) == 0 || lengthOf(header_) > kLongestDatagram) return false;
+  return header_length_ < kDatagramHeader || header_[1] == checkOf(header_);
 }
 
 void DatagramParser::dropFirst() noexcept {
@@ -60,10 +67,13 @@ void DatagramParser::reset() noexcept {
 
 void append(const Datagram& datagram, std::string& out) {
   assert(!datagram.bytes.empty() && datagram.bytes.size() <= kLongestDatagram);
-  for (const std::uint8_t mark : kMark) out += static_cast<char>(mark);
+  Header header{kMark};
   for (std::size_t i = 0; i < 2; ++i)
-    out += static_cast<char>(datagram.bytes.size() >> 8 * i & 0xFF);
-  for (std::size_t i = 0; i < 4; ++i) out += static_cast<char>(datagram.sender >> 8 * i & 0xFF);
+    header[2 + i] = static_cast<std::uint8_t>(datagram.bytes.size() >> 8 * i & 0xFF);
+  for (std::size_t i = 0; i < 4; ++i)
+    header[4 + i] = static_cast<std::uint8_t>(datagram.sender >> 8 * i & 0xFF);
+  header[1] = checkOf(header);
+  out.append(reinterpret_cast<const char*>(header.data()), header.size());
   out.append(reinterpret_cast<const char*>(datagram.bytes.data()), datagram.bytes.size());
 }
 

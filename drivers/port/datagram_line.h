@@ -2,7 +2,8 @@
 // sender, so that they can be recorded, replayed and watched by the flight recorder as the bytes of
 // every other line. drivers/io writes them, drivers/tuio and drivers/osc read them. Pure.
 //
-//   bytes 0-1  0xDA 0x67
+//   byte 0     0xDA
+//   byte 1     0x67 xor bytes 2 to 7, so that a damaged length is not believed
 //   bytes 2-3  length of the datagram, 1 to 65507: u16, little-endian
 //   bytes 4-7  sender: u32, little-endian; the same for all datagrams from one address and port
 //   then the datagram

@@ -59,15 +59,14 @@ TEST(DatagramLine, FindsTheNextDatagramAfterRubbish) {
   EXPECT_EQ(parser.badPackets(), 1u);
 }
 
-TEST(DatagramLine, OneDamagedByteLosesNoMoreThanItsDatagramAndWhatItTookForIt) {
+TEST(DatagramLine, OneDamagedByteLosesNoMoreThanItsDatagram) {
   const std::string good = datagram("0123456789abcdef", 3);
   for (std::size_t i = 0; i < good.size(); ++i) {
     for (int bit = 0; bit < 8; ++bit) {
       std::string bytes = good;
       bytes[i] = static_cast<char>(bytes[i] ^ 1 << bit);
       DatagramParser parser;
-      // A length that became longer swallows what follows, at most 64 KiB.
-      bytes.append(66000, '\0').append(good);
+      bytes += good;
       const auto got = parse(parser, bytes);
       ASSERT_FALSE(got.empty()) << i << " " << bit;
       EXPECT_EQ(got.back(), (Got{3, "0123456789abcdef"})) << i << " " << bit;
