@@ -79,16 +79,21 @@ std::string rendererLine(const Json& s) {
                      fault.empty() ? "" : ": " + fault);
 }
 
+std::string outputDetail(const Json& output) {
+  if (output.value("health", "") == "failed") return output.value("reason", "");
+  const std::string wrong = output.value("picture_reason", "");
+  if (!wrong.empty()) return wrong;
+  return fmt::format("{:.1f} Hz shown, {:.2f} % late", output.value("shown_hz", 0.0),
+                     output.value("late_percent", 0.0));
+}
+
 std::string outputLines(const Json& s) {
   std::string text;
   if (!s.contains("outputs")) return text;
   for (const auto& [name, output] : s["outputs"].items()) {
-    const bool failed = output.value("health", "") == "failed";
-    text += fmt::format(
-        "output   {:14} {:8} {}\n", name, output.value("health", ""),
-        failed ? output.value("reason", "")
-               : fmt::format("{:.1f} Hz shown, {:.2f} % late", output.value("shown_hz", 0.0),
-                             output.value("late_percent", 0.0)));
+    const bool wrong = !output.value("picture_reason", std::string()).empty();
+    const std::string state = wrong ? "wrong" : output.value("health", "");
+    text += fmt::format("output   {:14} {:8} {}\n", name, state, outputDetail(output));
   }
   return text;
 }
