@@ -14,6 +14,7 @@ constexpr Vector3 kDown{0.18, -0.40, -0.08};  // of the hand against the shoulde
 constexpr Vector3 kReady{0.15, -0.05, -0.38};
 // Duration of an unhurried reach.
 constexpr double kReach_s = 0.40, kReach_s_per_m = 0.6, kReach_s_per_rad = 0.15;
+constexpr double kStand_m = 1.2, kFar_m = 1.5;  // from the transmitter
 constexpr std::int64_t kStart_ns = 1'000'000'000;
 
 }  // namespace
@@ -23,7 +24,7 @@ Actor::Actor(const MovingPerson& person, std::uint64_t seed)
       random_(seed * 0x9E3779B97F4A7C15 + 31),
       noise_(seed * 0x9E3779B97F4A7C15 + 32),
       hand_({kDown, {}}),
-      body_({{0.3 * random_.normal(), 0, 1.2 + 0.2 * random_.normal()}, {}}),
+      body_({{0.3 * random_.normal(), 0, kStand_m + 0.2 * random_.normal()}, {}}),
       gap_at_s_(random_.uniform(1, 2 * person.tracker().gap_every_s)) {
   for (double& phase : phase_) phase = kFull * random_.uniform();
 }
@@ -158,7 +159,7 @@ void Actor::turnModel() {
       way.position_m[i] += 0.5 * (kReady[i] * person_.size() - end.position_m[i]);
       way.turn_rad[i] -= 0.6 * end.turn_rad[i];
     }
-    move(way, 0.02);
+    move(way, pace(0.6, 1.6), 0.02);
   }
   wait(random_.uniform(0.2, 1));
 }
@@ -179,7 +180,11 @@ void Actor::scratch() {
 void Actor::walk() {
   goTo(about(kDown, 0.03), 0, 0.02);
   const double step_s = pace(0.48, 0.62), swing = random_.uniform(0.05, 0.22);
-  const double angle = kFull * random_.uniform(), step_m = random_.uniform(0.4, 0.7);
+  const double step_m = random_.uniform(0.4, 0.7);
+  double angle = kFull * random_.uniform();
+  const Vector3 stands = body_.end().position_m;
+  if (std::hypot(stands[0], stands[2] - kStand_m) > kFar_m)  // the cable ends: back
+    angle = std::atan2(kStand_m - stands[2], -stands[0]);
   const Vector3 ahead{std::cos(angle), 0, std::sin(angle)};
   for (std::uint64_t n = 3 + random_.below(6); n > 0; --n) {
     Move step;
