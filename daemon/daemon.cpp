@@ -267,9 +267,9 @@ void Daemon::housekeeping() {
   if (devices_ && devices_->projectors()) devices_->projectors()->tend();
   servers_->tend(now);
   if (emulators_) {
-    for (const std::string& device : emulators_->takeEnded()) {
+    for (const auto& [device, driver] : emulators_->takeEnded()) {
       logWarning("the emulated {} has ended; start it again with: merlin emulate {} --link ...",
-                 device, device);
+                 device, driver);
     }
   }
   if (now - mended_ >= kOnceASecond) {

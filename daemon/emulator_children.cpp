@@ -108,7 +108,7 @@ Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
     const pid_t pid = spawn(command);
     if (pid < 0)
       return Error{Errc::kIo, fmt::format("cannot start an emulator: {}", std::strerror(errno))};
-    started.children_.push_back({device.name, pid});
+    started.children_.push_back({{device.name, line.driver}, pid});
   }
   return started;
 }
@@ -118,11 +118,11 @@ EmulatorChildren::~EmulatorChildren() {
   for (const Child& child : children_) ::waitpid(child.pid, nullptr, 0);
 }
 
-std::vector<std::string> EmulatorChildren::takeEnded() {
-  std::vector<std::string> ended;
+std::vector<EmulatorChildren::Emulated> EmulatorChildren::takeEnded() {
+  std::vector<Emulated> ended;
   std::erase_if(children_, [&](const Child& child) {
     if (::waitpid(child.pid, nullptr, WNOHANG) != child.pid) return false;
-    ended.push_back(child.device);
+    ended.push_back(child.emulated);
     return true;
   });
   return ended;

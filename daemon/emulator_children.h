@@ -28,12 +28,15 @@ class EmulatorChildren {
   // been started. Errors: kIo.
   static Result<EmulatorChildren> start(Settings& settings, const std::string& run_directory);
 
-  // Names of the devices whose emulator process has ended since the last call.
-  std::vector<std::string> takeEnded();
+  struct Emulated {
+    std::string device, driver;  // its name, and what is emulated
+  };
+  // The devices whose emulator process has ended since the last call.
+  std::vector<Emulated> takeEnded();
 
  private:
   struct Child {
-    std::string device;
+    Emulated emulated;
     pid_t pid;
   };
   std::vector<Child> children_;

@@ -214,7 +214,7 @@ std::string statusTable(const Json& s) {
   const std::string posture = s.value("posture", "");
   text += fmt::format("posture  {}\n", posture.empty() ? "-" : posture);
   for (const auto& [name, device] : s["devices"].items()) {
-    text += fmt::format("{:8} {:8} {}\n", name, device.value("health", ""), deviceDetail(device));
+    text += fmt::format("{:16} {:8} {}\n", name, device.value("health", ""), deviceDetail(device));
   }
   return text + projectorLines(s) + serverLines(s);
 }
