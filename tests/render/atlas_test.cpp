@@ -279,7 +279,7 @@ TEST(Atlas, SplitsVerticesBetweenPicturesAndNowhereElse) {
   EXPECT_EQ(two.triangles, (Indices{0, 1, 2, 4, 3, 5}));
   EXPECT_EQ(two.find("heat")->values, (Floats{1, 2, 3, 4, 2, 3}));
   EXPECT_EQ((Floats{two.positions.begin() + 12, two.positions.end()}), (Floats{1, 0, 0, 0, 1, 0}));
-  Mesh one = twoTriangles({0, 0, 3.5F, 0, 0, 1, 3.5F, 1});
+  Mesh one = twoTriangles({0.25F, 0, 1.5F, 0, 1.25F, 1, 3.5F, 1});
   EXPECT_EQ(joinTextures(one, {{{&a, Wrap::kRepeat, Wrap::kClamp}}, {0, 0}}).split, 0u)
       << "up to four repeats stay connected";
 }
