@@ -31,7 +31,7 @@ struct GestureTrainingSettings {
   double decay = 1;  // of the discriminant's weights
   // The least odds lose as few as possible: a gesture's own strokes, and this much for each
   // lookalike that they let through, all held out of the training.
-  double worth = 0.5;
+  double worth = 0.8;
 };
 
 // Errors: kInvalidArgument: a name is not valid; no gesture or more than kMostGestures; a gesture

@@ -20,7 +20,7 @@
 namespace merlin::bench {
 namespace {
 
-constexpr std::uint64_t kFirst = 5001;  // on people from here on no choice was made
+constexpr std::uint64_t kFirst = 7001;  // on people from here on no choice was made
 constexpr std::size_t kPeople = 60, kTimes = 5, kOrdinaryPeople = 60, kKindPeople = 20;
 constexpr double kOrdinary_s = 1200, kKind_s = 600, kAfterTake_s = 0.8;
 constexpr std::uint64_t kSeed = 77;
