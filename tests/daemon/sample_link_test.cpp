@@ -168,7 +168,7 @@ struct Devices {
     StatusServerSettings s;
     s.status_endpoint = "ipc://" + dir / "status";
     s.command_endpoint = "ipc://" + dir / "command";
-    s.network = {"tcp://127.0.0.1:" + std::to_string(port), keys, std::move(clients)};
+    s.network = {"tcp://127.0.0.1:" + std::to_string(port), keys, Door{std::move(clients), {}}};
     s.publications = {{"sample", std::chrono::milliseconds(10),
                        [this] { return newestSamples(segment.slots(), clock.now()); }}};
     s.events = [] { return std::vector<std::string>(); };

@@ -77,7 +77,9 @@ TEST(Hand, MovingTrailsByTheDelayThatItTells) {
 }
 
 TEST(Hand, WithoutSmoothingIsTheTracker) {
-  Hand hand({.station = 1, .cutoff_hz = 0, .cutoff_per_m_s = 0});
+  HandSettings settings;
+  settings.cutoff_hz = settings.cutoff_per_m_s = 0;
+  Hand hand(settings);
   for (int i = 0; i < 50; ++i) {
     const TrackerSample t = at(i / 120.0, std::sin(i * 0.1), 0.3 * std::sin(i * 0.2));
     const HandSample h = hand.update(t, std::nullopt);

@@ -12,7 +12,7 @@ TEST(GestureRecord, TakesPosesOfALiveHandAndAppendsThem) {
   const TempDir dir;
   Merlind merlind(dir, "", "gestures", {.script = "still", .role = "devices"});
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
-  ASSERT_TRUE(merlind.healthIs(shm::kTracker, HealthState::kOk));
+  ASSERT_TRUE(merlind.healthIs("tracker", HealthState::kOk));
   const std::string file = dir / "takes.csv";
   const auto record = [&](const std::string& label) {
     return run({kMerlin, "gesture", "record", label, "-o", file, "--times", "2", "--seconds", "0.5",

@@ -31,7 +31,6 @@ constexpr bool kTimed = true;
 
 constexpr const char* kNames[] = {"cyberglove", "fastrak", "spaceball"};
 constexpr const char* kFaultNames[] = {"", "pulled", "babbling", "frozen"};
-constexpr SampleKind kKinds[] = {SampleKind::kGlove, SampleKind::kTracker, SampleKind::kBall};
 
 // Extra recovery time in seconds: during a freeze the ball may have missed its reset command, so it
 // is reset again, which takes 0.3 s in the emulator.
@@ -71,7 +70,7 @@ class Bench : public SampleSink {
       lines_[i] = std::make_unique<EmulatedLine>(kNames[i], settings, "turning");
       loops_[i] = std::make_unique<DeviceLoop>(
           DeviceLoopSettings{.port = kNames[i]}, [line = lines_[i].get()] { return line->open(); },
-          findDriver(kKinds[i], kNames[i])->make({}, clock_, *this), health_[i], clock_);
+          findDriver(kNames[i])->make({}, clock_, *this), health_[i], clock_);
     }
     for (auto& loop : loops_)
       threads_.emplace_back([&loop = *loop](const std::stop_token& stop) { loop.run(stop); });
