@@ -185,22 +185,26 @@ SampleKind kindOf(const actions::Input& input) {
   return input.kind == actions::Input::Kind::kButton ? SampleKind::kBall : SampleKind::kGlove;
 }
 
-// Inputs of a device that is not there, or of another kind. An input that names no device is that
-// of any device.
-void checkInputs(LoadedSettings& loaded) {
+// An input of a device that is not there, or of another kind. An input that names no device is that
+// of any device; what is no input is a finding of the bindings' own check.
+void checkInputAt(const std::string& text, const std::string& at, LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
-  for (std::size_t i = 0; i < d.bindings.size(); ++i) {
-    const std::string& text = d.bindings[i].input;
-    const auto input = actions::parseInput(text);
-    if (!input || input->device.empty() || findDevice(d, kindOf(*input), input->device)) continue;
-    const std::string there = namesOf(d, kindOf(*input));
-    loaded.addFinding(
-        fmt::format("/bindings/{}/input", i),
-        fmt::format("is \"{}\", and \"{}\" is not the name of a {}; /devices has {}", excerpt(text),
-                    excerpt(input->device), kindName(kindOf(*input)),
-                    there.empty() ? fmt::format("no {}: leave the binding out, or add one",
-                                                kindName(kindOf(*input)))
-                                  : there));
+  const auto input = actions::parseInput(text);
+  if (!input || input->device.empty() || findDevice(d, kindOf(*input), input->device)) return;
+  const char* const kind = kindName(kindOf(*input));
+  const std::string there = namesOf(d, kindOf(*input));
+  loaded.addFinding(
+      at, fmt::format("is \"{}\", and \"{}\" is not the name of a {}; /devices has {}",
+                      excerpt(text), excerpt(input->device), kind,
+                      there.empty() ? fmt::format("no {}: leave the binding out, or add one", kind)
+                                    : there));
+}
+
+void checkInputs(LoadedSettings& loaded) {
+  const std::vector<Binding>& bindings = loaded.settings.devices.bindings;
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    checkInputAt(bindings[i].input, fmt::format("/bindings/{}/input", i), loaded);
+    checkInputAt(bindings[i].with, fmt::format("/bindings/{}/with", i), loaded);
   }
 }
 
