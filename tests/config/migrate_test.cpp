@@ -161,8 +161,12 @@ TEST(Migrate, WhatNoVersionKnewIsLeftForTheCheck) {
   const std::string findings = test::findingsOf(loadSettings(migrated->text, ""));
   for (const char* place : {"/devices/2/driver", "/devices/2/spaceball/bepe", "/glvoe"})
     EXPECT_NE(findings.find(place), std::string::npos) << place << "\n" << findings;
-  EXPECT_EQ(migrate(R"({"devices": {"ball": 7}})").error().what, "/devices/ball is not an object");
-  EXPECT_EQ(migrate(R"({"devices": {"gpio": {}}, "gpio": {}})").error().what,
+  const auto number = migrate(R"({"devices": {"ball": 7}})");
+  ASSERT_FALSE(number);
+  EXPECT_EQ(number.error().what, "/devices/ball is not an object");
+  const auto both = migrate(R"({"devices": {"gpio": {}}, "gpio": {}})");
+  ASSERT_FALSE(both);
+  EXPECT_EQ(both.error().what,
             "has both the object /devices, of which /gpio is made, and /gpio: bring them together "
             "by hand");
 }
