@@ -9,13 +9,13 @@ namespace {
 constexpr double kFull = 2 * std::numbers::pi;
 constexpr double kSpeedUp = 0.15;  // share of a circle's time in which its speed grows, and falls
 
-void accumulate(Vector3& to, const Vector3& what, double share = 1) {
+void addShare(Vector3& to, const Vector3& what, double share = 1) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += share * what[i];
 }
 
-void accumulate(HandState& to, const HandState& what, double share = 1) {
-  accumulate(to.position_m, what.position_m, share);
-  accumulate(to.turn_rad, what.turn_rad, share);
+void addShare(HandState& to, const HandState& what, double share = 1) {
+  addShare(to.position_m, what.position_m, share);
+  addShare(to.turn_rad, what.turn_rad, share);
 }
 
 // Share of a circle that is done: the speed grows, stays, and falls.
@@ -37,11 +37,11 @@ Vector3 onEllipse(const Move& move, double angle) {
 HandState partOf(const Move& move, double share) {
   const double s = minimumJerk(std::pow(std::clamp(share, 0.0, 1.0), move.skew));
   HandState part{};
-  accumulate(part, move.way, s);
-  accumulate(part.position_m, move.bow_m, 4 * s * (1 - s));
+  addShare(part, move.way, s);
+  addShare(part.position_m, move.bow_m, 4 * s * (1 - s));
   if (move.turns == 0) return part;
-  accumulate(part.position_m, onEllipse(move, move.start_rad + move.turns * kFull * evenly(share)));
-  accumulate(part.position_m, onEllipse(move, move.start_rad), -1);
+  addShare(part.position_m, onEllipse(move, move.start_rad + move.turns * kFull * evenly(share)));
+  addShare(part.position_m, onEllipse(move, move.start_rad), -1);
   return part;
 }
 
@@ -78,19 +78,19 @@ Quaternion orientationOf(const HandState& state) {
 HandState Movement::at(double t_s) {
   const auto ended = [&](const Move& m) { return t_s >= m.begin_s + m.seconds; };
   for (const Move& move : moves_) {
-    if (ended(move)) accumulate(base_, partOf(move, 1));
+    if (ended(move)) addShare(base_, partOf(move, 1));
   }
   std::erase_if(moves_, ended);
   HandState state = base_;
   for (const Move& move : moves_) {
-    if (t_s > move.begin_s) accumulate(state, partOf(move, (t_s - move.begin_s) / move.seconds));
+    if (t_s > move.begin_s) addShare(state, partOf(move, (t_s - move.begin_s) / move.seconds));
   }
   return state;
 }
 
 HandState Movement::end() const {
   HandState state = base_;
-  for (const Move& move : moves_) accumulate(state, partOf(move, 1));
+  for (const Move& move : moves_) addShare(state, partOf(move, 1));
   return state;
 }
 
