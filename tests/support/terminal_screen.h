@@ -62,17 +62,22 @@ class TerminalScreen {
   void control(unsigned char c) {
     if (c == '\r') column_ = 0;
     if (c == '\b' && column_ > 0) --column_;
-    if (c == '\n') row_ = std::min(row_ + 1, rows_ - 1);
+    if (c == '\n') index();
     if (c == '\t') column_ = std::min((column_ / 8 + 1) * 8, columns_ - 1);
   }
 
   void write(const std::string& glyph) {
     if (column_ >= columns_) {
       column_ = 0;
-      row_ = std::min(row_ + 1, rows_ - 1);
+      index();
     }
     last_ = glyph;
-    cells_[row_][column_++] = glyph;
+    auto& cells = cells_[row_];
+    if (inserts_) {
+      cells.insert(cells.begin() + static_cast<std::ptrdiff_t>(column_), " ");
+      cells.resize(columns_);
+    }
+    cells[column_++] = glyph;
   }
 
   bool sequence(std::string_view& rest) {
@@ -80,8 +85,9 @@ class TerminalScreen {
     if (rest[1] != '[') {
       const bool three = rest[1] == '(' || rest[1] == ')';
       if (three && rest.size() < 3) return false;
-      if (rest[1] == 'E') place(row_ + 2, 1);  // the next row's begin
-      if (rest[1] == 'M' && row_ > 0) --row_;
+      if (rest[1] == 'D' || rest[1] == 'E') index();
+      if (rest[1] == 'E') column_ = 0;
+      if (rest[1] == 'M') reverseIndex();
       rest.remove_prefix(three ? 3 : 2);
       return true;
     }
@@ -117,10 +123,13 @@ class TerminalScreen {
       case 'D': column_ -= std::min(n, column_); break;
       case 'K': erase(row_, all[0] == 1 ? 0 : column_, all[0] == 0 ? columns_ : column_ + 1); break;
       case 'J': clear(all[0]); break;
-      case 'L': moveRows(row_, std::min(n, rows_ - row_), true); break;
-      case 'M': moveRows(row_, std::min(n, rows_ - row_), false); break;
-      case 'S': moveRows(0, std::min(n, rows_), false); break;
-      case 'T': moveRows(0, std::min(n, rows_), true); break;
+      case 'L':
+      case 'M':
+        if (row_ >= top_ && row_ < bottom_) moveRows(row_, n, what == 'L');
+        break;
+      case 'S':
+      case 'T': moveRows(top_, n, what == 'T'); break;
+      case 'r': scrollOnly(n, all.size() > 1 ? all[1] : 0); break;
       case 'X': erase(row_, column_, std::min(column_ + n, columns_)); break;
       case 'b':
         for (std::size_t i = 0; i < n; ++i) write(last_);
@@ -136,7 +145,11 @@ class TerminalScreen {
         cells.insert(cells.begin() + from, std::min(n, left), " ");
         cells.resize(columns_);
         break;
-      default: break;  // colours, modes
+      case 'h':
+      case 'l':
+        if (parameters == "4") inserts_ = what == 'h';
+        break;
+      default: break;  // colours, other modes
     }
   }
 
@@ -144,14 +157,35 @@ class TerminalScreen {
     row_ = std::min(row, rows_) - 1;
     column_ = std::min(column, columns_) - 1;
   }
-  // Moves the rows from this one on down or up; blank ones take the places that become free.
+  // The rows that scroll, counted from 1; `last` 0: to the last one.
+  void scrollOnly(std::size_t first, std::size_t last) {
+    bottom_ = last == 0 ? rows_ : std::min(last, rows_);
+    top_ = std::min(first, bottom_) - 1;
+    place(1, 1);
+  }
+  // One row down; at the end of the rows that scroll these move up.
+  void index() {
+    if (row_ + 1 == bottom_)
+      moveRows(top_, 1, false);
+    else
+      row_ = std::min(row_ + 1, rows_ - 1);
+  }
+  void reverseIndex() {
+    if (row_ == top_)
+      moveRows(top_, 1, true);
+    else if (row_ > 0)
+      --row_;
+  }
+  // Moves the rows from this one to the last that scrolls down or up; blank ones take the places
+  // that become free.
   void moveRows(std::size_t from, std::size_t n, bool down) {
-    const std::vector<std::vector<std::string>> blank(n, std::vector<std::string>(columns_, " "));
+    const std::size_t count = std::min(n, bottom_ - from);
     const auto first = cells_.begin() + static_cast<std::ptrdiff_t>(from);
-    if (!down) cells_.erase(first, first + static_cast<std::ptrdiff_t>(n));
-    const auto at = down ? cells_.begin() + static_cast<std::ptrdiff_t>(from) : cells_.end();
-    cells_.insert(at, blank.begin(), blank.end());
-    cells_.resize(rows_);
+    const auto last = cells_.begin() + static_cast<std::ptrdiff_t>(bottom_);
+    const auto by = static_cast<std::ptrdiff_t>(count);
+    std::rotate(first, down ? last - by : first + by, last);
+    const std::size_t blank = down ? from : bottom_ - count;
+    for (std::size_t i = 0; i < count; ++i) erase(blank + i, 0, columns_);
   }
   void erase(std::size_t row, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < std::min(to, columns_); ++i) cells_[row][i] = " ";
@@ -162,7 +196,9 @@ class TerminalScreen {
   }
 
   std::size_t rows_, columns_, row_ = 0, column_ = 0;
+  std::size_t top_ = 0, bottom_ = rows_;  // rows that scroll: from top_ to before bottom_
   std::vector<std::vector<std::string>> cells_;
+  bool inserts_ = false;  // what is written pushes the rest of the row to the right
   std::string held_, last_ = " ";
 };
 
