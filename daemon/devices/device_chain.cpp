@@ -13,9 +13,13 @@ PostureSink::Settings postureSettings(const DevicesSettings& settings) {
 DeviceChain::DeviceChain(const DevicesSettings& settings, std::size_t device,
                          const std::optional<nn::TrainedPostures>& postures,
                          std::uint64_t generation, shm::DevicesSegment& segment)
-    : memory_(segment, devicePlaces(settings)[device].kind, devicePlaces(settings)[device].of_kind),
-      health_(segment.health[device]) {
-  const DevicePlace place = devicePlaces(settings)[device];
+    : DeviceChain(settings, device, devicePlaces(settings)[device], postures, generation, segment) {
+}
+
+DeviceChain::DeviceChain(const DevicesSettings& settings, std::size_t device, DevicePlace place,
+                         const std::optional<nn::TrainedPostures>& postures,
+                         std::uint64_t generation, shm::DevicesSegment& segment)
+    : memory_(segment, place.kind, place.of_kind), health_(segment.health[device]) {
   SampleSink* next = &memory_;
   HealthSink* health = &health_;
   if (place.kind == SampleKind::kGlove || place.kind == SampleKind::kBall) {

@@ -46,6 +46,10 @@ class DeviceChain {
   void close(std::int64_t now_ns) noexcept;
 
  private:
+  DeviceChain(const DevicesSettings& settings, std::size_t device, DevicePlace place,
+              const std::optional<nn::TrainedPostures>& postures, std::uint64_t generation,
+              shm::DevicesSegment& segment);
+
   struct Hand {
     std::size_t index;  // in the list of hands
     std::unique_ptr<HandSink> sink;

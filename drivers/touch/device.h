@@ -7,7 +7,7 @@
 
 #include "daemon/base/clock.h"
 #include "drivers/port/device.h"
-#include "drivers/port/evdev_line.h"
+#include "drivers/port/evdev_reader.h"
 #include "drivers/port/touch_frames.h"
 #include "drivers/touch/settings.h"
 #include "drivers/touch/surface.h"
@@ -22,7 +22,7 @@ namespace merlin::touch {
 class TouchDevice final : public Device {
  public:
   TouchDevice(const TouchSettings& settings, const Clock& clock, SampleSink& sink)
-      : settings_(settings), clock_(clock), frames_(sink, settings.orientation) {}
+      : settings_(settings), clock_(clock), reader_(clock), frames_(sink, settings.orientation) {}
 
   Result<std::string> open(ByteStream& stream) override;
   Result<Ok> poll(ByteStream& stream) override;
@@ -30,16 +30,13 @@ class TouchDevice final : public Device {
   const char* complaint() const noexcept override { return ""; }
 
  private:
-  Result<Ok> readDescription(ByteStream& stream);
   void publish(Timestamp at) noexcept;
 
   TouchSettings settings_;
   const Clock& clock_;
+  EvdevReader reader_;
   TouchFrames frames_;
-  EvdevParser parser_;
   Surface surface_;
-  Timestamp report_start_{};
-  bool in_report_ = false;
 };
 
 std::unique_ptr<Device> makeDevice(const TouchSettings& settings, const Clock& clock,
