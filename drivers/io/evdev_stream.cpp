@@ -13,6 +13,7 @@
 #include "daemon/base/unique_fd.h"
 #include "drivers/io/fd_wait.h"
 #include "drivers/io/open_error.h"
+#include "drivers/io/read_ahead.h"
 
 namespace merlin::io {
 namespace {
@@ -108,18 +109,15 @@ void append(const input_event& event, std::string& out) {
 class EvdevStream final : public ByteStream {
  public:
   EvdevStream(UniqueFd fd, Handle device)
-      : fd_(std::move(fd)), device_(std::move(device)), ahead_(describe(device_.get())) {
-    ahead_.reserve(std::max(ahead_.size(), kAhead));
+      : fd_(std::move(fd)), device_(std::move(device)), ahead_{describe(device_.get()), 0} {
+    ahead_.bytes.reserve(std::max(ahead_.bytes.size(), kAhead));
   }
 
   Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
-    if (next_ == ahead_.size()) {
+    if (ahead_.empty()) {
       if (const auto filled = fill(timeout); !filled) return filled.error();
     }
-    const std::size_t n = std::min(buffer.size(), ahead_.size() - next_);
-    std::memcpy(buffer.data(), ahead_.data() + next_, n);
-    next_ += n;
-    return n;
+    return ahead_.take(buffer);
   }
 
   Result<std::size_t> write(std::span<const std::byte>, Duration) override {
@@ -134,12 +132,11 @@ class EvdevStream final : public ByteStream {
 
   Result<Ok> fill(Duration timeout) {
     ahead_.clear();
-    next_ = 0;
     // libevdev may have read events that the descriptor no longer has.
     if (libevdev_has_event_pending(device_.get()) <= 0) {
       if (auto ready = wait_.await(fd_.get(), POLLIN, timeout); !ready) return ready;
     }
-    while (ahead_.size() + kRecord <= kAhead) {
+    while (ahead_.bytes.size() + kRecord <= kAhead) {
       input_event event{};
       const unsigned flag = dropped_ ? LIBEVDEV_READ_FLAG_SYNC : LIBEVDEV_READ_FLAG_NORMAL;
       const int status = libevdev_next_event(device_.get(), flag, &event);
@@ -152,7 +149,7 @@ class EvdevStream final : public ByteStream {
         return Error{status == -ENODEV ? Errc::kClosed : Errc::kIo,
                      fmt::format("the input device: {}", std::strerror(-status))};
       if (status == LIBEVDEV_READ_STATUS_SYNC) dropped_ = true;
-      append(event, ahead_);
+      append(event, ahead_.bytes);
     }
     if (ahead_.empty()) return Error{Errc::kTimeout, "time-out"};  // events that are of no use
     return Ok{};
@@ -161,8 +158,7 @@ class EvdevStream final : public ByteStream {
   UniqueFd fd_;
   Handle device_;
   FdWait wait_;
-  std::string ahead_;  // records that read() has not returned yet, from next_ on
-  std::size_t next_ = 0;
+  ReadAhead ahead_;       // records that read() has not returned yet
   bool dropped_ = false;  // the kernel dropped events; libevdev tells what changed
 };
 

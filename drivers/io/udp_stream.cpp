@@ -13,6 +13,7 @@
 
 #include "daemon/base/unique_fd.h"
 #include "drivers/io/fd_wait.h"
+#include "drivers/io/read_ahead.h"
 #include "drivers/port/datagram_line.h"
 
 namespace merlin::io {
@@ -40,17 +41,14 @@ std::uint32_t numberOf(const sockaddr_storage& from) noexcept {
 class UdpStream final : public ByteStream {
  public:
   explicit UdpStream(UniqueFd fd) : fd_(std::move(fd)), received_(kLongestDatagram) {
-    ahead_.reserve(kDatagramHeader + kLongestDatagram);
+    ahead_.bytes.reserve(kDatagramHeader + kLongestDatagram);
   }
 
   Result<std::size_t> read(std::span<std::byte> buffer, Duration timeout) override {
-    if (next_ == ahead_.size()) {
+    if (ahead_.empty()) {
       if (const auto filled = fill(timeout); !filled) return filled.error();
     }
-    const std::size_t n = std::min(buffer.size(), ahead_.size() - next_);
-    std::memcpy(buffer.data(), ahead_.data() + next_, n);
-    next_ += n;
-    return n;
+    return ahead_.take(buffer);
   }
 
   Result<std::size_t> write(std::span<const std::byte>, Duration) override {
@@ -63,7 +61,6 @@ class UdpStream final : public ByteStream {
   // Reads one datagram.
   Result<Ok> fill(Duration timeout) {
     ahead_.clear();
-    next_ = 0;
     if (auto ready = wait_.await(fd_.get(), POLLIN, timeout); !ready) return ready;
     sockaddr_storage from{};
     socklen_t size = sizeof from;
@@ -73,15 +70,14 @@ class UdpStream final : public ByteStream {
     if (n <= 0) return Error{Errc::kTimeout, "time-out"};
     append(
         {numberOf(from), std::span<const std::byte>(received_).first(static_cast<std::size_t>(n))},
-        ahead_);
+        ahead_.bytes);
     return Ok{};
   }
 
   UniqueFd fd_;
   FdWait wait_;
   std::vector<std::byte> received_;  // kLongestDatagram bytes
-  std::string ahead_;                // the record that read() has not returned yet, from next_ on
-  std::size_t next_ = 0;
+  ReadAhead ahead_;                  // the record that read() has not returned yet
 };
 
 Error bindError(const std::string& name, int error) {
