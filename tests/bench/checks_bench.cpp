@@ -16,6 +16,7 @@
 #include "render/out/output_set.h"
 #include "render/out/picture_checks.h"
 #include "render/out/shared_frame.h"
+#include "tests/bench/demo_picture.h"
 #include "tests/bench/figures.h"
 #include "tests/support/temp_dir.h"
 
@@ -24,41 +25,10 @@ namespace {
 
 namespace out = render::out;
 
-constexpr double kRate_hz = 30;         // the demo's
-constexpr double kDrawingShare = 0.65;  // of the period: the demo's median
-
 struct Options {
   double seconds = 6;
   int rounds = 3;
 };
-
-double msOf(Duration d) { return 1000 * toSeconds(d); }
-
-struct Picture {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> pixels;  // RGBA
-};
-
-Picture demoPicture() {
-  const auto read = render::image::readImage(MERLIN_SOURCE_DIR "/config/wall.png");
-  if (!read) didNotRun("the picture", read.error().what, "run it in a source tree");
-  Picture picture{read->width, read->height, {}};
-  for (std::size_t i = 0; i < read->pixels.size(); i += 3) {
-    picture.pixels.insert(picture.pixels.end(),
-                          {read->pixels[i], read->pixels[i + 1], read->pixels[i + 2], 255});
-  }
-  return picture;
-}
-
-render::tiles::TilePlan planOf(const Picture& picture) {
-  render::tiles::TilesSettings settings;
-  settings.frame_width = settings.tile_width = picture.width;
-  settings.frame_height = settings.tile_height = picture.height;
-  settings.tiles = {{"wall", render::tiles::TileKind::kWall, 0, 0, 0}};
-  auto plan = render::tiles::planTiles(settings);
-  if (!plan) didNotRun("the wall", plan.error().what, "mend the benchmark");
-  return *std::move(plan);
-}
 
 struct Counts {
   std::uint64_t due = 0, late = 0, wrong = 0;

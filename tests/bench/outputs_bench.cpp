@@ -25,6 +25,7 @@
 #include "render/out/png_output.h"
 #include "render/out/shared_frame.h"
 #include "render/out/window_output.h"
+#include "tests/bench/demo_picture.h"
 #include "tests/bench/figures.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/x_server.h"
@@ -34,45 +35,12 @@ namespace {
 
 namespace out = render::out;
 
-constexpr double kRate_hz = 30;         // the demo's
-constexpr double kDrawingShare = 0.65;  // of the period: the demo's median
 constexpr double kPngInterval_s = 0.2;
 
 struct Options {
   double seconds = 3;
   int rounds = 5;
 };
-
-double msOf(Duration d) { return 1000 * toSeconds(d); }
-
-struct Picture {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> pixels;  // RGBA
-};
-
-Picture demoPicture() {
-  const std::string file = MERLIN_SOURCE_DIR "/config/wall.png";
-  const auto read = render::image::readImage(file);
-  if (!read) didNotRun("the picture", read.error().what, "run it in a source tree");
-  Picture picture{read->width, read->height, {}};
-  for (std::size_t i = 0; i < read->pixels.size(); i += 3) {
-    picture.pixels.insert(picture.pixels.end(),
-                          {read->pixels[i], read->pixels[i + 1], read->pixels[i + 2], 255});
-  }
-  return picture;
-}
-
-render::tiles::TilePlan planOf(const Picture& picture) {
-  render::tiles::TilesSettings settings;
-  settings.frame_width = picture.width;
-  settings.frame_height = picture.height;
-  settings.tile_width = picture.width;
-  settings.tile_height = picture.height;
-  settings.tiles = {{"wall", render::tiles::TileKind::kWall, 0, 0, 0}};
-  auto plan = render::tiles::planTiles(settings);
-  if (!plan) didNotRun("the wall", plan.error().what, "mend the benchmark");
-  return *std::move(plan);
-}
 
 // A stand-in for a file system: writes, writes half a second late, or not before it is let go.
 class Disk {
