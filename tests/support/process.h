@@ -103,7 +103,7 @@ class Process {
 
 // Runs a program to its end; see Process::wait() for `status`.
 struct Outcome {
-  int status;
+  int status = -1;
   std::string output;
 };
 inline Outcome run(std::vector<std::string> arguments) {

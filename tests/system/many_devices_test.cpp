@@ -165,12 +165,14 @@ TEST_F(ManyDevices, EachHasItsSlotsAndItsPlaceInTheStatusUnderItsName) {
   EXPECT_FALSE(fields.contains("glove.angle_rad")) << "no device has the default name";
 
   json status;
+  // All at once: on a busy machine one of them may be stale for a moment.
   EXPECT_TRUE(eventually([&] {
     status = m_->status();
-    return status["devices"].size() == 6 && status["devices"]["far"]["health"] == "ok";
+    return status["devices"].size() == 6 &&
+           std::ranges::all_of(emulators_->all(), [&](const Emulated& device) {
+             return status["devices"][device.name]["health"] == "ok";
+           });
   })) << status;
-  for (const Emulated& device : emulators_->all())
-    EXPECT_EQ(status["devices"][device.name]["health"], "ok") << device.name;
   EXPECT_EQ(status["devices"]["pad"]["health"], "absent");
   for (const char* name : {"left", "right"}) EXPECT_TRUE(status["postures"].contains(name)) << name;
   EXPECT_EQ(m_->process().kill(SIGTERM), 0) << m_->process().output();

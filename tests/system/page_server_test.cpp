@@ -57,10 +57,14 @@ class PageTest : public testing::Test {
 TEST_F(PageTest, ShowsBothRolesTheirEventsTheFramesAndThePicture) {
   start();
   ASSERT_TRUE(eventually([&] { return page_->runs("wall") && page_->runs("devices"); }));
-  const Json status = page_->json("/api/status");
+  Json status;
+  // On a busy machine the emulated ball may be silent for so long that it is stale for a moment.
+  EXPECT_TRUE(eventually([&] {
+    status = page_->json("/api/status");
+    return status["roles"]["devices"]["status"]["devices"]["ball"]["health"] == "ok";
+  })) << status;
   EXPECT_EQ(status["page"]["instance"], wall_->instance());
   EXPECT_EQ(status["roles"]["wall"]["status"]["rate_asked"], 10);
-  EXPECT_EQ(status["roles"]["devices"]["status"]["devices"]["ball"]["health"], "ok");
   EXPECT_TRUE(tells("the role wall runs"));
   ASSERT_TRUE(eventually([&] { return page_->json("/api/frames")["frames"].size() > 20; }));
   const Json frames = page_->json("/api/frames");

@@ -46,10 +46,13 @@ struct TwoMachines : testing::Test {
   }
   // `merlin status` for the wall's instance also shows the devices of the other machine.
   void expectStatusOfTheOthersDevices() {
-    const Outcome json = run({kMerlin, "status", "--json", "--instance", wall_name});
-    ASSERT_EQ(json.status, 0) << json.output;
-    const auto status = nlohmann::json::parse(json.output, nullptr, false);
-    EXPECT_EQ(status["devices"]["ball"]["health"], "ok") << json.output;
+    Outcome json;
+    nlohmann::json status;
+    EXPECT_TRUE(eventually([&] {
+      json = run({kMerlin, "status", "--json", "--instance", wall_name});
+      status = nlohmann::json::parse(json.output, nullptr, false);
+      return json.status == 0 && status["devices"]["ball"]["health"] == "ok";
+    })) << json.output;
     EXPECT_EQ(status["rate_asked"], 10) << json.output;
     const Outcome text = run({kMerlin, "status", "--instance", wall_name});
     EXPECT_EQ(text.status, 0) << text.output;

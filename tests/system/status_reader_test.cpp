@@ -31,9 +31,12 @@ TEST(StatusReader, FollowsATopicAndSendsCommands) {
   }
   EXPECT_EQ(count, 3);
 
-  const Outcome status = run({kPython, "-B", kReader, segment, "--command", "status"});
-  ASSERT_EQ(status.status, 0) << status.output;
-  EXPECT_EQ(nlohmann::json::parse(status.output)["devices"]["ball"]["health"], "ok");
+  Outcome status;
+  EXPECT_TRUE(eventually([&] {
+    status = run({kPython, "-B", kReader, segment, "--command", "status"});
+    return status.status == 0 &&
+           nlohmann::json::parse(status.output)["devices"]["ball"]["health"] == "ok";
+  })) << status.output;
 
   const Outcome wrong = run({kPython, "-B", kReader, segment, "--command", "nothing"});
   EXPECT_NE(wrong.status, 0);

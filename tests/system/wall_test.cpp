@@ -3,6 +3,9 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include <algorithm>
+#include <array>
+
 #include "tests/support/picture_files.h"
 #include "tests/system/merlind.h"
 
@@ -36,14 +39,18 @@ TEST_F(Wall, RunsOnEmulatedDevicesAndEndsClean) {
            m.devices()->tracker()->stations[0]->count() > 50;
   }));
 
-  const auto status = m.status();
-  ASSERT_TRUE(status.is_object());
+  nlohmann::json status;
+  // All at once: on a busy machine one of them may be stale for a moment.
+  EXPECT_TRUE(eventually([&] {
+    status = m.status();
+    return std::ranges::all_of(std::array{"glove", "tracker", "ball"}, [&](const char* name) {
+      return status["devices"][name]["health"] == "ok";
+    });
+  })) << status;
   for (const char* key : {"rate_asked", "rate_held", "late_percent", "triangles", "posture"})
     EXPECT_TRUE(status.contains(key)) << key;
   EXPECT_EQ(status["renderer"]["library"], "EGL");
   EXPECT_FALSE(status["renderer"]["name"].get<std::string>().empty());
-  for (const char* name : {"glove", "tracker", "ball"})
-    EXPECT_EQ(status["devices"][name]["health"], "ok") << name;
 
   EXPECT_EQ(m.process().kill(SIGTERM), 0) << m.process().output();
   EXPECT_TRUE(m.leftInSharedMemory().empty());
