@@ -28,14 +28,19 @@ def read(memory, type_, count, step, offset, slot):
             return found if before else None
     return None
 
-name, wanted = (sys.argv[1:2] or ["merlin-devices"])[0], sys.argv[2:]
-with open(f"/dev/shm/{name}", "rb") as file:
-    memory = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
-magic, version, _, _, table, fields, size, _ = struct.unpack_from(HEADER, memory)
-if VERSIONS.get(magic) != version:
-    sys.exit(f"read_merlin.py: {name} is not a segment of MERLIN that this program knows")
-for i in range(fields):
-    entry = struct.unpack_from(FIELD, memory, table + i * size)
-    field, unit, type_ = map(text, entry[:3])
-    if not wanted or field in wanted:
-        print(field, read(memory, type_, *entry[3:7]), unit)
+def open_segment(name):
+    """The memory of a segment, and its table of fields: {name: (unit, what read() needs)}."""
+    with open(f"/dev/shm/{name}", "rb") as file:
+        memory = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
+    magic, version, _, _, table, fields, size, _ = struct.unpack_from(HEADER, memory)
+    if VERSIONS.get(magic) != version:
+        sys.exit(f"read_merlin.py: {name} is not a segment of MERLIN that this program knows")
+    entries = [struct.unpack_from(FIELD, memory, table + i * size) for i in range(fields)]
+    return memory, {text(e[0]): (text(e[1]), (text(e[2]), *e[3:7])) for e in entries}
+
+if __name__ == "__main__":
+    name, wanted = (sys.argv[1:2] or ["merlin-devices"])[0], sys.argv[2:]
+    memory, table = open_segment(name)
+    for field, (unit, place) in table.items():
+        if not wanted or field in wanted:
+            print(field, read(memory, *place), unit)

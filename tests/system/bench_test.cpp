@@ -190,6 +190,43 @@ TEST_F(Bench, AttackWithoutMerlindOrFloodHasNoFigures) {
                   {"merlind", "it ended", "no wall"});
 }
 
+TEST_F(Bench, KillAndSoakWithoutMerlindHaveNoFigures) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> benches = {
+      {"kill", {"python3", "-B", kBench + "/kill_bench.py", "--times", "1"}},
+      {"soak", {"python3", "-B", kBench + "/soak/soak.py", "60s"}}};
+  std::filesystem::create_directories(dir_ / "fake");
+  std::filesystem::create_symlink(kMerlin, dir_ / "fake/merlin");
+  const std::string ends = fake("merlind", "echo no role >&2; exit 1");
+  for (const auto& [name, command] : benches) {
+    auto missing = command, ended = command;
+    missing.insert(missing.end(), {"--bin", "/nonexistent"});
+    expectNoFigures(missing, name, {"/nonexistent/merlind", "no such program"});
+    if (name == "kill") continue;  // it waits for READY, up to its own deadline
+    ended.insert(ended.end(), {"--bin", ends});
+    expectNoFigures(ended, name, {"merlind", "it ended", "no role"});
+  }
+}
+
+TEST_F(Bench, ADurationThatIsNoneIsBadUsage) {
+  for (const char* duration : {"", "2x", "-5m", "59s", "h"}) {
+    const Said s = said({"python3", "-B", kBench + "/soak/soak.py", "--bin", kBin, "--", duration});
+    EXPECT_EQ(s.status, 2) << duration;
+    EXPECT_EQ(s.output, "");
+    EXPECT_NE(s.message.find("is not a duration of at least 60s"), std::string::npos) << s.message;
+  }
+}
+
+// Checks that there are figures; whether they keep their bounds depends on the machine.
+TEST_F(Bench, AKillOfEachRoleHasFigures) {
+  const Said s =
+      said({"python3", "-B", kBench + "/kill_bench.py", "--bin", kBin, "--times", "1", "--json"});
+  const auto object = nlohmann::json::parse(s.output, nullptr, false);
+  ASSERT_TRUE(object.is_object()) << s.message;
+  for (const char* figure : {"kill_-9_wall_to_picture.maximum", "kill_-9_devices_to_data.maximum",
+                             "start_to_READY_wall.maximum", "start_to_READY_devices.maximum"})
+    EXPECT_GT(object["figures"][figure]["value"], 0) << figure << s.output;
+}
+
 // Checks that there are figures; whether they keep their limits depends on the machine.
 TEST_F(Bench, AnAttackThatReachesTheWallHasFigures) {
   const Said s = said({"python3", "-B", kBench + "/attack/attack.py", "--bin", kBin, "--source",

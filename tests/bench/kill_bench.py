@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""./dev bench kill: kill -9 of the wall's and of the devices' process, again and again, until there is a
+picture and data again, and what the other process does meanwhile; and how long a start takes.
+
+A supervisor restarts at once; what systemd waits before (RestartSec) is added and said apart. The devices
+are emulated and outlive merlind, as real ones do. Times are those of the kernel's monotonic clock: of the
+kill, of the last pixel of the first new frame, of the first new sample of the slowest device.
+"""
+import argparse
+import math
+import os
+import signal
+import socket
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import figures
+import roles
+from figures import Measured
+
+PICTURE_S, DATA_S, READY_S = 2.0, 1.0, 1.0  # bounds: of the picture, of data, of a start
+RESTART_SEC = (0.1, 1.0)  # systemd's default, and a common setting
+POLL_S, GIVE_UP_S, SETTLE_S = 0.0005, 30, 0.5
+BEAT_S = 0.5  # heartbeats come ten times a second; beyond this clients take a role for gone
+TRACKER_HZ, MOST_MISSING = 120, 2  # the emulated Fastrak's; what the ends of the interval may leave
+SHARES = (("minimum", 0), ("median", 0.5), ("95 %", 0.95), ("99 %", 0.99), ("maximum", 1))
+WAY_OUT = "run merlind by hand, its log says why"
+
+
+def quantile(values, share):
+    """The least value that so many of all are not above."""
+    values = sorted(values)
+    return values[max(0, math.ceil(share * len(values)) - 1)]
+
+
+class Other:
+    """The process that is not killed, looked at again and again: whether it goes on."""
+
+    def __init__(self, segment):
+        self.segment = segment
+        segment.reopen()
+        self.generation, self.late_s = segment.value("segment.generation"), 0.0
+
+    def look(self):
+        heartbeat_ns = self.segment.value("segment.heartbeat_ns")
+        self.late_s = max(self.late_s, (time.monotonic_ns() - heartbeat_ns) / 1e9)
+
+    def missed(self):
+        """In words, what it missed; empty: nothing."""
+        self.segment.reopen()
+        if self.segment.value("segment.generation") != self.generation:
+            return "it was started anew"
+        return f"its heartbeat was {self.late_s:.2f} s old" if self.late_s > BEAT_S else ""
+
+
+class Records:
+    """Whether the tracker's records came without a gap: as many as its rate gives in the time between the
+    first and the last of them."""
+
+    def __init__(self, segment):
+        self.segment, self.begin = segment, self.now(segment)
+
+    @staticmethod
+    def now(segment):
+        segment.reopen()
+        return segment.value("tracker1.counter"), segment.value("tracker1.received_ns") / 1e9
+
+    def missing(self):
+        end = self.now(self.segment)
+        return round((end[1] - self.begin[1]) * TRACKER_HZ) - (end[0] - self.begin[0])
+
+
+class Bench:
+    def __init__(self, options):
+        self.options, self.place = options, roles.Place(options, "kill")
+        self.place.make_model()
+        self.place.configure({"wall": {"rate": {"rate_hz": options.rate}}})
+        self.emulators = [roles.Emulator(self.place, name, "turning", options.seed + i)
+                          for i, name in enumerate(roles.DRIVERS)]
+        self.notify = os.path.join(self.place.folder, "notify")
+        self.told = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.told.bind(self.notify)
+        self.told.settimeout(GIVE_UP_S)
+        environment = {"NOTIFY_SOCKET": self.notify}
+        self.programs = {role: self.place.role(role, environment) for role in ("devices", "wall")}
+        self.segments = {name: roles.Segment(self.place, name) for name in ("devices", "wall", "framebuffer")}
+
+    def start(self):
+        for emulator in self.emulators:
+            emulator.start()
+        for role, program in self.programs.items():
+            program.start()
+            self.wait_for_word("READY=1", role)
+        time.sleep(2)  # the governor has learnt
+
+    def wait_for_word(self, word, role):
+        """When merlind told its supervisor this."""
+        while True:
+            try:
+                said = self.told.recv(4096).decode()
+            except TimeoutError:
+                figures.did_not_run(f"merlind --role {role}", f"it did not say {word}", WAY_OUT)
+            if word in said.split("\n"):
+                return time.monotonic_ns()
+
+    def new_picture(self, since_ns):
+        """The time of the oldest frame that was finished after `since_ns`; 0: there is none."""
+        finished = self.segments["framebuffer"].values("buffer.finished_ns") or []
+        return min((ns for ns in finished if ns > since_ns), default=0)
+
+    def new_data(self, since_ns):
+        """When the first samples of all devices were there."""
+        segment = self.segments["devices"]
+        all_ = [segment.value(f"{name}.received_ns") for name in ("glove", "tracker1", "ball")]
+        return max(all_) if min(all_) > since_ns else 0
+
+    def kill(self, role, shown, came, other):
+        """Seconds from the kill to what the role delivers, in its segment `shown`."""
+        program, segment = self.programs[role], self.segments[shown]
+        began = time.monotonic_ns()
+        program.process.send_signal(signal.SIGKILL)
+        program.process.wait()
+        program.start()
+        while True:
+            other.look()
+            came_ns = came(began) if segment.reopen() else 0
+            if came_ns:
+                return (came_ns - began) / 1e9
+            if time.monotonic_ns() - began > GIVE_UP_S * 1e9:
+                figures.did_not_run(f"merlind --role {role}", f"it delivered nothing for {GIVE_UP_S} s",
+                                    WAY_OUT)
+            time.sleep(POLL_S)
+
+    def kills(self, role, shown, came, other_role):
+        """The times of all kills, and what the other one missed."""
+        times, missed = [], []
+        for i in range(self.options.times):
+            other = Other(self.segments[other_role])
+            times.append(self.kill(role, shown, came, other))
+            self.wait_for_word("READY=1", role)
+            end = time.monotonic() + SETTLE_S
+            while time.monotonic() < end:
+                other.look()
+                time.sleep(POLL_S)
+            if what := other.missed():
+                missed.append(what)
+                figures.note(f"kill {i + 1} of the {role}: the {other_role}: {what}")
+            if (i + 1) % 10 == 0:
+                figures.note(f"{role}: {i + 1} of {self.options.times} kills")
+        return times, missed
+
+    def deadlines(self):
+        """(deadlines while something moved, those that were missed) of the wall."""
+        self.segments["wall"].reopen()
+        return [self.segments["wall"].value(f"wall.{name}") for name in ("deadlines", "late")]
+
+    def starts(self, role):
+        """Seconds from exec to READY; the other role runs, the model was read before."""
+        times, program = [], self.programs[role]
+        for _ in range(self.options.times):
+            code = program.stop()
+            if code != 0:
+                figures.did_not_run(f"merlind --role {role}", f"it ended with {code}", WAY_OUT)
+            began = time.monotonic_ns()
+            program.start()
+            times.append((self.wait_for_word("READY=1", role) - began) / 1e9)
+        return times
+
+    def close(self):
+        for program in [*self.programs.values(), *self.emulators]:
+            program.stop()
+        self.told.close()
+        self.place.close()
+
+
+def row(report, name, times, bound):
+    """Whether all are within the bound."""
+    values = [(label, quantile(times, share)) for label, share in SHARES]
+    over = sum(t > bound for t in times)
+    report.text(f"{name:32}" + "".join(f"{1000 * value:9.0f}" for _, value in values)
+                + f"   bound {1000 * bound:.0f}: " + (f"{over} of {len(times)} beyond" if over else "kept"))
+    for label, value in values:
+        key = f"{name.replace(' ', '_')}.{label.replace(' %', '')}"
+        report.figure(key, Measured(1000 * value, len(times), "times"), "ms")
+    return not over
+
+
+def waits(report, name, times, bound):
+    """What is added where systemd waits before it starts a unit again: said, not judged."""
+    for wait in RESTART_SEC:
+        over = sum(t + wait > bound for t in times)
+        report.text(f"  with RestartSec={1000 * wait:.0f}ms: at most {1000 * (max(times) + wait):.0f} ms; "
+                    f"{over} of {len(times)} beyond {1000 * bound:.0f}")
+        report.figure(f"{name}.restart_sec_{1000 * wait:.0f}.maximum",
+                      Measured(1000 * (max(times) + wait), len(times), "times"), "ms")
+
+
+def measure(options, report):
+    bench = Bench(options)
+    try:
+        bench.start()
+        records = Records(bench.segments["devices"])
+        pictures, wall_others = bench.kills("wall", "framebuffer", bench.new_picture, "devices")
+        missing, frames = records.missing(), bench.deadlines()
+        datas, device_others = bench.kills("devices", "devices", bench.new_data, "wall")
+        deadlines, late = (b - a for a, b in zip(frames, bench.deadlines()))
+        ready = {role: bench.starts(role) for role in ("wall", "devices")}
+    finally:
+        bench.close()
+    report.text(f"{'ms':32}" + "".join(f"{label:>9}" for label, _ in SHARES))
+    kept = row(report, "kill -9 wall to picture", pictures, PICTURE_S)
+    waits(report, "wall", pictures, PICTURE_S)
+    kept &= row(report, "kill -9 devices to data", datas, DATA_S)
+    waits(report, "devices", datas, DATA_S)
+    for role, times in ready.items():
+        kept &= row(report, f"start to READY {role}", times, READY_S)
+    late = figures.share_of(late, deadlines, "deadlines of the wall, which did not move,")
+    report.text(f"the devices went on at {options.times - len(wall_others)} of {options.times} kills of the "
+                f"wall, {missing} records of the tracker are missing; the wall went on at "
+                f"{options.times - len(device_others)} of {options.times} kills of the devices, "
+                f"{100 * late:.2f} % of its frames were late")
+    report.figure("devices_missed", Measured(len(wall_others), options.times, "kills"), "1")
+    report.figure("tracker_records_missing", Measured(missing, options.times, "kills"), "1")
+    report.figure("wall_missed", Measured(len(device_others), options.times, "kills"), "1")
+    report.figure("wall_late", late, "1")
+    return kept and not wall_others and not device_others and abs(missing) <= MOST_MISSING
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--bin", required=True, help="the folder of merlin and merlind")
+    parser.add_argument("--times", type=int, default=100, help="kills of each role, and starts")
+    parser.add_argument("--rate", type=float, default=30, help="frames a second")
+    parser.add_argument("--seed", type=int, default=1, help="of the emulated devices")
+    parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
+    options = parser.parse_args()
+    if options.times < 1:
+        parser.error("--times is at least 1")
+    figures.run_bench("kill", options.json, lambda report: measure(options, report))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""What a soak measures of its processes, and what follows from that: slopes with their confidence,
+descriptors that grow, late frames. Pure but for Sample.of(). A process that was started anew is another
+life, with a level of its own."""
+import math
+import os
+import re
+import statistics
+
+LEAST = 60  # points of a slope
+Z = 1.96  # of a normal distribution, 95 % on both sides
+
+
+class Sample:
+    """What one process holds at one time. `life`: its role and how often that was started."""
+
+    def __init__(self, life, at_s, age_s, memory_mib, descriptors, threads):
+        self.life, self.at_s, self.age_s = life, at_s, age_s
+        self.memory_mib, self.descriptors, self.threads = memory_mib, descriptors, threads
+
+    @staticmethod
+    def of(pid, life, at_s, age_s):
+        """None where it has just ended."""
+        try:
+            with open(f"/proc/{pid}/status", encoding="utf8") as file:
+                text = file.read()
+            rss = re.search(r"VmRSS:\s+(\d+)", text)
+            threads = re.search(r"Threads:\s+(\d+)", text)
+            descriptors = len(os.listdir(f"/proc/{pid}/fd"))
+        except OSError:
+            return None
+        if not rss or not threads:  # a zombie
+            return None
+        return Sample(life, at_s, age_s, int(rss[1]) / 1024, descriptors, int(threads[1]))
+
+
+def longest_life(samples, warm_up_s):
+    """The samples of the life that has most of them, without its warm-up."""
+    lives = {}
+    for sample in samples:
+        if sample.age_s >= warm_up_s:
+            lives.setdefault(sample.life, []).append(sample)
+    return max(lives.values(), key=len, default=[])
+
+
+def slope(points):
+    """The slope of [(x, y)] by least squares, and the half width of its 95 % interval. Memory grows in
+    steps, so neighbouring residuals are alike: as many points count as independent ones as the
+    correlation of neighbours leaves. None where there are too few."""
+    n = len(points)
+    if n < LEAST:
+        return None
+    mx, my = sum(x for x, _ in points) / n, sum(y for _, y in points) / n
+    sxx = sum((x - mx) ** 2 for x, _ in points)
+    b = sum((x - mx) * (y - my) for x, y in points) / sxx
+    residuals = [y - my - b * (x - mx) for x, y in points]
+    square = sum(r * r for r in residuals)
+    alike = sum(a * c for a, c in zip(residuals, residuals[1:])) / square if square > 0 else 0
+    alike = min(max(alike, 0), 0.999)
+    degrees = max(n * (1 - alike) / (1 + alike) - 2, 1)
+    # Student's t, within 3 % from 3 degrees of freedom on
+    t = Z * (1 + (Z * Z + 1) / (4 * degrees) + 2.5 / degrees ** 2)
+    return b, t * math.sqrt(square / degrees / sxx)
+
+
+def memory_slope(samples, warm_up_s):
+    """(MiB/h, half width of the 95 % interval) of one role, or None."""
+    return slope([(s.at_s / 3600, s.memory_mib) for s in longest_life(samples, warm_up_s)])
+
+
+def descriptors(samples, warm_up_s):
+    """(first, last) of one role: the median of the first and of the last quarter of its longest life,
+    since a device that is away has none for a moment. None where that was too short."""
+    warm = [s.descriptors for s in longest_life(samples, warm_up_s)]
+    quarter = len(warm) // 4
+    if quarter < 2:
+        return None
+    return statistics.median_low(warm[:quarter]), statistics.median_low(warm[-quarter:])
+
+
+class Frames:
+    """Deadlines while something moved, and those that were missed, over all lives of the wall."""
+
+    def __init__(self):
+        self.generation, self.last, self.minutes = None, (0, 0), []
+
+    def add(self, at_s, generation, deadlines, late):
+        before = self.last if generation == self.generation else (0, 0)
+        self.generation, self.last = generation, (deadlines, late)
+        minute = int(at_s // 60)
+        self.minutes += [[0, 0] for _ in range(minute + 1 - len(self.minutes))]
+        self.minutes[minute][0] += deadlines - before[0]
+        self.minutes[minute][1] += late - before[1]
+
+    def first_and_rest(self):
+        """[deadlines, late] of the first minute, and of the rest."""
+        rest = [sum(m[i] for m in self.minutes[1:]) for i in (0, 1)]
+        return (self.minutes or [[0, 0]])[0], rest

@@ -1,0 +1,73 @@
+"""That a soak finds what it is for: memory and descriptors that grow, and nothing where they do not."""
+import math
+import random
+import unittest
+
+from measures import Frames, Sample, descriptors, memory_slope
+
+HOUR = 3600
+
+
+def series(memory, count=600, fds=lambda i: 20, life=("wall", 1)):
+    return [Sample(life, i, i, memory(i), fds(i), 9) for i in range(count)]
+
+
+def noise(seed):
+    chance = random.Random(seed)
+    return lambda: chance.gauss(0, 0.5)
+
+
+class Memory(unittest.TestCase):
+    def test_a_leak_is_beyond_chance_and_its_size_is_found(self):
+        more = noise(1)
+        slope, half = memory_slope(series(lambda i: 200 + 30 * i / HOUR + more()), 10)
+        self.assertAlmostEqual(slope, 30, delta=3)
+        self.assertGreater(slope - half, 0)
+
+    def test_noise_is_within_chance_in_about_39_of_40_runs(self):
+        beyond = 0
+        for seed in range(200):
+            more = noise(seed)
+            slope, half = memory_slope(series(lambda i: 200 + more()), 10)
+            beyond += slope - half > 0
+        self.assertLessEqual(beyond, 12)
+
+    def test_steps_up_and_down_are_within_chance_since_neighbours_are_alike(self):
+        slope, half = memory_slope(series(lambda i: 200 + 20 * (i // 150 % 2)), 10)
+        self.assertGreater(half, abs(slope))
+
+    def test_the_warm_up_does_not_count(self):
+        slope, half = memory_slope(series(lambda i: 200 - 50 * math.exp(-i / 5)), 100)
+        self.assertLess(abs(slope), 0.01)
+
+    def test_a_start_is_no_growth(self):
+        short = series(lambda i: 100, 100)
+        slope, _ = memory_slope(short + series(lambda i: 300, life=("wall", 2)), 10)
+        self.assertEqual(slope, 0)
+
+    def test_too_little_is_no_slope(self):
+        self.assertIsNone(memory_slope(series(lambda i: 200, 69), 10))
+        self.assertIsNotNone(memory_slope(series(lambda i: 200, 70), 10))
+        self.assertIsNone(memory_slope([], 10))
+
+
+class Descriptors(unittest.TestCase):
+    def test_one_more_at_the_end_is_found(self):
+        self.assertEqual(descriptors(series(lambda i: 1, fds=lambda i: 20 + (i > 300)), 10), (20, 21))
+
+    def test_a_device_that_is_away_for_a_moment_is_none_less(self):
+        self.assertEqual(descriptors(series(lambda i: 1, fds=lambda i: 18 if i % 60 < 10 else 20), 10), (20, 20))
+
+
+class LateFrames(unittest.TestCase):
+    def test_counts_go_on_where_the_wall_was_started_anew(self):
+        frames = Frames()
+        frames.add(1, 7, 100, 5)
+        frames.add(59, 7, 1000, 6)
+        frames.add(70, 8, 50, 2)
+        frames.add(200, 8, 150, 3)
+        self.assertEqual(frames.first_and_rest(), ([1000, 6], [150, 3]))
+
+
+if __name__ == "__main__":
+    unittest.main()
