@@ -118,6 +118,8 @@ void describeHand(HandSettings& h, SettingsVisitor& v) {
   v.number("cutoff_per_m_s", h.cutoff_per_m_s, {0, 1000},
            "Increase of the cut-off frequency of the filter for the hand's pose with the hand's "
            "speed, in Hz per metre per second.");
+  v.flag("gestures", h.gestures,
+         "Whether the hand's gestures in time are recognised, if /gestures/file names some.");
 }
 
 void describePostures(DevicesSettings& d, SettingsVisitor& v) {
@@ -135,6 +137,13 @@ void describePostures(DevicesSettings& d, SettingsVisitor& v) {
          "Whether merlind follows the slow drift of the glove's sensors: from postures that it is "
          "sure of it learns by how much each sensor has moved, at most 0.3 of its range, and "
          "subtracts that before it recognises. Forgotten when the glove is connected again.");
+}
+
+void describeGestures(DevicesSettings& d, SettingsVisitor& v) {
+  v.path("file", d.gestures,
+         "File of trained gestures in time, in JSON (`merlin gesture train`). Empty: no gesture is "
+         "recognised. /wall/scene/tracker_axes says which way is right, up and towards the person; "
+         "a merlind that only reads devices needs that setting too.");
 }
 
 // Description of the setting action: lists all actions with the help text of each.
@@ -156,7 +165,8 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
   static const std::string kAction = actionsHelp();
   v.listOf<Binding>(
       "bindings", d.bindings,
-      "Inputs (buttons, postures, switches) and the action of each. Every merlind that draws a "
+      "Inputs (buttons, postures, gestures, switches) and the action of each. Every merlind that "
+      "draws a "
       "wall executes the actions for walls, also on another machine; the merlind that has the "
       "control panel executes the actions for the panel.",
       [&](Binding& b) {
@@ -217,6 +227,10 @@ void describeDevices(DevicesSettings& d, SettingsVisitor& v) {
       "hand.",
       [&](HandSettings& hand) { describeHand(hand, v); });
   v.group("postures", "Recognition of the gloves' postures.", [&] { describePostures(d, v); });
+  v.group("gestures",
+          "Recognition of the hands' gestures in time. A motion during which an input of the same "
+          "person holds grab, fly or point_at is no gesture.",
+          [&] { describeGestures(d, v); });
   describeBindings(d, v);
   v.group("people", "How the input of several devices and people is combined.",
           [&] { describePeople(d, v); });

@@ -185,12 +185,35 @@ SampleKind kindOf(const actions::Input& input) {
   return input.kind == actions::Input::Kind::kButton ? SampleKind::kBall : SampleKind::kGlove;
 }
 
+// A gesture of a hand that is not there, or whose gestures are not recognised.
+void checkGesture(const std::string& text, const std::string& hand, const std::string& at,
+                  LoadedSettings& loaded) {
+  const std::vector<HandSettings>& hands = loaded.settings.devices.hands;
+  const auto found = std::ranges::find(hands, hand, &HandSettings::name);
+  if (found == hands.end()) {
+    std::string there;
+    for (const HandSettings& h : hands) there += (there.empty() ? "" : ", ") + h.name;
+    return loaded.addFinding(
+        at, fmt::format("is \"{}\", and \"{}\" is not the name of a hand; /hands has {}",
+                        excerpt(text), excerpt(hand),
+                        there.empty() ? "no hand: leave the binding out, or add one" : there));
+  }
+  if (found->gestures) return;
+  const std::string flag = handAt(static_cast<std::size_t>(found - hands.begin())) + "/gestures";
+  loaded.addFinding(at, fmt::format("is \"{}\", and {} is false: set it to true, or leave the "
+                                    "binding out",
+                                    excerpt(text), flag));
+}
+
 // An input of a device that is not there, or of another kind. An input that names no device is that
 // of any device; what is no input is a finding of the bindings' own check.
 void checkInputAt(const std::string& text, const std::string& at, LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
   const auto input = actions::parseInput(text);
-  if (!input || input->device.empty() || findDevice(d, kindOf(*input), input->device)) return;
+  if (!input || input->device.empty()) return;
+  if (input->kind == actions::Input::Kind::kGesture)
+    return checkGesture(text, input->device, at, loaded);
+  if (findDevice(d, kindOf(*input), input->device)) return;
   const char* const kind = kindName(kindOf(*input));
   const std::string there = namesOf(d, kindOf(*input));
   loaded.addFinding(

@@ -46,6 +46,7 @@ struct DevicesSettings {
   std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
   bool posture_drift = true;  // whether slow drift of the glove's sensors is followed
+  std::string gestures;       // file of trained gestures; empty: no gesture is recognised
   std::vector<Binding> bindings = defaultBindings();
   // Time after which the buttons and postures of a device that has stopped working count as
   // released.

@@ -174,6 +174,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   if (options.alarms) checkAlarms(loaded);
   if (options.devices) {
     devices::checkPostures(loaded);
+    devices::checkGestures(loaded);
     devices::checkPasswords(loaded);
     if (!options.emulate) devices::checkPorts(loaded);
     checkSamples(loaded);

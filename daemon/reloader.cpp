@@ -8,7 +8,6 @@
 
 #include "config/effective.h"
 #include "daemon/base/log.h"
-#include "nn/io/network_file.h"
 
 namespace merlin {
 namespace {
@@ -149,15 +148,13 @@ Reloader::ReadFile Reloader::read() const {
     file.answer.outcome = Outcome::kRestart;
     return file;
   }
-  const std::string& postures = file.settings.devices.postures;
-  if (!file.answer.plan.has(Part::kPostures) || postures.empty()) return file;
-  auto network = nn::loadNetwork(postures);
-  if (network) {
-    file.trained = nn::trainedPostures(*network);
+  if (!options_.devices) return file;
+  if (auto trained = devices::loadTrained(file.settings)) {
+    file.trained = *std::move(trained);
   } else {  // it was readable when it was checked
     file.answer.outcome = Outcome::kInvalid;
     file.answer.findings.push_back(
-        fmt::format("{}: /postures/file cannot be used: {}", file_, network.error().what));
+        fmt::format("{}: /postures or /gestures cannot be used: {}", file_, trained.error().what));
   }
   return file;
 }
@@ -181,7 +178,8 @@ void Reloader::swap(const ReadFile& file) {
   if (parts_.devices) {
     parts_.devices->reload(
         running_,
-        {plan.has(Part::kBindings), plan.has(Part::kHand), plan.has(Part::kPostures), plan.lines},
+        {plan.has(Part::kBindings), plan.has(Part::kHand), plan.has(Part::kPostures),
+         plan.has(Part::kGestures) || plan.has(Part::kScene), plan.lines},
         file.trained);
   }
   if (parts_.wall) {

@@ -18,7 +18,6 @@
 #include "daemon/reload/answer.h"
 #include "daemon/status/services.h"
 #include "daemon/wall/wall_role.h"
-#include "nn/drift.h"
 
 namespace merlin {
 
@@ -59,7 +58,7 @@ class Reloader {
   struct ReadFile {
     reload::Answer answer;
     Settings settings;
-    std::optional<nn::TrainedPostures> trained;
+    devices::Trained trained;
   };
   ReadFile readGuarded() const;
   ReadFile read() const;

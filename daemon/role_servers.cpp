@@ -224,6 +224,7 @@ void RoleServers::addServiceEvents(std::vector<std::string>& documents) {
 std::vector<std::string> RoleServers::deviceEvents(status::HealthEvents& health) {
   std::vector<std::string> documents;
   addEvents(documents, kDeviceEvent, health.take(clock_.now()));
+  addEvents(documents, kGestureEvent, health.takeGestures());
   if (devices::Projectors* const projectors = parts_.devices->projectors())
     addEvents(documents, kProjectorEvent, projectors->takeEvents());
   if (!parts_.wall && parts_.keeper)
@@ -244,7 +245,10 @@ std::vector<std::string> RoleServers::wallEvents(status::WallEvents& events,
   addEvents(documents, kWallEvent, parts_.wall->viewerEvents());
   addEvents(documents, kModelEvent, parts_.wall->contentEvents());
   addEvents(documents, kStateEvent, parts_.keeper->takeNotices());
-  if (remote) addEvents(documents, kDeviceEvent, remote->take(clock_.now()));
+  if (remote) {
+    addEvents(documents, kDeviceEvent, remote->take(clock_.now()));
+    addEvents(documents, kGestureEvent, remote->takeGestures());
+  }
   addEvents(documents, kServerEvent, servers_.events("wall"));
   addServiceEvents(documents);
   return documents;

@@ -1,7 +1,7 @@
 # Installs the configuration; after install_unit.cmake, which says where: `configuration`.
 # An existing configuration is somebody's work and is kept. It names the schema, and an example may
-# name postures.json, which must be in the same folder.
-foreach(pair "installed.json>merlin.json" "postures.json>postures.json"
+# name postures.json and gestures.json, which must be in the same folder.
+foreach(pair "installed.json>merlin.json" "postures.json>postures.json" "gestures.json>gestures.json"
              "merlin.schema.json>merlin.schema.json")
   string(REPLACE ">" ";" pair "${pair}")
   list(GET pair 0 from)

@@ -147,16 +147,25 @@ void ActionWriter::update(const BallSample& ball) noexcept {
 void ActionWriter::update(const GloveSample& glove, const PostureState* posture) noexcept {
   const std::string_view name = posture ? std::string_view(posture->name) : std::string_view();
   apply(glove.received_ns, [&](const Input& input) {
-    if (input.kind == Input::Kind::kPosture) return input.posture == name;
+    if (input.kind == Input::Kind::kPosture) return input.name == name;
     return (glove.flags & GloveSample::kWristSwitch) != 0;
   });
 }
 
-// Before a press the button was released.
+// Before a momentary input begins, it was released.
+template <typename Happens>
+void ActionWriter::happen(std::int64_t now_ns, const Happens& happens) noexcept {
+  apply(now_ns, [](const Input&) { return false; });
+  apply(now_ns, happens);
+  apply(now_ns, [](const Input&) { return false; });
+}
+
 void ActionWriter::press(std::int64_t now_ns) noexcept {
-  apply(now_ns, [](const Input&) { return false; });
-  apply(now_ns, [](const Input&) { return true; });
-  apply(now_ns, [](const Input&) { return false; });
+  happen(now_ns, [](const Input&) { return true; });
+}
+
+void ActionWriter::gesture(std::string_view name, std::int64_t now_ns) noexcept {
+  happen(now_ns, [&](const Input& input) { return input.name == name; });
 }
 
 void ActionWriter::release(std::int64_t now_ns) noexcept {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "daemon/actions/input.h"
@@ -28,6 +29,8 @@ class ActionWriter {
   void update(const GloveSample& glove, const PostureState* posture) noexcept;
   // The panel's button was pressed.
   void press(std::int64_t now_ns) noexcept;
+  // The hand has made the gesture of this name.
+  void gesture(std::string_view name, std::int64_t now_ns) noexcept;
   // The device is lost: all its inputs end.
   void release(std::int64_t now_ns) noexcept;
 
@@ -57,6 +60,8 @@ class ActionWriter {
   ParsedBindings parse(const std::vector<Binding>& bindings) const;
   template <typename IsHeld>
   void apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept;
+  template <typename Happens>
+  void happen(std::int64_t now_ns, const Happens& happens) noexcept;
   void takeBindings(std::int64_t now_ns) noexcept;
   void stepAll(std::int64_t now_ns) noexcept;
   bool step(ParsedBinding& binding, std::int64_t now_ns) noexcept;

@@ -67,6 +67,12 @@ std::optional<Input> posture(std::string_view name) {
   return Input{Input::Kind::kPosture, *device, 0, std::string(name)};
 }
 
+std::optional<Input> gesture(std::string_view name) {
+  const auto hand = takeDevice(name, "gesture.");
+  if (!hand || name.empty()) return std::nullopt;
+  return Input{Input::Kind::kGesture, *hand, 0, std::string(name)};
+}
+
 std::optional<Input> wristSwitch(std::string_view name) {
   const auto device = takeDevice(name, "switch");
   if (!device || !name.empty()) return std::nullopt;
@@ -76,15 +82,16 @@ std::optional<Input> wristSwitch(std::string_view name) {
 }  // namespace
 
 bool Input::isOf(const Source& source) const {
-  if (!source.kind) return kind == Kind::kPanelButton;
+  if (!source.kind && !source.hand) return kind == Kind::kPanelButton;
   if (!device.empty() && device != source.name) return false;
+  if (source.hand) return kind == Kind::kGesture;
   if (*source.kind == SampleKind::kBall) return kind == Kind::kButton;
   return *source.kind == SampleKind::kGlove &&
          (kind == Kind::kPosture || kind == Kind::kWristSwitch);
 }
 
 bool Input::overlaps(const Input& other) const {
-  return kind == other.kind && button == other.button && posture == other.posture &&
+  return kind == other.kind && button == other.button && name == other.name &&
          (device.empty() || other.device.empty() || device == other.device);
 }
 
@@ -107,6 +114,7 @@ std::optional<Input> parseInput(std::string_view name) {
   if (auto input = button(name)) return input;
   if (auto input = axis(name)) return input;
   if (auto input = posture(name)) return input;
+  if (auto input = gesture(name)) return input;
   return wristSwitch(name);
 }
 

@@ -1,4 +1,4 @@
-// Input: a button, posture or switch that a binding names.
+// Input: a button, posture, gesture or switch that a binding names.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,26 @@
 
 namespace merlin::actions {
 
-// Whose inputs trigger actions: a device, or the control panel.
+// Whose inputs trigger actions: a device, a hand, which makes gestures, or the control panel.
 struct Source {
-  std::string name;                // of the device
-  std::optional<SampleKind> kind;  // of the device; none: the panel
+  std::string name;                // of the device or the hand
+  std::optional<SampleKind> kind;  // of the device; none: a hand, or the panel
+  bool hand = false;
 };
 
 struct Input {
-  enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton };
+  enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton, kGesture };
 
   Kind kind = Kind::kButton;
-  std::string device;  // whose input it is; empty: that of every device that has such a one
+  // Whose input it is, a device or a hand; empty: that of every one that has such a one.
+  std::string device;
   // kButton: its bit in BallSample::buttons; of an axis that is pushed: a bit of pushedAxes().
   std::uint32_t button = 0;
-  std::string posture;  // kPosture: its name
+  std::string name;  // kPosture, kGesture: the posture's or the gesture's
 
   bool isOf(const Source& source) const;
+  // Whether it is over as soon as it begins, so that nothing can last or be timed with it.
+  bool isMomentary() const { return kind == Kind::kPanelButton || kind == Kind::kGesture; }
   // Whether one event can be both: the same part of the same device.
   bool overlaps(const Input& other) const;
   bool operator==(const Input&) const = default;

@@ -34,9 +34,9 @@ std::string conflictText(const Binding& a, const Binding& b) {
 void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) {
   const auto input = actions::parseInput(b.input);
   const auto with = actions::parseInput(b.with);
-  if (!b.with.empty() && (!with || with->kind == actions::Input::Kind::kPanelButton)) {
+  if (!b.with.empty() && (!with || with->isMomentary())) {
     faults.push_back({at + "/with", fmt::format("is \"{}\"; allowed are the forms of input, "
-                                                "without panel.button",
+                                                "without gestures and panel.button",
                                                 b.with)});
   } else if (input && with && (input->device != with->device || *input == *with)) {
     faults.push_back({at + "/with", fmt::format("is \"{}\"; allowed is another input of the device "
@@ -45,6 +45,26 @@ void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) 
   }
   if (b.repeat_s > 0 && (isHeldAction(b.action) || atLeave(b)))
     faults.push_back({at + "/repeat_s", "repeats only what happens once, as its input begins"});
+}
+
+// An input that is over as it begins triggers only what happens once.
+void checkMomentary(const actions::Input& input, const Binding& b, const std::string& at,
+                    SettingFaults& faults) {
+  const bool panel = input.kind == actions::Input::Kind::kPanelButton;
+  const bool held = isHeldAction(b.action);
+  if (b.after_s > 0 || b.repeat_s > 0 || !b.with.empty())
+    faults.push_back(
+        {at, fmt::format("gives {} with, after_s or repeat_s, which it has not: it only tells that "
+                         "it was {}",
+                         b.input, panel ? "pressed" : "made")});
+  if (held || atLeave(b))
+    faults.push_back(
+        {at, fmt::format("binds {} to {}; {} only triggers actions that happen once, when it is {}",
+                         b.input,
+                         held    ? b.action
+                         : panel ? "its release"
+                                 : "its end",
+                         panel ? "the panel's button" : "a gesture", panel ? "pressed" : "made")});
 }
 
 void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
@@ -60,20 +80,12 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
                                                    : "happens once: set enter or leave")});
   }
   checkTimes(b, at, faults);
-  const bool panel = input && input->kind == actions::Input::Kind::kPanelButton;
-  if (panel && (b.after_s > 0 || b.repeat_s > 0 || !b.with.empty()))
-    faults.push_back({at,
-                      "gives panel.button with, after_s or repeat_s, which it has not: it only "
-                      "tells that it was pressed"});
-  if (panel && (held || atLeave(b)))
-    faults.push_back({at, fmt::format("binds panel.button to {}; the panel's button only triggers "
-                                      "actions that happen once, when it is pressed",
-                                      held ? b.action : "its release")});
+  if (input && input->isMomentary()) checkMomentary(*input, b, at, faults);
 }
 
 // What all inputs have in common that one event can be, whatever device they name.
 std::string partOf(const actions::Input& input) {
-  return fmt::format("{} {} {}", static_cast<int>(input.kind), input.button, input.posture);
+  return fmt::format("{} {} {}", static_cast<int>(input.kind), input.button, input.name);
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ inline constexpr const char* kInputForms =
     "DEVICE.button.1 to DEVICE.button.12, DEVICE.axis.x+, x-, y+, y-, z+, z-, rx+ ... rz- (a push "
     "or "
     "twist of more than half), DEVICE.posture.NAME, DEVICE.switch (DEVICE is the name of a device; "
-    "without \"DEVICE.\" it is the input of any device), and panel.button";
+    "without \"DEVICE.\" it is the input of any device), HAND.gesture.NAME (HAND is the name of a "
+    "hand; without \"HAND.\" it is the gesture of any hand), and panel.button";
 
 inline std::vector<Binding> defaultBindings() {
   return {{"posture.fist", "grab"},

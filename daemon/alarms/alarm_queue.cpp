@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/event_kinds.h"
 #include "daemon/json/json_tree.h"
 
 namespace merlin::alarms {
@@ -26,6 +27,7 @@ AlarmQueue::AlarmQueue(const AlarmSettings& settings)
               std::max(settings.most_per_hour / 2.0, 1.0)) {}
 
 bool AlarmQueue::isFor(const AlarmEvent& event) const {
+  if (event.kind == kGestureEvent.name) return false;
   return settings_.kinds.empty() ||
          std::ranges::find(settings_.kinds, event.kind) != settings_.kinds.end();
 }

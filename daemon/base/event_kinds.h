@@ -1,4 +1,4 @@
-// Kinds of events: what the topic "event" tells of, and what alarms can be for.
+// Kinds of events: what the topic "event" tells of, and which of them alarms can be for.
 #pragma once
 
 #include <array>
@@ -49,7 +49,10 @@ inline constexpr EventKind kRoleEvent{
     "role",
     "merlind ended and was not back within 15 s, or is back; only alarms tell it: look at "
     "`systemctl status merlind` and its journal"};
+// No alarm is for it: it happens whenever somebody moves a hand in that way.
+inline constexpr EventKind kGestureEvent{"gesture", "a hand has made a gesture"};
 
+// Those that alarms can be for.
 inline constexpr std::array kEventKinds = {
     kDeviceEvent,  kWallEvent,   kPictureEvent, kModelEvent,  kProjectorEvent,
     kServiceEvent, kServerEvent, kStateEvent,   kFlightEvent, kRoleEvent};

@@ -11,6 +11,7 @@
 #include "drivers/io/open_stream.h"
 #include "drivers/io/transcript.h"
 #include "drivers/pjlink/password.h"
+#include "nn/io/gesture_file.h"
 #include "nn/io/network_file.h"
 
 namespace merlin::devices {
@@ -24,6 +25,49 @@ std::vector<std::string> namesOf(const nn::PostureTable& postures) {
   return names;
 }
 
+// What inputs of one kind may name.
+struct KnownNames {
+  const char* what;  // "posture"
+  std::string file;
+  std::vector<std::string> names;
+};
+
+// The place of each binding in the file whose input is of this kind, and the name in that input.
+template <typename Each>
+void forBindings(const LoadedSettings& loaded, actions::Input::Kind kind, const Each& each) {
+  if (!loaded.lines.contains("/bindings")) return;
+  const auto& bindings = loaded.settings.devices.bindings;
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const auto input = actions::parseInput(bindings[i].input);
+    if (input && input->kind == kind)
+      each(fmt::format("/bindings/{}/input", i), bindings[i].input, input->name);
+  }
+}
+
+void checkNames(LoadedSettings& loaded, actions::Input::Kind kind, const KnownNames& known) {
+  forBindings(
+      loaded, kind, [&](const std::string& at, const std::string& input, const std::string& name) {
+        if (std::ranges::find(known.names, name) != known.names.end()) return;
+        const std::string near = nearestWord(name, known.names);
+        loaded.addFinding(
+            at,
+            fmt::format("is \"{}\", which is not a {} of {}; {}it knows {}", input, known.what,
+                        known.file, near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
+                        fmt::join(known.names, ", ")));
+      });
+}
+
+void checkNoGestures(LoadedSettings& loaded) {
+  forBindings(loaded, actions::Input::Kind::kGesture,
+              [&](const std::string& at, const std::string& input, const std::string&) {
+                loaded.addFinding(
+                    at, fmt::format("is \"{}\", but no gesture is recognised: name a file of "
+                                    "gestures in /gestures/file, such as the shipped "
+                                    "gestures.json",
+                                    input));
+              });
+}
+
 }  // namespace
 
 void checkPostures(LoadedSettings& loaded) {
@@ -31,22 +75,18 @@ void checkPostures(LoadedSettings& loaded) {
   if (path.empty()) return;
   const auto file = nn::loadNetwork(path);
   if (!file) return loaded.addFinding("/postures/file", "cannot be used: " + file.error().what);
-  if (!loaded.lines.contains("/bindings")) return;
-  const std::vector<std::string> names = namesOf(file->network.postures);
-  const auto& bindings = loaded.settings.devices.bindings;
-  for (std::size_t i = 0; i < bindings.size(); ++i) {
-    const std::string& input = bindings[i].input;
-    const auto parsed = actions::parseInput(input);
-    if (!parsed || parsed->kind != actions::Input::Kind::kPosture) continue;
-    const std::string& name = parsed->posture;
-    if (file->network.postures.code(name)) continue;
-    const std::string near = nearestWord(name, names);
-    loaded.addFinding(
-        fmt::format("/bindings/{}/input", i),
-        fmt::format("is \"{}\", which is not a posture of {}; {}it knows {}", input, path,
-                    near.empty() ? "" : fmt::format("did you mean \"{}\"? ", near),
-                    fmt::join(names, ", ")));
-  }
+  checkNames(loaded, actions::Input::Kind::kPosture,
+             {"posture", path, namesOf(file->network.postures)});
+}
+
+void checkGestures(LoadedSettings& loaded) {
+  const std::string& path = loaded.settings.devices.gestures;
+  if (path.empty()) return checkNoGestures(loaded);
+  const auto file = nn::loadGestures(path);
+  if (!file) return loaded.addFinding("/gestures/file", "cannot be used: " + file.error().what);
+  std::vector<std::string> names;
+  for (const nn::TrainedGesture& gesture : file->model.gestures) names.push_back(gesture.name);
+  checkNames(loaded, actions::Input::Kind::kGesture, {"gesture", path, std::move(names)});
 }
 
 void checkPorts(LoadedSettings& loaded) {

@@ -11,6 +11,10 @@ namespace merlin::devices {
 // is bound by default.
 void checkPostures(LoadedSettings& loaded);
 
+// The same of the gestures' file and the bindings to gestures; also for a binding to a gesture
+// while /gestures/file names none.
+void checkGestures(LoadedSettings& loaded);
+
 // Adds a finding for each port whose text is invalid, and for each transcript ("replay:FILE") that
 // cannot be played. A missing device is not a fault: it may be connected later.
 void checkPorts(LoadedSettings& loaded);

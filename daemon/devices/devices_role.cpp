@@ -17,7 +17,6 @@
 #include "drivers/io/open_stream.h"
 #include "drivers/io/recording_stream.h"
 #include "drivers/io/tcp_stream.h"
-#include "nn/io/network_file.h"
 
 namespace merlin::devices {
 namespace {
@@ -151,12 +150,8 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   if (!slots) return slots.error();
   std::unique_ptr<DevicesRole> role(new DevicesRole({*std::move(segment), *std::move(slots)},
                                                     settings, generation, watch, clock));
-  std::optional<nn::TrainedPostures> postures;
-  if (const std::string& path = settings.devices.postures; !path.empty()) {
-    const auto file = nn::loadNetwork(path);
-    if (!file) return file.error();
-    postures = nn::trainedPostures(*file);
-  }
+  const auto trained = loadTrained(settings);
+  if (!trained) return trained.error();
   role->addPanel(settings.devices);
   role->addProjectors(settings.devices);
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
@@ -167,7 +162,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
     role->lines_.push_back(std::make_unique<Line>());
     role->lines_[i]->name = device.name;
     role->lines_[i]->chain =
-        std::make_unique<DeviceChain>(settings.devices, i, postures, generation, *role->segment_);
+        std::make_unique<DeviceChain>(settings.devices, i, *trained, generation, *role->segment_);
     if (device.line.port.empty()) continue;
     if (const auto opened = role->open(i, settings.devices); !opened) return opened.error();
   }
@@ -221,12 +216,13 @@ void DevicesRole::close(std::size_t device) {
 }
 
 void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes,
-                         const std::optional<nn::TrainedPostures>& postures) {
+                         const Trained& trained) {
   const DevicesSettings& devices = settings.devices;
   for (const auto& line : lines_) {
     if (changes.bindings) line->chain->rebind(devices);
     if (changes.hand) line->chain->reloadHands(devices);
-    if (changes.postures) line->chain->reloadPostures(postures, devices);
+    if (changes.postures) line->chain->reloadPostures(trained, devices);
+    if (changes.gestures || changes.hand) line->chain->reloadGestures(trained, devices);
   }
   if (changes.bindings && panel_actions_) panel_actions_->rebind(devices.bindings);
   for (std::size_t i = 0; i < lines_.size() && i < changes.lines.size(); ++i) {

@@ -20,20 +20,19 @@
 #include "drivers/gpio/panel_loop.h"
 #include "drivers/loop/device_loop.h"
 #include "drivers/registry.h"
-#include "nn/drift.h"
 
 namespace merlin::devices {
 
 // What changed in the settings of the devices while they are read.
 struct DevicesChanges {
-  bool bindings = false, hand = false, postures = false;
+  bool bindings = false, hand = false, postures = false, gestures = false;
   std::vector<bool> lines;  // by device: its line or the settings of its driver
 };
 
 class DevicesRole {
  public:
   // Creates the segment; starts no thread. Errors: kBusy (a running daemon owns the segment), kIo,
-  // those of the posture network's file.
+  // those of loadTrained().
   // REQUIRES: settings.run_directory is the directory in use, not empty.
   static Result<std::unique_ptr<DevicesRole>> make(const Settings& settings,
                                                    std::uint64_t generation,
@@ -49,11 +48,10 @@ class DevicesRole {
 
   // Gives the devices that run these settings, of which `changes` differ. Only the threads of
   // `changes.lines` are stopped, which takes up to 50 ms for each, and made again; all else is
-  // swapped between two samples. `postures`: of settings.devices.postures, if that is not empty.
+  // swapped between two samples. `trained`: what these settings name.
   // REQUIRES: start() was called; every driver exists and every port can be parsed; devices and
   // hands are as many as before, with the same names and kinds.
-  void reload(const Settings& settings, const DevicesChanges& changes,
-              const std::optional<nn::TrainedPostures>& postures);
+  void reload(const Settings& settings, const DevicesChanges& changes, const Trained& trained);
 
   void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
   Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()

@@ -1,8 +1,10 @@
 // HandSink: for each tracker record of the hand's station, combines it with the newest glove sample
-// into a HandSample; passes all samples on. Runs on the tracker's thread.
+// into a HandSample, of which the hand's gestures are recognised; passes all samples on. Runs on
+// the tracker's thread.
 #pragma once
 
 #include "daemon/base/handover.h"
+#include "daemon/devices/hand_gestures.h"
 #include "daemon/shm/layout.h"
 #include "drivers/hand/hand.h"
 #include "drivers/port/sample_sink.h"
@@ -16,11 +18,12 @@ class HandSink final : public SampleSink {
   // `glove`: where the samples of the hand's glove are; null: it wears none. `hand`: where the hand
   // is published.
   HandSink(const HandSettings& settings, const shm::Channel<GloveSample>* glove,
-           shm::Channel<HandSample>& hand, SampleSink& next)
+           shm::Channel<HandSample>& hand, HandGestures& gestures, SampleSink& next)
       : station_(static_cast<std::uint32_t>(settings.station)),
         hand_(settings),
         glove_(glove),
         slot_(hand),
+        gestures_(gestures),
         next_(next) {}
 
   // For one other thread: station and filter from the tracker's next record on.
@@ -33,8 +36,10 @@ class HandSink final : public SampleSink {
       station_ = static_cast<std::uint32_t>(settings.station);
       hand_ = hand::Hand(settings);
     }
-    if (sample.station == station_)
-      slot_.publish(hand_.update(sample, glove_ ? glove_->newest() : std::nullopt));
+    if (sample.station != station_) return;
+    const HandSample hand = hand_.update(sample, glove_ ? glove_->newest() : std::nullopt);
+    slot_.publish(hand);
+    gestures_.update(hand);
   }
   void publish(const BallSample& sample) noexcept override { next_.publish(sample); }
   void publish(const TouchSample& sample) noexcept override { next_.publish(sample); }
@@ -44,6 +49,7 @@ class HandSink final : public SampleSink {
   hand::Hand hand_;
   const shm::Channel<GloveSample>* glove_;
   shm::Channel<HandSample>& slot_;
+  HandGestures& gestures_;
   SampleSink& next_;
   Handover<HandSettings> fresh_;
 };

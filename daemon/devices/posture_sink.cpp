@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
+#include "daemon/base/fixed_text.h"
+
 namespace merlin::devices {
 namespace {
-
-template <std::size_t N>
-void setName(char (&field)[N], std::string_view name) noexcept {
-  std::copy_n(name.begin(), std::min(name.size(), N - 1), field);
-}
 
 // Another person may have the glove after this time without a sample, as when its plug was pulled.
 constexpr std::int64_t kSilence_ns = 1'000'000'000;
@@ -57,7 +54,7 @@ void PostureSink::recognise(const GloveSample& sample) noexcept {
   shown.counter = sample.counter;
   shown.code = seen.code;
   std::copy(seen.activation.begin(), seen.activation.end(), shown.activation);
-  setName(shown.name, seen.name);
+  setText(shown.name, seen.name);
   outputs_.shown.publish(shown);
 
   const nn::Held& held = r.hold.update(seen, sample.received_ns);
@@ -69,8 +66,8 @@ void PostureSink::recognise(const GloveSample& sample) noexcept {
   state.code = held.code;
   state.margin = seen.margin;
   state.entered = entered_;
-  if (held.any) setName(state.name, r.recognise.name(held.code));
-  setName(state.seen, seen.name);
+  if (held.any) setText(state.name, r.recognise.name(held.code));
+  setText(state.seen, seen.name);
   outputs_.held.publish(state);
 }
 

@@ -18,13 +18,15 @@ constexpr Taker kTakers[] = {
     {"/devices/*", kDevices, Part::kLine},
     {"/devices/*/name", kDevices | kWall | kMirror, Part::kRestart},
     {"/devices/*/driver", kDevices | kMirror, Part::kRestart},
-    {"/devices/*/person", kWall, Part::kHand},
+    {"/devices/*/person", kDevices | kWall, Part::kHand},
     {"/hands", kDevices | kWall | kMirror, Part::kRestart},
     {"/hands/*/station", kDevices | kWall, Part::kHand},
     {"/hands/*/cutoff_hz", kDevices, Part::kHand},
     {"/hands/*/cutoff_per_m_s", kDevices, Part::kHand},
-    {"/hands/*/person", kWall, Part::kHand},
+    {"/hands/*/person", kDevices | kWall, Part::kHand},
+    {"/hands/*/gestures", kDevices, Part::kGestures},
     {"/postures", kDevices, Part::kPostures},
+    {"/gestures", kDevices, Part::kGestures},
     {"/bindings", kDevices, Part::kBindings},
     {"/people/stale_after_s", kDevices | kWall, Part::kBindings},
     {"/people/turn_s", kWall, Part::kHand},
@@ -41,7 +43,7 @@ constexpr Taker kTakers[] = {
     {"/wall/scene", kWall, Part::kRestart},
     {"/wall/scene/ball_speed_m_s", kWall, Part::kScene},
     {"/wall/scene/ball_turn_deg_s", kWall, Part::kScene},
-    {"/wall/scene/tracker_axes", kWall, Part::kScene},
+    {"/wall/scene/tracker_axes", kDevices | kWall, Part::kScene},
     {"/wall/scene/hand_gain", kWall, Part::kScene},
     {"/wall/scene/fly_gain", kWall, Part::kScene},
     {"/wall/scene/tracker_origin_m", kWall, Part::kScene},
@@ -141,15 +143,15 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
     if (i < plan.lines.size() && plan.lines[i]) adoptDevice(from.list[i], keep_ports, to.list[i]);
     if (plan.has(Part::kHand)) to.list[i].person = from.list[i].person;
   }
-  if (plan.has(Part::kHand)) {
-    to.hands = from.hands;
-    to.turn_s = from.turn_s;
-  }
+  // What a change of other settings of a hand would have needed is a restart.
+  if (plan.has(Part::kHand) || plan.has(Part::kGestures)) to.hands = from.hands;
+  if (plan.has(Part::kHand)) to.turn_s = from.turn_s;
   if (plan.has(Part::kPostures)) {
     to.postures = from.postures;
     to.posture_hold = from.posture_hold;
     to.posture_drift = from.posture_drift;
   }
+  if (plan.has(Part::kGestures)) to.gestures = from.gestures;
   if (plan.has(Part::kRate)) running.wall.governor = fresh.wall.governor;
   if (plan.has(Part::kPlaylist)) running.wall.playlist = fresh.wall.playlist;
   // All of it: a change of the rest of the scene would have needed a restart.

@@ -18,6 +18,7 @@ enum class Part : std::size_t {
   kLine,      // of a device, which is closed and opened again
   kHand,      // station and filter of a hand
   kPostures,  // network, hold times and margin
+  kGestures,  // which gestures, of which hands
   kRate,      // frame rate and limits of the triangles
   kPlaylist,  // what the wall shows while nobody is there, and its light then
   kScene,     // how a person's input moves the model

@@ -71,8 +71,11 @@ Result<DeviceSlots> DeviceSlots::find(const SlotTable& table, const Header& head
     finder.find(name + ".health", touch.health);
     finder.find(name, touch.samples);
   }
-  for (const std::string& name : table.namesBefore(".joint_rad"))
-    finder.find(name, slots.hands.emplace_back(Hand{name, {}}).samples);
+  for (const std::string& name : table.namesBefore(".joint_rad")) {
+    Hand& hand = slots.hands.emplace_back(Hand{name, {}, {}});
+    finder.find(name, hand.samples);
+    finder.find(name + ".gesture", hand.gesture);
+  }
   for (const std::string& name : table.namesBefore(".sequence")) {
     constexpr std::string_view kActions = "actions.";
     if (name.starts_with(kActions))

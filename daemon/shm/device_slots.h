@@ -47,9 +47,10 @@ struct DeviceSlots {
   struct Hand {
     std::string name;
     const Channel<HandSample>* samples;
+    const SeqSlot<GestureState>* gesture;
   };
   struct Actions {
-    std::string source;  // name of a device, or "panel"
+    std::string source;  // name of a device or a hand; of the last one "panel"
     const SeqSlot<ActionState>* slot;
   };
 

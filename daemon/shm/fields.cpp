@@ -121,6 +121,15 @@ void addMembers(FieldTable& t, std::type_identity<HandSample>) {
   MERLIN_FIELD(t, HandSample, delay_s, "s");
 }
 
+void addMembers(FieldTable& t, std::type_identity<GestureState>) {
+  MERLIN_FIELD(t, GestureState, received_ns, "ns");
+  MERLIN_FIELD(t, GestureState, began_ns, "ns");
+  MERLIN_FIELD(t, GestureState, counter, "");
+  MERLIN_FIELD(t, GestureState, passed_over, "");
+  MERLIN_FIELD(t, GestureState, certainty, "");
+  MERLIN_FIELD(t, GestureState, name, "");
+}
+
 void addMembers(FieldTable& t, std::type_identity<GpioSample>) {
   MERLIN_FIELD(t, GpioSample, changed_ns, "ns");
   MERLIN_FIELD(t, GpioSample, counter, "");
@@ -319,6 +328,7 @@ std::vector<Field> channelFields(const std::string& name, std::size_t offset) {
 
 template std::vector<Field> slotFields<DeviceHealth>(const std::string&, std::size_t);
 template std::vector<Field> slotFields<PostureState>(const std::string&, std::size_t);
+template std::vector<Field> slotFields<GestureState>(const std::string&, std::size_t);
 template std::vector<Field> slotFields<TrackerFrames>(const std::string&, std::size_t);
 template std::vector<Field> slotFields<ActionState>(const std::string&, std::size_t);
 template std::vector<Field> channelFields<GloveSample>(const std::string&, std::size_t);
@@ -351,6 +361,13 @@ void addTracker(FieldTable& t, const std::string& name, std::size_t offset) {
   addSlot<TrackerFrames>(t, name, offset + offsetof(TrackerSlots, frames));
 }
 
+void addHand(FieldTable& t, const std::string& name, std::size_t index) {
+  addChannel<HandSample>(t, name,
+                         offsetof(DevicesSegment, hand) + index * sizeof(Channel<HandSample>));
+  addSlot<GestureState>(t, name + ".gesture",
+                        offsetof(DevicesSegment, gesture) + index * sizeof(SeqSlot<GestureState>));
+}
+
 std::size_t actionsAt(std::size_t source) {
   return offsetof(DevicesSegment, actions) + source * sizeof(SeqSlot<ActionState>);
 }
@@ -379,14 +396,13 @@ std::vector<Field> devicesFields(const SlotNames& names) {
           t, name, offsetof(DevicesSegment, touch) + touches++ * sizeof(Channel<TouchSample>));
     }
   }
-  for (std::size_t i = 0; i < names.hands.size(); ++i) {
-    addChannel<HandSample>(t, names.hands[i],
-                           offsetof(DevicesSegment, hand) + i * sizeof(Channel<HandSample>));
-  }
+  for (std::size_t i = 0; i < names.hands.size(); ++i) addHand(t, names.hands[i], i);
   addChannel<GpioSample>(t, "gpio", offsetof(DevicesSegment, gpio));
   addSlot<DeviceHealth>(t, "gpio.health", offsetof(DevicesSegment, gpio_health));
   for (std::size_t i = 0; i < names.devices.size(); ++i)
     addSlot<ActionState>(t, "actions." + names.devices[i].name, actionsAt(i));
+  for (std::size_t i = 0; i < names.hands.size(); ++i)
+    addSlot<ActionState>(t, "actions." + names.hands[i], actionsAt(kFirstHandSource + i));
   addSlot<ActionState>(t, "actions.panel", actionsAt(kPanelSource));
   return t.take();
 }

@@ -25,7 +25,7 @@ namespace merlin::shm {
 inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
 inline constexpr std::uint32_t kVersion = 5;
 inline constexpr std::size_t kMostFields = 512;          // of the wall's segment
-inline constexpr std::size_t kMostDevicesFields = 1536;  // of the devices' segment
+inline constexpr std::size_t kMostDevicesFields = 1664;  // of the devices' segment
 
 // A reader only needs to know the first 40 bytes beforehand: they have the offset of the table of
 // fields, which describes everything else. They are the same in the frame buffer's segment.
@@ -77,9 +77,11 @@ struct TrackerSlots {
   alignas(64) SeqSlot<TrackerFrames> frames;
 };
 
-// The sources of actions: the devices, in the order of DevicesSegment::health, then the panel.
+// The sources of actions: the devices, in the order of DevicesSegment::health, the panel, and the
+// hands, which make gestures, in the order of DevicesSegment::hand.
 inline constexpr std::size_t kPanelSource = kMostDevices;
-inline constexpr std::size_t kActionSources = kMostDevices + 1;
+inline constexpr std::size_t kFirstHandSource = kMostDevices + 1;
+inline constexpr std::size_t kActionSources = kFirstHandSource + kMostHands;
 
 // Room for the most devices that may be configured. Those that are, and only those, have names in
 // the table of fields: health and actions in the order of the configuration, samples in the order
@@ -96,6 +98,7 @@ struct DevicesSegment {
   Channel<GpioSample> gpio;                                  // writer: the panel's thread
   alignas(64) SeqSlot<DeviceHealth> gpio_health;             // writer: the panel's thread
   alignas(64) SeqSlot<ActionState> actions[kActionSources];  // writer: each device's thread
+  alignas(64) SeqSlot<GestureState> gesture[kMostHands];     // writer: its tracker's device thread
   alignas(64) Field fields[kMostDevicesFields];              // writer: the daemon, as it starts
 };
 

@@ -92,6 +92,25 @@ OrderedJson posturesJson(const shm::DeviceSlots& devices, Timestamp now) {
   return all;
 }
 
+// The last gesture of a hand; null while none is recognised.
+OrderedJson gestureJson(const shm::DeviceSlots::Hand& hand, Timestamp now) {
+  const auto g = hand.gesture->read();
+  if (!g) return nullptr;
+  OrderedJson age_s = nullptr;
+  if (g->counter > 0) age_s = ageSeconds(g->received_ns, now);
+  return {{"name", text(g->name)},
+          {"counter", g->counter},
+          {"age_s", std::move(age_s)},
+          {"certainty", round3(static_cast<double>(g->certainty))},
+          {"passed_over", g->passed_over}};
+}
+
+OrderedJson gesturesJson(const shm::DeviceSlots& devices, Timestamp now) {
+  OrderedJson all = OrderedJson::object();
+  for (const auto& hand : devices.hands) all[hand.name] = gestureJson(hand, now);
+  return all;
+}
+
 OrderedJson devicesJson(const shm::DeviceSlots& devices, Timestamp now) {
   OrderedJson all = OrderedJson::object();
   for (const auto& [device, slot] : devices.health) {
@@ -112,6 +131,7 @@ std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
                {"posture_detail", devices.gloves.empty() ? OrderedJson(nullptr)
                                                          : postureJson(devices.gloves[0], now)},
                {"postures", posturesJson(devices, now)},
+               {"gestures", gesturesJson(devices, now)},
                {"devices", devicesJson(devices, now)},
                {"servers", serversJson(servers)}});
 }

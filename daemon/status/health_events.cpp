@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/status/documents.h"
 
 namespace merlin::status {
@@ -24,6 +25,19 @@ std::vector<std::string> HealthEvents::take(Timestamp now) {
     if (sentence == last_[i]) continue;
     last_[i] = sentence;
     events.push_back(std::move(sentence));
+  }
+  return events;
+}
+
+std::vector<std::string> HealthEvents::takeGestures() {
+  std::vector<std::string> events;
+  for (std::size_t i = 0; i < devices_.hands.size(); ++i) {
+    const auto gesture = devices_.hands[i].gesture->read();
+    if (!gesture || gesture->counter == last_gestures_[i]) continue;
+    last_gestures_[i] = gesture->counter;
+    if (gesture->counter > 0)
+      events.push_back(
+          fmt::format("{}: gesture {}", devices_.hands[i].name, textIn(gesture->name)));
   }
   return events;
 }

@@ -39,6 +39,12 @@ OrderedJson handJson(const HandSample& h) {
           {"delay_s", h.delay_s}};
 }
 
+// The last gesture of a hand.
+OrderedJson gestureSampleJson(const GestureState& g) {
+  return {{"received_ns", g.received_ns}, {"began_ns", g.began_ns}, {"counter", g.counter},
+          {"passed_over", g.passed_over}, {"name", text(g.name)},   {"certainty", g.certainty}};
+}
+
 // The actions that have begun at least once; "held": names of those that are held.
 OrderedJson actionsJson(const shm::ActionState& state) {
   OrderedJson begun = OrderedJson::object(), held = OrderedJson::array();
@@ -119,7 +125,10 @@ void addSamples(const shm::DeviceSlots& devices, OrderedJson& json) {
     if (const auto t = touch.samples->newest()) json[touch.name] = touchJson(*t);
   }
   for (const auto& hand : devices.hands) {
-    if (const auto h = hand.samples->newest()) json[hand.name] = handJson(*h);
+    const auto h = hand.samples->newest();
+    if (!h) continue;
+    json[hand.name] = handJson(*h);
+    if (const auto g = hand.gesture->read()) json[hand.name]["gesture"] = gestureSampleJson(*g);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "daemon/status/sample_link.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -63,7 +64,11 @@ class Apply {
       actions(name, segment_.actions[i]);
       health(name, segment_.health[i]);
     }
-    for (std::size_t i = 0; i < names.hands.size(); ++i) hand(names.hands[i], segment_.hand[i]);
+    for (std::size_t i = 0; i < names.hands.size(); ++i) {
+      hand(names.hands[i], segment_.hand[i]);
+      gesture(names.hands[i], segment_.gesture[i]);
+      actions(names.hands[i], segment_.actions[shm::kFirstHandSource + i]);
+    }
     actions("panel", segment_.actions[shm::kPanelSource]);
   }
 
@@ -173,6 +178,21 @@ class Apply {
     read(*o, "turn_rad_s", s.turn_rad_s);
     read(*o, "delay_s", s.delay_s);
     publish(slot, s);
+  }
+  void gesture(const std::string& hand, shm::SeqSlot<GestureState>& slot) {
+    const Json* of_hand = object(document_, hand);
+    const Json* o = of_hand ? object(*of_hand, "gesture") : nullptr;
+    if (!o) return;
+    auto s = common<GestureState>(*o);
+    read(*o, "began_ns", s.began_ns);
+    s.began_ns = here(s.began_ns);
+    read(*o, "passed_over", s.passed_over);
+    read(*o, "certainty", s.certainty);
+    if (!std::isfinite(s.certainty)) s.certainty = 0;
+    if (const auto name = o->find("name"); name != o->end() && name->is_string())
+      setText(s.name, name->get<std::string>());
+    const auto last = slot.read();
+    if (!last || last->counter != s.counter || last->passed_over != s.passed_over) slot.publish(s);
   }
   // The order of the actions is not transmitted: those that begin between two documents are taken
   // in the order of kActions.

@@ -70,10 +70,14 @@ std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
   return sample;
 }
 
+// Of a device or a hand.
 std::string DeviceFeed::personOf(const std::string& device) const {
   const auto found = std::find_if(settings_.devices.begin(), settings_.devices.end(),
                                   [&](const OwnedDevice& d) { return d.device == device; });
-  return found == settings_.devices.end() ? std::string() : found->person;
+  if (found != settings_.devices.end()) return found->person;
+  const auto hand = std::find_if(settings_.hands.begin(), settings_.hands.end(),
+                                 [&](const FollowedHand& h) { return h.name == device; });
+  return hand == settings_.hands.end() ? std::string() : hand->person;
 }
 
 bool DeviceFeed::counts(const std::string& device) const {

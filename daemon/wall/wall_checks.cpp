@@ -82,10 +82,10 @@ void checkMeasured(LoadedSettings& loaded, const render::correct::CorrectionSett
 
 void checkReplacesNothing(LoadedSettings& loaded, const std::string& path, const std::string& at) {
   const Settings& s = loaded.settings;
-  std::vector<std::string> read = {s.devices.postures,       s.serve.samples_keys,
-                                   s.serve.samples_clients,  s.serve.commands_keys,
-                                   s.serve.commands_clients, s.serve.commands_readers,
-                                   s.wall.input.keys};
+  std::vector<std::string> read = {s.devices.postures,       s.devices.gestures,
+                                   s.serve.samples_keys,     s.serve.samples_clients,
+                                   s.serve.commands_keys,    s.serve.commands_clients,
+                                   s.serve.commands_readers, s.wall.input.keys};
   for (const ContentEntry& content : contentsOf(s.wall)) read.push_back(content.path);
   for (const render::out::OutputSettings& output : s.wall.outputs)
     read.push_back(output.correction.mpcdi);

@@ -11,6 +11,7 @@ struct HandSettings {
   std::string glove;          // name of the glove that it wears; empty: the first glove
   std::string tracker;        // name of the tracker that follows it; empty: the first tracker
   int station = 1;            // the tracker's station that is on the hand
+  bool gestures = true;       // whether its gestures are recognised
   // Low-pass filter of the pose, against the tracker's noise: cut-off frequency for a hand at rest
   // (0: no filter), and its increase with speed [Hz per m/s].
   double cutoff_hz = 3;

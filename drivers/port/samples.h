@@ -110,6 +110,17 @@ struct PostureState {
 };
 static_assert(sizeof(PostureState) == 72 && offsetof(PostureState, name) == 32);
 
+// The last gesture of a hand, and how many it has made since the daemon started.
+struct GestureState {
+  std::int64_t received_ns;   // of the tracker record with which the gesture ended; 0: none so far
+  std::int64_t began_ns;      // received_ns of the record with which it began
+  std::uint32_t counter;      // number of gestures
+  std::uint32_t passed_over;  // number of motions like a gesture while the hand held the model
+  float certainty;            // 0..1: 1 is a gesture like the mean of those that were trained
+  char name[36];              // of the gesture, NUL-ended; empty: none so far
+};
+static_assert(sizeof(GestureState) == 64 && offsetof(GestureState, name) == 28);
+
 // The hand, from glove and tracker: joint angles and pose.
 struct HandSample {
   enum Flag : std::uint32_t { kJoints = 1 };  // the joints are less than half a second old

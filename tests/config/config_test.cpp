@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
             "they must be in ascending order"},
         Bad{"{\"a~b/c\": 1}",
             "f.json:1: /a~0b~1c is not a known setting; known here are instance, run_directory, "
-            "state_file, devices, hands, postures, bindings, people, gpio"},
+            "state_file, devices, hands, postures, gestures, bindings, people, gpio"},
         Bad{"{\"wall\": {\"rate\": {\"rate_hz\": 1e999}}}", "f.json:1: "}));
 
 TEST(Config, EveryTruncationOfAFileIsInvalidAndNoCrash) {

@@ -228,6 +228,26 @@ TEST(DevicesConfig, BindingsNameDevicesThatHaveTheInput) {
             "ball; /devices has no ball: leave the binding out, or add one\n");
 }
 
+TEST(DevicesConfig, BindingsNameHandsThatMakeGestures) {
+  const auto bound = [](const std::string& input, const std::string& hands) {
+    return devicesAre(kOneOfEach, R"(, "hands": [)" + hands +
+                                      R"(], "bindings": [{"action": "reset_view", "input": ")" +
+                                      input + "\"}]");
+  };
+  const std::string two = R"({"name": "near"}, {"name": "far", "station": 2, "gestures": false})";
+  EXPECT_EQ(bound("gesture.push", two), "");
+  EXPECT_EQ(bound("near.gesture.push", two), "");
+  EXPECT_EQ(bound("eye.gesture.push", two),
+            "f.json:2: /bindings/0/input is \"eye.gesture.push\", and \"eye\" is not the name of "
+            "a hand; /hands has near, far\n");
+  EXPECT_EQ(bound("far.gesture.push", two),
+            "f.json:2: /bindings/0/input is \"far.gesture.push\", and /hands/1/gestures is false: "
+            "set it to true, or leave the binding out\n");
+  EXPECT_EQ(bound("hand.gesture.push", ""),
+            "f.json:2: /bindings/0/input is \"hand.gesture.push\", and \"hand\" is not the name "
+            "of a hand; /hands has no hand: leave the binding out, or add one\n");
+}
+
 TEST(DevicesConfig, AFileOfTheOldFormIsOneFindingWithTheNewForm) {
   EXPECT_EQ(findingsOf(loadSettings(R"({
     "devices": {"glove": {"port": "COM1", "baud": 7}, "bindings": [{"input": "x"}], "oops": 1},

@@ -341,6 +341,51 @@ TEST(BindingSettings, ChordsAndTimesFitTheirInput) {
       << "at different times";
 }
 
+TEST_F(ActionsTest, AGestureIsThatOfItsHandOrOfAny) {
+  const std::vector<Binding> bindings = {{"gesture.push", "next_mode"},
+                                         {"left.gesture.push", "reset_view"},
+                                         {"posture.push", "lamp_on"},
+                                         {"panel.button", "lamp_off"}};
+  const auto hand = [&](const char* name, std::size_t slot) {
+    return ActionWriter(bindings, {name, std::nullopt, true}, 1, segment_->actions[slot]);
+  };
+  ActionWriter left = hand("left", test::kBall), right = hand("right", test::kGlove);
+  (void)read();
+  left.gesture("pull", 3);
+  EXPECT_TRUE(read().in_order.empty());
+  left.gesture("push", 4);
+  EXPECT_EQ(read().in_order, (std::vector<std::size_t>{kNextMode, kReset}));
+  right.gesture("push", 5);
+  right.gesture("push", 6);
+  EXPECT_EQ(read().in_order, (std::vector<std::size_t>{kNextMode, kNextMode}));
+  EXPECT_EQ(state(test::kGlove).changed_ns, 6);
+}
+
+TEST(BindingSettings, AGestureTriggersWhatHappensOnce) {
+  EXPECT_TRUE(validate({{"left.gesture.swipe_left", "next_content"}}).empty());
+  const auto what = [](const Binding& binding) {
+    const SettingFaults faults = validate({binding});
+    return faults.size() == 1 ? faults[0].what : "";
+  };
+  EXPECT_EQ(what({"gesture.push", "grab"}),
+            "binds gesture.push to grab; a gesture only triggers actions that happen once, when it "
+            "is made");
+  EXPECT_EQ(what({"gesture.push", "lamp_on", When::kLeave}),
+            "binds gesture.push to its end; a gesture only triggers actions that happen once, when "
+            "it is made");
+  EXPECT_EQ(what({"gesture.push", "lamp_on", When::kEnter, "", 0.5, 0}),
+            "gives gesture.push with, after_s or repeat_s, which it has not: it only tells that it "
+            "was made");
+  EXPECT_EQ(what({"posture.fist", "lamp_on", When::kEnter, "gesture.push"}),
+            "is \"gesture.push\"; allowed are the forms of input, without gestures and "
+            "panel.button");
+  EXPECT_EQ(what({"gesture.", "lamp_on"}).find("is \"gesture.\"; allowed are "), 0u);
+  const SettingFaults twice =
+      validate({{"gesture.push", "lamp_on"}, {"left.gesture.push", "lamp_off"}});
+  ASSERT_EQ(twice.size(), 1u);
+  EXPECT_EQ(twice[0].other, "/0");
+}
+
 TEST(BindingSettings, AnInputThatIsNoneIsFound) {
   for (const std::string input : {"",
                                   "ball",

@@ -45,6 +45,13 @@ TEST(AlarmQueue, LeavesOutOtherKinds) {
   EXPECT_FALSE(queue.next(at(0)));
 }
 
+TEST(AlarmQueue, IsNeverForAGesture) {
+  AlarmQueue queue(settings(12));
+  queue.add(event("hand: gesture push", "gesture"));
+  queue.add(event("an output", "output"));
+  EXPECT_EQ(queue.next(at(0))->event.what, "an output");
+}
+
 TEST(AlarmQueue, NeverStartsMoreThanAllowedWithinAnHour) {
   constexpr int kMost = 6;
   AlarmQueue queue(settings(kMost));

@@ -269,5 +269,28 @@ TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
   EXPECT_FALSE(input.scene.fly);
 }
 
+// The gestures of a hand are those of its person, whoever's the tracker is.
+TEST_F(DeviceFeedTest, AGesturesActionIsItsPersons) {
+  FeedSettings two = settings();
+  two.hands = {{"hand", "ben", "", {"", 2}}};
+  two.devices = {{"ball", "ann"}, {"tracker", "ann"}};
+  two.turn = seconds(3);
+  const auto nextContents = [&](bool pushed) {
+    DeviceFeed feed(name_, two);
+    const auto read = [&](std::uint32_t times) {
+      shm::ActionState state{};
+      state.begun[actionIndex("next_content")] = times;
+      (*segment_)->actions[shm::kFirstHandSource].publish(state);
+      segment_->writeHeartbeat(now_);
+      return feed.read(now_).next_content;
+    };
+    if (pushed) push();
+    EXPECT_EQ(read(0), 0U);
+    return read(1);
+  };
+  EXPECT_EQ(nextContents(false), 1U) << "nobody has the wall";
+  EXPECT_EQ(nextContents(true), 0U) << "ann has the wall";
+}
+
 }  // namespace
 }  // namespace merlin::wall

@@ -51,6 +51,18 @@ test::LocalDevices filled(std::int64_t received_ns, std::uint32_t counter) {
   hand.orientation_wxyz[0] = 1;
   hand.velocity_m_s[0] = 0.25F;
   segment->hand[0].publish(hand);
+  GestureState gesture{};
+  gesture.received_ns = received_ns;
+  gesture.began_ns = received_ns - 300;
+  gesture.counter = counter;
+  gesture.passed_over = 2;
+  gesture.certainty = 0.75F;
+  std::snprintf(gesture.name, sizeof gesture.name, "swipe_left");
+  segment->gesture[0].publish(gesture);
+  shm::ActionState begun{};
+  begun.generation = 5;
+  begun.begun[2] = counter;
+  segment->actions[shm::kFirstHandSource].publish(begun);
   for (std::size_t i = 0; i < test::defaultSlotNames().devices.size(); ++i) {
     DeviceHealth health{};
     health.state = i == test::kTracker ? HealthState::kFailed : HealthState::kOk;
@@ -83,6 +95,15 @@ TEST(ApplySamples, BringsEverythingOverAsOldAsItWas) {
   EXPECT_STREQ(here->glove[0].posture.newest()->name, "fist");
   EXPECT_EQ(here->glove[0].posture.newest()->since_ns, 98'990'000'000);
   EXPECT_FLOAT_EQ(here->hand[0].newest()->velocity_m_s[0], 0.25F);
+  const auto gesture = here->gesture[0].read();
+  ASSERT_TRUE(gesture);
+  EXPECT_STREQ(gesture->name, "swipe_left");
+  EXPECT_EQ(gesture->received_ns, 98'990'000'000);
+  EXPECT_EQ(gesture->began_ns, 98'989'999'700);
+  EXPECT_EQ(gesture->counter, 7u);
+  EXPECT_EQ(gesture->passed_over, 2u);
+  EXPECT_EQ(gesture->certainty, 0.75F);
+  EXPECT_EQ(here->actions[shm::kFirstHandSource].read()->begun[2], 7u);
   EXPECT_EQ(here->health[test::kTracker].read()->state, HealthState::kFailed);
   EXPECT_STREQ(here->health[test::kTracker].read()->reason, "reason 1");
   EXPECT_STREQ(here->health[test::kBall].read()->port, "tcp://a:1");

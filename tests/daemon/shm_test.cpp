@@ -42,6 +42,7 @@ TEST(Layout, OffsetsOfVersion5) {
   EXPECT_EQ(offsetof(TrackerSample, orientation_wxyz), 28u);
   EXPECT_EQ(offsetof(BallSample, rotation), 28u);
   EXPECT_EQ(offsetof(PostureSample, name), 44u);
+  EXPECT_EQ(offsetof(GestureState, counter), 16u);
   EXPECT_EQ(offsetof(WallStats, rate_held_hz), 60u);
   EXPECT_EQ(offsetof(WallInteraction, snapshots), 32u);
   EXPECT_EQ(offsetof(WallInteraction, light), 48u);
@@ -170,7 +171,8 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
                          "gpio.wake 4",
                          "gpio.wait_s's ring 8",
                          "gpio.health.rate_hz 4",
-                         "actions.panel.recent 56"}));
+                         "actions.d_hand.recent 24",
+                         "hand.gesture.name 32"}));
 }
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {

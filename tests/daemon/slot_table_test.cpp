@@ -66,9 +66,12 @@ TEST(DeviceSlots, AreFoundWhereALaterReleaseHasThem) {
   EXPECT_EQ(slots->glove()->samples, &segment->ours.glove[0].samples);
   EXPECT_EQ(slots->tracker()->stations[3], &segment->ours.tracker[0].stations[3]);
   EXPECT_EQ(slots->ball()->health, &segment->ours.health[test::kBall]);
-  ASSERT_EQ(slots->actions.size(), 4U);
-  EXPECT_EQ(slots->actions[3].source, "panel");
-  EXPECT_EQ(slots->actions[3].slot, &segment->ours.actions[kPanelSource]);
+  ASSERT_EQ(slots->actions.size(), 5U);
+  EXPECT_EQ(slots->actions[3].source, "hand");
+  EXPECT_EQ(slots->actions[3].slot, &segment->ours.actions[kFirstHandSource]);
+  EXPECT_EQ(slots->actions[4].source, "panel") << "the last one";
+  EXPECT_EQ(slots->actions[4].slot, &segment->ours.actions[kPanelSource]);
+  EXPECT_EQ(slots->hand()->gesture, &segment->ours.gesture[0]);
   EXPECT_EQ(slots->glove()->posture_state, &segment->ours.glove[0].posture_state);
 }
 

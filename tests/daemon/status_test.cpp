@@ -262,6 +262,35 @@ TEST_F(DocumentsTest, MetricsAreFlatNumbers) {
   for (const auto& [name, value] : w.items()) EXPECT_TRUE(value.is_number() || name == "role");
 }
 
+TEST_F(DocumentsTest, TheLastGestureOfEachHand) {
+  EXPECT_EQ(json::parse(devicesStatus(devices_.slots(), kNow))["gestures"]["hand"], nullptr)
+      << "none is recognised";
+  HealthEvents events(devices_.slots());
+  devices_->gesture[0].publish({});
+  const json none = json::parse(devicesStatus(devices_.slots(), kNow))["gestures"]["hand"];
+  EXPECT_EQ(none["counter"], 0);
+  EXPECT_EQ(none["age_s"], nullptr);
+  EXPECT_TRUE(events.takeGestures().empty());
+  GestureState push{};
+  push.received_ns = toNanoseconds(kNow) - 1'500'000'000;
+  push.counter = 3;
+  push.passed_over = 1;
+  push.certainty = 0.5F;
+  std::snprintf(push.name, sizeof push.name, "push");
+  devices_->gesture[0].publish(push);
+  EXPECT_EQ(json::parse(devicesStatus(devices_.slots(), kNow))["gestures"]["hand"],
+            json({{"name", "push"},
+                  {"counter", 3},
+                  {"age_s", 1.5},
+                  {"certainty", 0.5},
+                  {"passed_over", 1}}));
+  EXPECT_EQ(events.takeGestures(), std::vector<std::string>{"hand: gesture push"});
+  EXPECT_TRUE(events.takeGestures().empty());
+  push.passed_over = 2;
+  devices_->gesture[0].publish(push);
+  EXPECT_TRUE(events.takeGestures().empty()) << "what is none is no event";
+}
+
 TEST_F(DocumentsTest, EventsAreToldOnce) {
   HealthEvents events(devices_.slots());
   EXPECT_TRUE(events.take(kNow).empty());

@@ -159,6 +159,28 @@ TEST_F(BadInput, BindingsToPosturesThatTheNetworkDoesNotKnow) {
   EXPECT_EQ(wall.output.find("/postures/file"), std::string::npos) << wall.output;
 }
 
+TEST_F(BadInput, BindingsToGesturesThatTheFileDoesNotKnow) {
+  const std::string gestures = kSource + "/config/gestures.json";
+  writeText(dir_ / "c.json", "{\"gestures\": {\"file\": \"" + gestures + R"("},
+    "bindings": [
+      {"input": "gesture.push", "action": "next_content"},
+      {"input": "hand.gesture.swipe_lef", "action": "next_mode"}]})");
+  const std::vector<std::string> said = {
+      "c.json:4: /bindings/1/input is \"hand.gesture.swipe_lef\", which is not a gesture of " +
+      gestures + "; did you mean \"swipe_left\"? it knows circle_clockwise, "};
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);
+  expectOutcome(run({kMerlind, "--config", dir_ / "c.json"}), 2, said);
+  writeText(dir_ / "n.json", R"({"gestures": {
+    "file": "none.json"}})");
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "n.json"}), 2,
+                {"n.json:2: /gestures/file cannot be used: ", "none.json: No such file"});
+  writeText(dir_ / "b.json", R"({"bindings": [
+    {"input": "gesture.push", "action": "next_content"}]})");
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "b.json"}), 2,
+                {"b.json:2: /bindings/0/input is \"gesture.push\", but no gesture is recognised: "
+                 "name a file of gestures in /gestures/file"});
+}
+
 TEST_F(BadInput, AFullStandardOutputIsAFailure) {
   for (const char* command : {"mesh info config/models/ankylosaurus.ply", "--help"}) {
     const Outcome o =

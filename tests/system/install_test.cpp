@@ -140,6 +140,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/usr/share/doc/merlin/systemd.md",
                            "/etc/merlin/merlin.json",
                            "/etc/merlin/postures.json",
+                           "/etc/merlin/gestures.json",
                            "/etc/merlin/merlin.schema.json"}) {
     EXPECT_TRUE(fs::is_regular_file(root_ + path)) << path;
   }

@@ -71,7 +71,9 @@ TEST(StatusSchema, MerlindKeepsTo) {
   const json projectors = json::array({{{"name", "left"}, {"address", "127.0.0.1:1"}}});
   const json schedule = json::array({{{"days", {"mon"}}, {"on", "08:00"}, {"off", "18:00"}}});
   Merlind m(dir, makeModel(dir, 5), "schema",
-            {.also = {{"projectors", projectors}, {"projector_schedule", schedule}}});
+            {.also = {{"projectors", projectors},
+                      {"projector_schedule", schedule},
+                      {"gestures", {{"file", kSource + "/config/gestures.json"}}}}});
   ASSERT_TRUE(m.ready()) << m.process().output();
   const JsonSchema s = schema();
   for (const std::string role : {"devices", "wall"}) {

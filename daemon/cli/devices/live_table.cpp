@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/fixed_text.h"
+
 namespace merlin::cli {
 namespace {
 
@@ -37,6 +39,21 @@ std::string gloveLines(const GloveSample& glove, const shm::SeqSlot<PostureState
   const auto posture = state.read();
   const std::string name = posture ? posture->name : "";
   return fmt::format("{}\n    posture  {}\n", joints, name.empty() ? "none" : name);
+}
+
+// The last gesture of each hand whose gestures are recognised.
+std::string gestureLines(const shm::DeviceSlots& devices, Timestamp now) {
+  std::string text;
+  for (const auto& hand : devices.hands) {
+    const auto g = hand.gesture->read();
+    if (!g) continue;
+    const std::string last = g->counter == 0
+                                 ? "none"
+                                 : fmt::format("{}, {:.1f} s ago", textIn(g->name),
+                                               toSeconds(now - fromNanoseconds(g->received_ns)));
+    text += fmt::format("  {:10} gesture  {}  ({} so far)\n", hand.name, last, g->counter);
+  }
+  return text;
 }
 
 std::string trackerLines(const shm::DeviceSlots::Tracker& tracker) {
@@ -100,7 +117,7 @@ std::string liveTable(const shm::DeviceSlots& devices, Timestamp now) {
                         state == "ok" ? health->identity : health->reason);
     if (state == "ok") text += valuesOf(device, devices);
   }
-  return text;
+  return text + gestureLines(devices, now);
 }
 
 }  // namespace merlin::cli

@@ -172,6 +172,20 @@ std::string serverLines(const Json& s) {
   return text;
 }
 
+// A line for each hand whose gestures are recognised: its last one.
+std::string gestureLines(const Json& s) {
+  std::string text;
+  if (!s.contains("gestures")) return text;
+  for (const auto& [hand, g] : s["gestures"].items()) {
+    if (g.is_null()) continue;
+    const int counter = g.value("counter", 0);
+    text += counter == 0 ? fmt::format("gesture  {}: none so far\n", hand)
+                         : fmt::format("gesture  {}: {}, {:.0f} s ago, {} so far\n", hand,
+                                       g.value("name", ""), g.value("age_s", 0.0), counter);
+  }
+  return text;
+}
+
 // A line for each projector.
 std::string projectorLines(const Json& s) {
   std::string text;
@@ -212,7 +226,7 @@ std::string statusTable(const Json& s) {
   }
   if (!s.contains("devices")) return text + serverLines(s);
   const std::string posture = s.value("posture", "");
-  text += fmt::format("posture  {}\n", posture.empty() ? "-" : posture);
+  text += fmt::format("posture  {}\n", posture.empty() ? "-" : posture) + gestureLines(s);
   for (const auto& [name, device] : s["devices"].items()) {
     text += fmt::format("{:16} {:8} {}\n", name, device.value("health", ""), deviceDetail(device));
   }
