@@ -47,10 +47,11 @@ class KmsOutput final : public Output {
 
 }  // namespace
 
-CardWorker::CardWorker(std::string path, ThreadWatch& watch, const Clock& clock)
+CardWorker::CardWorker(std::string path, KeptFiles& kept_files, ThreadWatch& watch,
+                       const Clock& clock)
     : path_(std::move(path)),
       watch_(watch),
-      displays_([path = path_] { return openDrmCard(path); }, clock) {}
+      displays_([path = path_, &kept_files] { return openDrmCard(path, kept_files); }, clock) {}
 
 CardWorker::~CardWorker() { thread_.stop(); }
 
@@ -79,7 +80,7 @@ std::unique_ptr<Output> Cards::makeOutput(const KmsSettings& settings, int pictu
                                           int picture_height) {
   auto worker = workers_[settings.card].lock();
   if (!worker) {
-    worker = std::make_shared<CardWorker>(settings.card, watch_, clock_);
+    worker = std::make_shared<CardWorker>(settings.card, kept_files_, watch_, clock_);
     workers_[settings.card] = worker;
   }
   const std::size_t number = worker->displays().add(settings, picture_width, picture_height);

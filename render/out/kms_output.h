@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "daemon/base/kept_files.h"
 #include "daemon/base/watched_thread.h"
 #include "render/out/kms/displays.h"
 #include "render/out/kms/settings.h"
@@ -15,8 +16,8 @@ namespace merlin::render::out::kms {
 // A card with the thread that commits its frames and looks after its displays.
 class CardWorker {
  public:
-  // `watch` and `clock` outlive this.
-  CardWorker(std::string path, ThreadWatch& watch, const Clock& clock);
+  // `kept_files`, `watch` and `clock` outlive this.
+  CardWorker(std::string path, KeptFiles& kept_files, ThreadWatch& watch, const Clock& clock);
   ~CardWorker();
   CardWorker(const CardWorker&) = delete;
   CardWorker& operator=(const CardWorker&) = delete;
@@ -36,7 +37,8 @@ class CardWorker {
 // The cards of a wall, so that outputs on one card share it. Thread-bound.
 class Cards {
  public:
-  Cards(ThreadWatch& watch, const Clock& clock) : watch_(watch), clock_(clock) {}
+  Cards(KeptFiles& kept_files, ThreadWatch& watch, const Clock& clock)
+      : kept_files_(kept_files), watch_(watch), clock_(clock) {}
 
   // Opens the cards, once all outputs are made, and looks at them; takes 2 s at most. To be called
   // before anything else in the process opens them, as Mesa does: whoever opens a card that has no
@@ -48,6 +50,7 @@ class Cards {
                                      int picture_height);
 
  private:
+  KeptFiles& kept_files_;
   ThreadWatch& watch_;
   const Clock& clock_;
   // Shared by the outputs of the card; the last one that is removed gives the card back.

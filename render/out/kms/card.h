@@ -118,7 +118,8 @@ class Card {
   virtual Result<std::shared_ptr<Buffer>> makeBuffer(int width, int height) = 0;
 
   // Only one program at a time, the DRM master, may change what a card shows. Returns whether this
-  // one is or has become it.
+  // one is or has become it. To be called before the first commit, also if isMaster(): it notes
+  // what the displays show until then.
   virtual bool becomeMaster() = 0;
   virtual bool isMaster() const = 0;
   // Programs that have the card open besides this one, "Xorg (812)"; empty if none is seen.

@@ -167,7 +167,7 @@ bool Displays::holdMaster() {
   if (is && master_) return true;
   // Who takes the displays from us needs a moment between both steps: only the next look tries.
   const bool lost = master_ && !is;
-  const bool became = is || (!lost && card_->becomeMaster());
+  const bool became = !lost && card_->becomeMaster();
   const std::string taken = became ? std::string() : takenMessage();
   const std::lock_guard lock(mutex_);
   master_ = became;

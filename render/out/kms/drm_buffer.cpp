@@ -20,7 +20,6 @@ class DumbBuffer final : public Buffer {
   ~DumbBuffer() override {
     if (!bytes_.empty()) ::munmap(bytes_.data(), bytes_.size());
     if (id_ != 0) drmModeRmFB(file_->get(), id_);
-    if (handle_ != 0) drmModeDestroyDumbBuffer(file_->get(), handle_);
   }
   DumbBuffer(const DumbBuffer&) = delete;
   DumbBuffer& operator=(const DumbBuffer&) = delete;
@@ -32,24 +31,37 @@ class DumbBuffer final : public Buffer {
   // False with errno if the card has no memory for it.
   bool create(std::uint32_t width, std::uint32_t height) {
     const int fd = file_->get();
-    std::uint64_t size = 0, offset = 0;
-    if (drmModeCreateDumbBuffer(fd, width, height, 32, 0, &handle_, &pitch_, &size) != 0)
+    std::uint64_t size = 0;
+    std::uint32_t handle = 0;
+    if (drmModeCreateDumbBuffer(fd, width, height, 32, 0, &handle, &pitch_, &size) != 0)
       return false;
-    const std::uint32_t handles[4] = {handle_}, pitches[4] = {pitch_}, offsets[4] = {};
-    if (drmModeAddFB2(fd, width, height, DRM_FORMAT_XRGB8888, handles, pitches, offsets, &id_, 0))
-      return false;
-    if (drmModeMapDumbBuffer(fd, handle_, &offset) != 0) return false;
-    void* const at =
-        ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, static_cast<off_t>(offset));
+    const std::uint32_t handles[4] = {handle}, pitches[4] = {pitch_}, offsets[4] = {};
+    const bool made = drmModeAddFB2(fd, width, height, DRM_FORMAT_XRGB8888, handles, pitches,
+                                    offsets, &id_, 0) == 0 &&
+                      map(handle, static_cast<std::size_t>(size));
+    // The frame buffer and the mapping have the memory for as long as they need it. Frame buffers
+    // can be listed, and so be removed by the process after this one if this one is killed; a
+    // handle could not.
+    const int error = errno;
+    drmModeDestroyDumbBuffer(fd, handle);
+    errno = error;
+    return made;
+  }
+
+ private:
+  bool map(std::uint32_t handle, std::size_t size) {
+    std::uint64_t offset = 0;
+    if (drmModeMapDumbBuffer(file_->get(), handle, &offset) != 0) return false;
+    void* const at = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file_->get(),
+                            static_cast<off_t>(offset));
     if (at == MAP_FAILED) return false;
-    bytes_ = {static_cast<std::uint8_t*>(at), static_cast<std::size_t>(size)};
+    bytes_ = {static_cast<std::uint8_t*>(at), size};
     std::memset(at, 0, size);
     return true;
   }
 
- private:
   DrmFile file_;
-  std::uint32_t handle_ = 0, pitch_ = 0;
+  std::uint32_t pitch_ = 0;
   Id id_ = 0;
   std::span<std::uint8_t> bytes_;
 };

@@ -1,6 +1,7 @@
 #include "render/out/kms/drm_card.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include <fmt/ranges.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <xf86drm.h>
 #include <xf86drmMode.h>
@@ -48,18 +50,32 @@ Mode modeOf(const drmModeModeInfo& info, int index) {
           interlaced,    index};
 }
 
+std::string keptName(const std::string& path) { return "card " + path; }
+
+// The file of this card that the process before this one kept; null if there is none.
+DrmFile takeKept(const std::string& path, KeptFiles& kept_files) {
+  auto file = std::make_shared<UniqueFd>(kept_files.take(keptName(path)));
+  struct stat kept {
+  }, there{};
+  const bool same = file->valid() && ::fstat(file->get(), &kept) == 0 &&
+                    ::stat(path.c_str(), &there) == 0 && kept.st_rdev == there.st_rdev;
+  return same ? file : nullptr;
+}
+
 class DrmCard final : public Card {
  public:
-  DrmCard(std::string path, DrmFile file, UniqueFd wake)
-      : path_(std::move(path)), file_(std::move(file)), wake_(std::move(wake)) {}
-  ~DrmCard() override {
-    if (drmIsMaster(fd())) saved_.restore(fd());
-    drmDropMaster(fd());
-  }
+  DrmCard(std::string path, DrmFile file, UniqueFd wake, KeptFiles& kept_files)
+      : path_(std::move(path)),
+        file_(std::move(file)),
+        wake_(std::move(wake)),
+        kept_files_(kept_files) {}
+  ~DrmCard() override;
   DrmCard(const DrmCard&) = delete;
   DrmCard& operator=(const DrmCard&) = delete;
 
   static Result<DrmFile> openFile(const std::string& path);
+  // Goes on with the file of the process before this one.
+  void inherit();
 
   const std::string& path() const override { return path_; }
   Result<CardContents> look(bool probe) override;
@@ -96,20 +112,53 @@ class DrmCard final : public Card {
   // Everything that is on and is not of the wall: a CRTC has one connector of the wall alone.
   std::vector<Setting> offSettings(std::span<const Lit> lit);
   std::uint32_t blobOf(const Lit& lit);
-  static void flipped(int, unsigned, unsigned seconds, unsigned microseconds, unsigned crtc,
-                      void* flips);
+  void readEvents();
+  void dropInherited();
 
   std::string path_;
   DrmFile file_;
   UniqueFd wake_;
+  KeptFiles& kept_files_;
   DrmProperties properties_;
   bool was_master_ = false;
+  bool is_kept_ = false;  // file_, in kept_files_
+  bool is_gone_ = false;  // the card
+  // Frame buffers of the process before this one, until no display shows them any more.
+  std::vector<Id> inherited_;
   std::vector<Id> crtcs_, connectors_, planes_;
   std::map<Id, std::vector<drmModeModeInfo>> modes_;  // by connector
   std::map<Id, Id> lit_;  // connectors by the CRTCs that the wall has lit
   DrmSavedState saved_;
-  std::vector<Flip> flips_;  // filled by flipped()
+  std::vector<Flip> flips_;  // filled by readEvents()
 };
+
+// As long as the file is kept, somebody has the card open, and it shows the last picture. When
+// nobody has, the kernel restores its console.
+DrmCard::~DrmCard() {
+  if (is_kept_ && is_gone_) kept_files_.forget(keptName(path_));
+  if (is_kept_) return;
+  if (drmIsMaster(fd())) saved_.restore(fd());
+  drmDropMaster(fd());
+}
+
+void DrmCard::inherit() {
+  const auto resources = resourcesOf(fd());
+  if (resources) inherited_.assign(resources->fbs, resources->fbs + resources->count_fbs);
+  is_kept_ = true;
+  was_master_ = isMaster();  // what the displays showed before both processes is not known
+}
+
+// The kernel switches a display off whose frame buffer is removed.
+void DrmCard::dropInherited() {
+  if (inherited_.empty()) return;
+  std::set<Id> shown;
+  for (const Id id : planes_) {
+    if (const auto plane = planeOf(fd(), id)) shown.insert(plane->fb_id);
+  }
+  std::erase_if(inherited_, [&](Id buffer) {
+    return shown.count(buffer) == 0 && drmModeRmFB(fd(), buffer) == 0;
+  });
+}
 
 Result<DrmFile> DrmCard::openFile(const std::string& path) {
   auto file = std::make_shared<UniqueFd>(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK));
@@ -139,8 +188,11 @@ bool DrmCard::becomeMaster() {
     auto again = openFile(path_);
     if (!again) return false;
     file_ = *std::move(again);
+    is_kept_ = false;
+    inherited_.clear();
     if (!isMaster()) return false;
   }
+  if (!is_kept_) is_kept_ = kept_files_.keep(keptName(path_), fd());
   if (!std::exchange(was_master_, true)) saved_ = DrmSavedState(fd(), properties_);
   return true;
 }
@@ -161,7 +213,8 @@ Id DrmCard::primaryPlane(std::size_t crtc, const std::set<Id>& used) {
 
 Result<CardContents> DrmCard::look(bool probe) {
   const auto resources = resourcesOf(fd());
-  if (!resources)
+  is_gone_ = !resources;
+  if (is_gone_)
     return Error{Errc::kIo, fmt::format("{} is not there any more: {}", path_, errnoText(errno))};
   CardContents contents;
   contents.crtcs.assign(resources->crtcs, resources->crtcs + resources->count_crtcs);
@@ -169,6 +222,7 @@ Result<CardContents> DrmCard::look(bool probe) {
     const Owned<drmModePlaneRes> planes(drmModeGetPlaneResources(fd()), drmModeFreePlaneResources);
     if (planes) planes_.assign(planes->planes, planes->planes + planes->count_planes);
   }
+  dropInherited();
   std::set<Id> used;
   for (std::size_t i = 0; i < contents.crtcs.size(); ++i) {
     contents.primary_planes.push_back(primaryPlane(i, used));
@@ -285,7 +339,9 @@ CommitResult DrmCard::commit(std::span<const Lit> lit, bool test_only) {
   std::uint32_t flags = sets_mode ? DRM_MODE_ATOMIC_ALLOW_MODESET : 0;
   flags |=
       test_only ? DRM_MODE_ATOMIC_TEST_ONLY : DRM_MODE_ATOMIC_NONBLOCK | DRM_MODE_PAGE_FLIP_EVENT;
-  const int rc = drmModeAtomicCommit(fd(), request.get(), flags, &flips_);
+  // An event that says something else answers a commit of the process before this one.
+  void* const ours = reinterpret_cast<void*>(static_cast<std::uintptr_t>(::getpid()));
+  const int rc = drmModeAtomicCommit(fd(), request.get(), flags, ours);
   const int error = rc != 0 ? errno : 0;
   for (const std::uint32_t blob : blobs) drmModeDestroyPropertyBlob(fd(), blob);
   if (rc == 0 && !test_only)
@@ -295,15 +351,28 @@ CommitResult DrmCard::commit(std::span<const Lit> lit, bool test_only) {
     case EBUSY: return {Committed::kBusy};
     case EACCES:
     case EPERM: return {Committed::kNotMaster};
-    case ENODEV: return {Committed::kGone, fmt::format("{} is not there any more", path_)};
+    case ENODEV:
+      is_gone_ = true;
+      return {Committed::kGone, fmt::format("{} is not there any more", path_)};
     default: return {Committed::kRefused, errnoText(error)};
   }
 }
 
-void DrmCard::flipped(int, unsigned, unsigned seconds, unsigned microseconds, unsigned crtc,
-                      void* flips) {
-  const auto when = std::chrono::seconds(seconds) + std::chrono::microseconds(microseconds);
-  static_cast<std::vector<Flip>*>(flips)->push_back({crtc, Timestamp(when)});
+// The kernel hands out whole events only.
+void DrmCard::readEvents() {
+  std::array<char, 1024> events;
+  const ssize_t size = ::read(fd(), events.data(), events.size());
+  drm_event event{};
+  for (std::size_t at = 0; size > 0 && at + sizeof event <= static_cast<std::size_t>(size);
+       at += std::max<std::size_t>(event.length, sizeof event)) {
+    std::memcpy(&event, &events[at], sizeof event);
+    drm_event_vblank flip{};
+    if (event.type != DRM_EVENT_FLIP_COMPLETE || event.length < sizeof flip) continue;
+    std::memcpy(&flip, &events[at], sizeof flip);
+    if (flip.user_data != static_cast<std::uint64_t>(::getpid())) continue;
+    const auto when = std::chrono::seconds(flip.tv_sec) + std::chrono::microseconds(flip.tv_usec);
+    flips_.push_back({flip.crtc_id, Timestamp(when)});
+  }
 }
 
 std::vector<Flip> DrmCard::wait(Duration longest) {
@@ -314,12 +383,7 @@ std::vector<Flip> DrmCard::wait(Duration longest) {
     std::uint64_t count = 0;
     [[maybe_unused]] const auto read = ::read(wake_.get(), &count, sizeof count);
   }
-  if (waits[0].revents & POLLIN) {
-    drmEventContext context{};
-    context.version = 3;
-    context.page_flip_handler2 = flipped;
-    drmHandleEvent(fd(), &context);
-  }
+  if (waits[0].revents & POLLIN) readEvents();
   return std::exchange(flips_, {});
 }
 
@@ -346,15 +410,29 @@ bool hasConnectors(int fd) {
   return resources && resources->count_connectors > 0;
 }
 
-Result<std::unique_ptr<Card>> makeCard(const std::string& path, DrmFile file) {
+// `kept`: the file is that of the process before this one.
+Result<std::unique_ptr<Card>> makeCard(const std::string& path, DrmFile file, bool kept,
+                                       KeptFiles& kept_files) {
   UniqueFd wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!wake.valid()) return Error{Errc::kIo, fmt::format("eventfd: {}", errnoText(errno))};
-  return std::unique_ptr<Card>(std::make_unique<DrmCard>(path, std::move(file), std::move(wake)));
+  auto card = std::make_unique<DrmCard>(path, std::move(file), std::move(wake), kept_files);
+  if (kept) card->inherit();
+  return std::unique_ptr<Card>(std::move(card));
+}
+
+Result<std::unique_ptr<Card>> openCard(const std::string& path, KeptFiles& kept_files) {
+  DrmFile kept = takeKept(path, kept_files);
+  if (kept) return makeCard(path, std::move(kept), true, kept_files);
+  auto file = DrmCard::openFile(path);
+  if (!file) return file.error();
+  if (!hasConnectors((*file)->get()))
+    return Error{Errc::kNotFound, fmt::format("{} has no connector", path)};
+  return makeCard(path, *std::move(file), false, kept_files);
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Card>> openDrmCard(const std::string& path) {
+Result<std::unique_ptr<Card>> openDrmCard(const std::string& path, KeptFiles& kept_files) {
   const std::vector<std::string> paths = cardPaths();
   if (!path.empty()) {
     if (!fs::exists(path)) {
@@ -363,16 +441,13 @@ Result<std::unique_ptr<Card>> openDrmCard(const std::string& path) {
                                paths.empty() ? "none in /dev/dri"
                                              : fmt::format("{}", fmt::join(paths, ", ")))};
     }
-    auto file = DrmCard::openFile(path);
-    if (!file) return file.error();
-    return makeCard(path, *std::move(file));
+    return openCard(path, kept_files);
   }
   Error reason{Errc::kNotFound, "this machine has no graphics card (/dev/dri/card*)"};
   for (const std::string& candidate : paths) {
-    auto file = DrmCard::openFile(candidate);
-    if (file && hasConnectors((*file)->get())) return makeCard(candidate, *std::move(file));
-    reason =
-        file ? Error{Errc::kNotFound, fmt::format("{} has no connector", candidate)} : file.error();
+    auto card = openCard(candidate, kept_files);
+    if (card) return card;
+    reason = card.error();
   }
   return reason;
 }

@@ -4,13 +4,16 @@
 #include <memory>
 #include <string>
 
+#include "daemon/base/kept_files.h"
 #include "render/out/kms/card.h"
 
 namespace merlin::render::out::kms {
 
 // Opens a card; `path` empty: the first of /dev/dri/card* that has connectors and takes atomic
-// commits. Errors: kNotFound with the cards there are; kIo: no permission, with the way out;
+// commits. As long as `kept_files` keeps its file, its displays keep the last picture when this
+// process ends, and the process after this one goes on from there. `kept_files` outlives the card.
+// Errors: kNotFound with the cards there are; kIo: no permission, with the way out;
 // kUnsupported: no atomic mode setting or no dumb buffers.
-Result<std::unique_ptr<Card>> openDrmCard(const std::string& path);
+Result<std::unique_ptr<Card>> openDrmCard(const std::string& path, KeptFiles& kept_files);
 
 }  // namespace merlin::render::out::kms

@@ -34,7 +34,9 @@ std::vector<std::string> programsWith(const std::string& path) {
   for (const auto& process : fs::directory_iterator("/proc", ignored)) {
     const std::string pid = process.path().filename();
     const bool is_process = pid.find_first_not_of("0123456789") == std::string::npos;
-    if (!is_process || pid == std::to_string(::getpid())) continue;
+    // The parent is the service manager, which keeps the card's file.
+    if (!is_process || pid == std::to_string(::getpid()) || pid == std::to_string(::getppid()))
+      continue;
     if (descriptorsOf(process.path(), path).empty()) continue;
     const fs::path program = fs::read_symlink(process.path() / "exe", ignored);
     programs.push_back(fmt::format("{} ({})", program.filename().string(), pid));
