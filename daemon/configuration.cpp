@@ -164,7 +164,7 @@ void checkAlarms(LoadedSettings& loaded) {
 
 Configuration readConfiguration(const std::string& file, const DaemonOptions& options,
                                 Reading reading) {
-  Configuration read{loadSettingsFile(file), {}, file};
+  Configuration read{loadSettingsFile(file), {}, file, {}};
   LoadedSettings& loaded = read.loaded;
   // The files could not be read or parsed at all.
   if (!loaded.parsed) return read;

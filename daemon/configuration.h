@@ -15,6 +15,8 @@ struct DaemonOptions {
   bool emulate = false;
   bool page = false;    // the role page; without devices and wall
   bool alarms = false;  // the role alarms; the same
+  // Where the settings are kept with which the process runs; empty: nowhere.
+  std::string last_good{};
 };
 
 struct Configuration {
@@ -22,6 +24,9 @@ struct Configuration {
   // For the role wall; not to be used if the verdict is kInvalid.
   std::vector<wall::WallContent> contents;
   std::string file;
+  // Why this is not the configuration of `file`, but the one before it (daemon/last_good.h), a
+  // sentence; empty: it is that of the file.
+  std::string instead_of{};
 };
 
 // kAgain: merlind runs with a configuration of this file, and changes of what only a start takes

@@ -67,10 +67,7 @@ Result<Ok> checkNotRunning(const std::string& instance, const DaemonOptions& rol
 }
 
 wall::ProjectorsSeen seenOf(const pjlink::ProjectorState& state) {
-  wall::ProjectorsSeen seen{pjlink::powerName(state.power), state.wanted};
-  const bool on = state.power == pjlink::Power::kOn || state.power == pjlink::Power::kWarming;
-  if (!seen.wanted && state.power != pjlink::Power::kUnknown) seen.wanted = on;
-  return seen;
+  return wall::projectorSeen(pjlink::powerName(state.power), state.wanted);
 }
 
 }  // namespace
@@ -89,6 +86,7 @@ Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock&
     : settings_(configuration.loaded.settings),
       configured_(std::move(configuration.loaded.settings)),
       file_(std::move(configuration.file)),
+      instead_of_(std::move(configuration.instead_of)),
       contents_(std::move(configuration.contents)),
       options_(options),
       clock_(clock),
@@ -121,7 +119,8 @@ Result<Ok> Daemon::makeRoles() {
   }
   if (options_.wall) {
     auto role = wall::WallRole::make(settings_, std::move(contents_), generation,
-                                     endpointsOf(settings_, "wall"), *keeper_, threads_, clock_);
+                                     endpointsOf(settings_, "wall"), *keeper_, kept_files_,
+                                     threads_, clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
     if (keeper_->state().playlist_off) wall_->attendance().switchPlaylist(false);
@@ -160,10 +159,13 @@ void Daemon::connectRoles() {
   }
   // SIGCHLD is waited for anyway, and asks for a round of the main loop.
   const auto wake = [main = ::pthread_self()] { ::pthread_kill(main, SIGCHLD); };
+  if (wall_ && !devices_ && !remote_devices_)
+    devices_beside_ = std::make_unique<DevicesBeside>(settings_.instance);
   reloader_.emplace(file_, options_, std::move(configured_), settings_,
                     Reloader::Parts{devices_.get(), wall_.get(), services_, threads_, wake});
   commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get(),
-                                        keeper_.get(), &*reloader_});
+                                        keeper_.get(), &*reloader_, devices_beside_.get()},
+                    clock_);
   servers_.emplace(RoleServers::Parts{settings_, *commands_, services_, devices_.get(),
                                       remote_devices_.get(), wall_.get(), keeper_.get()},
                    threads_, clock_);
@@ -194,6 +196,11 @@ void Daemon::executeActions() {
 // What the operator's panel asks for, by the ball, and what it shows of the projectors.
 void Daemon::tendPanel() {
   commands_->runPanel();
+  if (devices_beside_) {
+    devices_beside_->update(clock_.now(),
+                            [this](const std::string& why) { wall_->panel()->refuse(why); });
+    return wall_->panel()->report(wall::together(devices_beside_->projectors()));
+  }
   if (!devices_ || !devices_->projectors()) return;
   std::vector<wall::ProjectorsSeen> all;
   for (const pjlink::ProjectorState& state : devices_->projectors()->states())
@@ -218,9 +225,10 @@ Result<Ok> Daemon::run() {
   }
   ::sd_notify(0, "READY=1");
   logInfo("ready");
+  keepLastGood();
   while (!stopAsked(kBeat)) {
     housekeeping();
-    reloader_->tend();
+    if (reloader_->tend() && last_good_) last_good_->keep(reloader_->configured());
     // Not before READY=1: a ping arms systemd's watchdog, and the first frame may take longer.
     if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
     if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
@@ -228,6 +236,17 @@ Result<Ok> Daemon::run() {
   ::sd_notify(0, "STOPPING=1");
   logInfo("stopping");
   return Ok{};
+}
+
+// A configuration is good when merlind runs with it.
+void Daemon::keepLastGood() {
+  if (!instead_of_.empty()) {
+    logError("{}", instead_of_);
+    services_.failed("configuration", instead_of_);
+  }
+  if (options_.last_good.empty()) return;
+  last_good_ = std::make_unique<LastGoodKeeper>(options_.last_good, threads_);
+  if (instead_of_.empty()) last_good_->keep(reloader_->configured());
 }
 
 Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {

@@ -16,7 +16,10 @@
 #include "daemon/base/watched_thread.h"
 #include "daemon/configuration.h"
 #include "daemon/devices/devices_role.h"
+#include "daemon/devices_beside.h"
 #include "daemon/emulator_children.h"
+#include "daemon/kept_by_systemd.h"
+#include "daemon/last_good.h"
 #include "daemon/reloader.h"
 #include "daemon/remote_devices.h"
 #include "daemon/role_commands.h"
@@ -58,6 +61,7 @@ class Daemon {
   void serveWindows();
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal
+  void keepLastGood();
   void housekeeping();
   void mendSharedMemory();
   std::string summary(Timestamp now) const;
@@ -65,12 +69,13 @@ class Daemon {
   // Members are destroyed from the last to the first: an object that calls others is declared after
   // them, so that it is destroyed first.
   Settings settings_;
-  Settings configured_;  // as the file has them; moved into reloader_
-  const std::string file_;
+  Settings configured_;                      // as the file has them; moved into reloader_
+  const std::string file_, instead_of_;      // Configuration's
   std::vector<wall::WallContent> contents_;  // moved into wall_ when that is created
   DaemonOptions options_;
   Clock& clock_;
-  ThreadWatch threads_;  // declared before all members that have threads
+  KeptBySystemd kept_files_;  // made before the emulators are forked
+  ThreadWatch threads_;       // declared before all members that have threads
   status::Services services_;
   status::EndedThreads ended_threads_{threads_, services_};
   status::Watchdog watchdog_;
@@ -78,10 +83,13 @@ class Daemon {
   std::atomic<bool> closed_{false};  // a person closed a window whose on_close is "stop"
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<RemoteDevices> remote_devices_;  // if /wall/input names another machine
+  // Of a process with a wall whose devices are read by another process of this machine.
+  std::unique_ptr<DevicesBeside> devices_beside_;
   actions::ActionReader device_actions_;
   // Of a process with a wall or projectors; used by wall_ and devices_.
   std::unique_ptr<state::StateKeeper> keeper_;
   std::optional<Reloader> reloader_;
+  std::unique_ptr<LastGoodKeeper> last_good_;  // if DaemonOptions::last_good names a file
   std::optional<RoleCommands> commands_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;  // called by wall_
   std::unique_ptr<wall::WallRole> wall_;

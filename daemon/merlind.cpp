@@ -18,6 +18,7 @@
 #include "daemon/cli/parse_arguments.h"
 #include "daemon/configuration.h"
 #include "daemon/daemon.h"
+#include "daemon/last_good.h"
 #include "daemon/page_process.h"
 #include "render/gl/gl_context.h"
 
@@ -29,6 +30,7 @@ struct Options {
   std::string check;
   std::string role = "all";
   bool emulate = false;
+  bool last_good = false;
   bool print_config = false;
   bool print_schema = false;
   bool print_config_manual = false;
@@ -41,8 +43,8 @@ manual::PageSettings page() {
           .files = {{"/etc/merlin/merlin.json", "the configuration, described in merlin.json(5)"},
                     {"/etc/merlin/conf.d/*.json",
                      "merged over the configuration in the order of their names"},
-                    {"/usr/share/merlin/merlind.service.d",
-                     "drop-ins for merlind.service, each of which allows one more thing"},
+                    {"/usr/share/merlin/merlin-devices.service.d, merlin-wall.service.d",
+                     "drop-ins for these services, each of which allows one more thing"},
                     {"/var/lib/merlin", "models, and what people changed while the wall ran"},
                     {"/run/merlin", "sockets of status and commands, for the group merlin"}},
           .see_also = {"merlin(1)", "merlin.json(5)", "systemctl(1)"}};
@@ -54,8 +56,12 @@ void printFindings(const std::string& file, const LoadedSettings& loaded) {
 
 DaemonOptions daemonOptions(const Options& options) {
   const bool all = options.role == "all";
-  return {all || options.role == "devices", all || options.role == "wall", options.emulate,
-          options.role == "page", options.role == "alarms"};
+  return {all || options.role == "devices",
+          all || options.role == "wall",
+          options.emulate,
+          options.role == "page",
+          options.role == "alarms",
+          options.last_good ? lastGoodFile(options.config, options.role) : std::string()};
 }
 
 Configuration checkedConfiguration(const std::string& file, const Options& options) {
@@ -119,7 +125,12 @@ int exitStatusOf(const Result<Ok>& ran) {
 int runDaemon(const Options& options) {
   blockSignals();  // first, because reading a large model takes long and a signal may arrive
   Configuration configuration = checkedConfiguration(options.config, options);
-  if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return kExitBadInput;
+  if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) {
+    const DaemonOptions with = daemonOptions(options);
+    auto kept = readLastGood(with.last_good, configuration, with);
+    if (!kept) return kExitBadInput;
+    configuration = *std::move(kept);
+  }
   raiseDescriptorLimit();
   if (options.role == "alarms") {
     SystemClock alarms_clock;
@@ -169,6 +180,9 @@ int runProgram(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--emulate", options.emulate,
                "Start an emulator for each device, on a pseudo-terminal");
+  app.add_flag("--last-good", options.last_good,
+               "Keep the settings beside the state whenever merlind runs with them, and start with "
+               "those if the configuration is invalid, which an event tells");
   app.add_flag("--print-config", options.print_config,
                "Print the configuration with every setting, including defaults, and exit");
   app.add_flag("--print-schema", options.print_schema,
@@ -181,6 +195,10 @@ int runProgram(int argc, char** argv) {
   if (options.print_schema || options.print_config_manual) {
     fmt::print("{}", options.print_schema ? settingsSchema() : settingsManual(MERLIN_VERSION));
     return kExitDone;
+  }
+  if (options.last_good && (options.role == "page" || options.role == "alarms")) {
+    printError("merlind: --last-good is for the roles devices, wall and all\n");
+    return kExitBadInput;
   }
   if (options.print_config) return printConfig(options);
   if (check->count() == 0) return runDaemon(options);

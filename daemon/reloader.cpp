@@ -71,7 +71,7 @@ Result<std::string> Reloader::run(const std::string& argument) {
                   argument.substr(0, 64), kKept)};
 }
 
-void Reloader::tend() {
+bool Reloader::tend() {
   std::optional<Request> request;
   std::optional<ReadFile> file;
   {
@@ -81,16 +81,18 @@ void Reloader::tend() {
       file.swap(read_);
     }
   }
+  bool swapped = false;
   if (file) {
     thread_.stop();
-    finish(*request, *std::move(file));
+    swapped = finish(*request, *std::move(file));
   }
   const std::lock_guard lock(mutex_);
-  if (current_ || waiting_.empty()) return;
+  if (current_ || waiting_.empty()) return swapped;
   current_ = waiting_.front();
   waiting_.pop_front();
   thread_ = WatchedThread(parts_.watch, "reload",
                           [this](const std::stop_token& stop, Progress& p) { read(stop, p); });
+  return swapped;
 }
 
 // The body of the thread. Then it waits until it is stopped, as every thread must.
@@ -159,17 +161,18 @@ Reloader::ReadFile Reloader::read() const {
   return file;
 }
 
-void Reloader::finish(const Request& request, ReadFile file) {
+// Returns whether the file's settings are in effect now.
+bool Reloader::finish(const Request& request, ReadFile file) {
   file.answer.only_checked = request.only_check;
-  if (!request.only_check) {
-    if (file.answer.outcome == Outcome::kDone) swap(file);
-    report(file.answer);
-  }
+  const bool swaps = !request.only_check && file.answer.outcome == Outcome::kDone;
+  if (swaps) swap(file);
+  if (!request.only_check) report(file.answer);
   std::string text = reload::answerText(file.answer);
   const std::lock_guard lock(mutex_);
   answers_.emplace_back(request.number, std::move(text));
   if (answers_.size() > kKept) answers_.pop_front();
   current_.reset();
+  return swaps;
 }
 
 void Reloader::swap(const ReadFile& file) {

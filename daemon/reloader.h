@@ -47,8 +47,11 @@ class Reloader {
   void request() { (void)run("now"); }
 
   // Begins what was requested, and swaps what was read. To be called by the main thread, from the
-  // first frame on. Takes up to 50 ms for each device that is made anew.
-  void tend();
+  // first frame on. Takes up to 50 ms for each device that is made anew. Returns true if other
+  // settings than before are in effect.
+  bool tend();
+  // The settings of the file that are in effect. On the thread of tend().
+  const Settings& configured() const noexcept { return configured_; }
 
  private:
   struct Request {
@@ -64,7 +67,7 @@ class Reloader {
   ReadFile read() const;
   reload::Readers process() const;
   void read(const std::stop_token& stop, Progress& progress);
-  void finish(const Request& request, ReadFile file);
+  bool finish(const Request& request, ReadFile file);
   void swap(const ReadFile& file);
   void report(const reload::Answer& answer);
 

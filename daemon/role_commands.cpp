@@ -262,6 +262,14 @@ void RoleCommands::runPanel() const {
   wall::OperatorPanel* const panel = parts_.wall ? parts_.wall->panel() : nullptr;
   if (!panel) return;
   for (const render::panel::Request& request : panel->takeRequests()) {
+    const CommandInfo* const command = findCommand(request.command);
+    const bool of_devices =
+        command && (command->role == CommandOf::kPanel || command->role == CommandOf::kDevices);
+    if (of_devices && parts_.beside) {
+      const auto sent = parts_.beside->send(request.command, clock_.now());
+      if (!sent) panel->refuse(sent.error().what);
+      continue;
+    }
     const auto executed = run(request.command, request.argument);
     if (!executed) panel->refuse(executed.error().what);
   }

@@ -7,6 +7,7 @@
 
 #include "daemon/base/commands.h"
 #include "daemon/devices/devices_role.h"
+#include "daemon/devices_beside.h"
 #include "daemon/reloader.h"
 #include "daemon/state/state_keeper.h"
 #include "daemon/status/server.h"
@@ -26,15 +27,17 @@ class RoleCommands {
     wall::SnapshotWriter* snapshots = nullptr;
     state::StateKeeper* keeper = nullptr;  // of a process with a wall or projectors
     Reloader* reloader = nullptr;
+    DevicesBeside* beside = nullptr;  // of a process with a wall and without devices
   };
-  explicit RoleCommands(const Parts& parts) : parts_(parts) {}
+  // `clock` must outlive this object.
+  RoleCommands(const Parts& parts, const Clock& clock) : parts_(parts), clock_(clock) {}
 
   // Executes a command and returns the answer as JSON. Errors: kInvalidArgument (unknown command,
   // invalid argument, or this process lacks the part that executes the command); those of the part.
   Result<std::string> run(std::string_view name, const std::string& argument = {}) const;
 
-  // Executes what was asked for at the operator's panel, which shows why one was refused. Returns
-  // at once if there is nothing.
+  // Executes what was asked for at the operator's panel, which shows why one was refused, or gives
+  // it to the process with the devices. Returns at once if there is nothing.
   void runPanel() const;
 
   // The commands that a role's socket accepts, except `status` and `events`.
@@ -42,6 +45,7 @@ class RoleCommands {
 
  private:
   Parts parts_;
+  const Clock& clock_;
 };
 
 }  // namespace merlin

@@ -48,7 +48,7 @@ inline constexpr EventKind kFlightEvent{
 inline constexpr EventKind kRoleEvent{
     "role",
     "merlind ended and was not back within 15 s, or is back; only alarms tell it: look at "
-    "`systemctl status merlind` and its journal"};
+    "`systemctl status 'merlin-*'` and the journal"};
 // No alarm is for it: it happens whenever somebody moves a hand in that way.
 inline constexpr EventKind kGestureEvent{"gesture", "a hand has made a gesture"};
 

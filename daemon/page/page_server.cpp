@@ -160,7 +160,7 @@ std::optional<Answer> PageServer::handle(const Request& request, std::uint64_t i
 }
 
 std::optional<Answer> PageServer::execute(const CommandRoute& route, std::uint64_t id) {
-  CommandQueue& queue =
+  status::CommandQueue& queue =
       route.command->role == CommandOf::kWall ? wall_commands_ : devices_commands_;
   if (queue.add(
           {id, std::string(route.command->name), route.argument, clock_.now() + kCommandPatience}))

@@ -14,7 +14,6 @@
 #include "daemon/base/watched_thread.h"
 #include "daemon/net/server_keeper.h"
 #include "daemon/net/server_thread.h"
-#include "daemon/page/command_queue.h"
 #include "daemon/page/event_log.h"
 #include "daemon/page/frame_history.h"
 #include "daemon/page/http_server.h"
@@ -23,6 +22,7 @@
 #include "daemon/page/routes.h"
 #include "daemon/page/settings.h"
 #include "daemon/page/thumbnails.h"
+#include "daemon/status/command_queue.h"
 
 namespace merlin::page {
 
@@ -80,7 +80,7 @@ class PageServer final : public net::Server {
   WallWatch wall_;
   DevicesWatch devices_;
   FrameHistory frames_;
-  CommandQueue wall_commands_, devices_commands_;
+  status::CommandQueue wall_commands_, devices_commands_;
   PictureMaker pictures_;
   Thumbnails thumbnails_;
   std::map<std::uint64_t, WaitingPicture> waiting_;

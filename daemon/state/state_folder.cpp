@@ -59,7 +59,9 @@ Result<Ok> linkAs(const std::string& from, const std::string& to, const std::str
 // The first folder of a list such as systemd sets.
 std::string firstOf(std::string_view list) { return std::string(list.substr(0, list.find(':'))); }
 
-std::string usualFolder() {
+}  // namespace
+
+std::string stateFolder() {
   // NOLINTBEGIN(concurrency-mt-unsafe): read once, at the start
   if (const char* given = std::getenv("STATE_DIRECTORY"); given && *given) return firstOf(given);
   if (::geteuid() == 0) return "/var/lib/merlin";
@@ -70,8 +72,6 @@ std::string usualFolder() {
   // NOLINTEND(concurrency-mt-unsafe)
   return {};
 }
-
-}  // namespace
 
 Result<std::string> StateFolder::read() { return textOf(path_); }
 
@@ -94,7 +94,7 @@ Result<Ok> StateFolder::putAside() { return rename(path_, path_ + ".damaged"); }
 std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall) {
   const char* const ending = has_wall ? "" : ".devices";
   if (!wanted.empty()) return wanted + ending;
-  const std::string folder = usualFolder();
+  const std::string folder = stateFolder();
   return folder.empty() ? folder : fmt::format("{}/{}.state.json{}", folder, instance, ending);
 }
 

@@ -24,11 +24,15 @@ class StateFolder final : public StateFiles {
   std::string path_;
 };
 
-// The file that is used: `wanted`, or, if that is empty, INSTANCE.state.json in the folder that
-// systemd sets (StateDirectory=), else in /var/lib/merlin for root, else in $XDG_STATE_HOME/merlin
-// or ~/.local/state/merlin. Empty if there is no such folder, since this user has no home. A
+// Where merlind keeps what has to outlive it: the folder that systemd sets (StateDirectory=), else
+// /var/lib/merlin for root, else $XDG_STATE_HOME/merlin or ~/.local/state/merlin. Empty if there is
+// no such folder, since this user has no home. Reads the environment: to be called before any
+// thread starts.
+std::string stateFolder();
+
+// The file that is used: `wanted`, or, if that is empty, INSTANCE.state.json in stateFolder(). A
 // process without a wall has a file of its own, with ".devices" appended, since the process of the
-// wall may have the other. Reads the environment: to be called before any thread starts.
+// wall may have the other. Empty if there is no folder. To be called before any thread starts.
 std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall);
 
 // The file as another program than merlind finds it, who knows neither merlind's user nor its

@@ -61,6 +61,11 @@ PanelOptions panelOptions(const Settings& settings, const std::vector<ContentEnt
   return options;
 }
 
+ProjectorsSeen projectorSeen(std::string power, std::optional<bool> wanted) {
+  if (!wanted && power != "unknown") wanted = power == "on" || power == "warming";
+  return {std::move(power), wanted};
+}
+
 ProjectorsSeen together(const std::vector<ProjectorsSeen>& all) {
   if (all.empty()) return {};
   ProjectorsSeen seen = all.front();

@@ -29,6 +29,9 @@ struct ProjectorsSeen {
   std::optional<bool> wanted;  // whether they are on, or are to be
 };
 
+// `wanted` is nothing if nobody has switched it: then it is to be what it is.
+ProjectorsSeen projectorSeen(std::string power, std::optional<bool> wanted);
+
 // Of several: the power that they have in common, or "mixed"; the same of `wanted`.
 ProjectorsSeen together(const std::vector<ProjectorsSeen>& all);
 

@@ -52,9 +52,12 @@ Error notShownYet() { return {Errc::kBusy, "the wall has not shown its first fra
 
 }  // namespace
 
-Result<std::unique_ptr<WallRole>> WallRole::make(
-    const Settings& configured, std::vector<WallContent> contents, std::uint64_t generation,
-    const shm::Endpoints& endpoints, state::StateKeeper& keeper, ThreadWatch& watch, Clock& clock) {
+Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& configured,
+                                                 std::vector<WallContent> contents,
+                                                 std::uint64_t generation,
+                                                 const shm::Endpoints& endpoints,
+                                                 state::StateKeeper& keeper, KeptFiles& kept_files,
+                                                 ThreadWatch& watch, Clock& clock) {
   Settings settings = configured;
   settings.wall = drawnWall(configured.wall);
   auto segment = shm::SegmentWriter<shm::WallSegment>::make(
@@ -66,8 +69,8 @@ Result<std::unique_ptr<WallRole>> WallRole::make(
   auto scene = render::scene::Scene::make(settings.wall.scene);
   if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
   std::unique_ptr<WallRole> role(new WallRole(settings, std::move(contents), *std::move(plan),
-                                              *std::move(scene), *std::move(segment), keeper, watch,
-                                              clock));
+                                              *std::move(scene), *std::move(segment), keeper,
+                                              kept_files, watch, clock));
   if (const auto made = role->makeOutputs(generation); !made) return made.error();
   if (const auto made = role->makeCorrections(); !made) return made.error();
   role->makeSignals(generation);
@@ -105,7 +108,7 @@ Result<Ok> WallRole::makeOutputs(std::uint64_t generation) {
 WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
                    render::tiles::TilePlan plan, render::scene::Scene scene,
                    shm::SegmentWriter<shm::WallSegment> segment, state::StateKeeper& keeper,
-                   ThreadWatch& watch, Clock& clock)
+                   KeptFiles& kept_files, ThreadWatch& watch, Clock& clock)
     : settings_(settings),
       contents_(std::move(contents)),
       entries_(entriesOf(contents_)),
@@ -117,7 +120,7 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       keeper_(keeper),
       watch_(watch),
       clock_(clock),
-      graphics_cards_(watch, clock),
+      graphics_cards_(kept_files, watch, clock),
       cards_(plan_.frame_width, plan_.frame_height,
              render::testcard::cardTiles(plan_, settings.wall.outputs, panelsOf(settings.wall))),
       attendance_(settings.wall.playlist),

@@ -11,6 +11,7 @@
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/kept_files.h"
 #include "daemon/base/thread_team.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/shm/segment.h"
@@ -59,8 +60,8 @@ class WallRole {
                                                 std::vector<WallContent> contents,
                                                 std::uint64_t generation,
                                                 const shm::Endpoints& endpoints,
-                                                state::StateKeeper& keeper, ThreadWatch& watch,
-                                                Clock& clock);
+                                                state::StateKeeper& keeper, KeptFiles& kept_files,
+                                                ThreadWatch& watch, Clock& clock);
   ~WallRole();  // stops and joins the wall's thread
   WallRole(const WallRole&) = delete;
   WallRole& operator=(const WallRole&) = delete;
@@ -136,7 +137,7 @@ class WallRole {
   WallRole(const Settings& settings, std::vector<WallContent> contents,
            render::tiles::TilePlan plan, render::scene::Scene scene,
            shm::SegmentWriter<shm::WallSegment> segment, state::StateKeeper& keeper,
-           ThreadWatch& watch, Clock& clock);
+           KeptFiles& kept_files, ThreadWatch& watch, Clock& clock);
   Result<Ok> makeOutputs(std::uint64_t generation);
   void makeChecks();
   Result<Ok> makeCorrections();

@@ -84,17 +84,24 @@ std::set<std::string> callsOf(const Words& sets) {
     else
       table[current].push_back(line.substr(from));
   }
-  std::set<std::string> calls, seen;
-  Words open = sets;
-  while (!open.empty() && !table.empty()) {
-    const std::string name = open.back();
-    open.pop_back();
-    if (!seen.insert(name).second) continue;
-    if (name[0] == '@')
-      open.insert(open.end(), table[name].begin(), table[name].end());
-    else
-      calls.insert(name);
-  }
+  const auto expanded = [&](Words open) {
+    std::set<std::string> calls, seen;
+    while (!open.empty() && !table.empty()) {
+      const std::string name = open.back();
+      open.pop_back();
+      if (!seen.insert(name).second) continue;
+      if (name[0] == '@')
+        open.insert(open.end(), table[name].begin(), table[name].end());
+      else
+        calls.insert(name);
+    }
+    return calls;
+  };
+  Words allowed, forbidden;
+  for (const std::string& name : sets)
+    name[0] == '~' ? forbidden.push_back(name.substr(1)) : allowed.push_back(name);
+  std::set<std::string> calls = expanded(allowed);
+  for (const std::string& name : expanded(forbidden)) calls.erase(name);
   return calls;
 }
 

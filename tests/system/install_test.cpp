@@ -85,16 +85,27 @@ class Install : public testing::Test {
     return path;
   }
 
-  std::vector<std::string> underUnit(std::vector<std::string> program,
-                                     const std::vector<std::string>& drop_ins = {},
-                                     const std::string& unit = "merlind.service") {
+  std::vector<std::string> underUnit(std::vector<std::string> program, const std::string& unit,
+                                     const std::vector<std::string>& drop_ins = {}) {
     std::vector<std::string> arguments = {MERLIN_BIN_DIR "/under_unit",
                                           root_ + "/usr/lib/systemd/system/" + unit};
     for (const std::string& name : drop_ins)
-      arguments.push_back(root_ + "/usr/share/merlin/merlind.service.d/" + name);
+      arguments.push_back(root_ + "/usr/share/merlin/" + unit + ".d/" + name);
     arguments.emplace_back("--");
     arguments.insert(arguments.end(), program.begin(), program.end());
     return arguments;
+  }
+
+  // One of the two processes of the wall, under its unit. With the unit's command line but for the
+  // configuration.
+  std::unique_ptr<Process> start(const std::string& role, const std::string& configuration,
+                                 const std::vector<std::string>& drop_ins = {}) {
+    auto process = std::make_unique<Process>(
+        underUnit({merlind_, "--role", role, "--last-good", "--config", configuration},
+                  "merlin-" + role + ".service", drop_ins),
+        std::map<std::string, std::string>{{"STATE_DIRECTORY", runDirectory()}});
+    EXPECT_TRUE(process->saysEventually("ready")) << process->output();
+    return process;
   }
 
   Outcome merlin(std::vector<std::string> arguments) {
@@ -112,14 +123,15 @@ class Install : public testing::Test {
 TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
   for (const char* path : {"/usr/bin/merlind",
                            "/usr/bin/merlin",
-                           "/usr/lib/systemd/system/merlind.service",
+                           "/usr/lib/systemd/system/merlin-devices.service",
+                           "/usr/lib/systemd/system/merlin-wall.service",
                            "/usr/lib/sysusers.d/merlin.conf",
                            "/usr/lib/systemd/system/merlin-page.service",
                            "/usr/lib/sysusers.d/merlin-page.conf",
                            "/usr/lib/systemd/system/merlin-alarms.service",
                            "/usr/lib/sysusers.d/merlin-alarms.conf",
                            "/usr/lib/systemd/system/merlin.target",
-                           "/usr/lib/systemd/system/merlind.service.d/displays.conf",
+                           "/usr/lib/systemd/system/merlin-wall.service.d/displays.conf",
                            "/usr/lib/tmpfiles.d/merlin.conf",
                            "/usr/lib/udev/rules.d/60-merlin.rules",
                            "/usr/share/man/man1/merlin.1.gz",
@@ -129,11 +141,11 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/usr/share/merlin/ankylosaurus.mrm",
                            "/usr/share/merlin/wall.json",
                            "/usr/share/merlin/gestures.json",
-                           "/usr/share/merlin/merlind.service.d/network.conf",
-                           "/usr/share/merlin/merlind.service.d/gpio.conf",
-                           "/usr/share/merlin/merlind.service.d/input.conf",
-                           "/usr/share/merlin/merlind.service.d/gpu.conf",
-                           "/usr/share/merlin/merlind.service.d/files.conf",
+                           "/usr/share/merlin/merlin-devices.service.d/network.conf",
+                           "/usr/share/merlin/merlin-devices.service.d/gpio.conf",
+                           "/usr/share/merlin/merlin-devices.service.d/input.conf",
+                           "/usr/share/merlin/merlin-wall.service.d/gpu.conf",
+                           "/usr/share/merlin/merlin-wall.service.d/files.conf",
                            "/usr/share/merlin/spnav.tmpfiles.conf",
                            "/usr/share/doc/merlin/LICENSE",
                            "/usr/share/doc/merlin/DejaVuSans.LICENSE",
@@ -144,10 +156,14 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/etc/merlin/merlin.schema.json"}) {
     EXPECT_TRUE(fs::is_regular_file(root_ + path)) << path;
   }
-  // The unit starts the installed daemon with the installed configuration.
-  const std::string unit = readText(root_ + "/usr/lib/systemd/system/merlind.service");
-  EXPECT_NE(unit.find("ExecStart=/usr/bin/merlind --config /etc/merlin/merlin.json"),
-            std::string::npos);
+  // The units start the installed daemon with the installed configuration, as start() does.
+  for (const std::string& role : {std::string("devices"), std::string("wall")}) {
+    const std::string unit =
+        readText(root_ + "/usr/lib/systemd/system/merlin-" + role + ".service");
+    EXPECT_NE(unit.find("ExecStart=/usr/bin/merlind --role " + role +
+                        " --last-good --config /etc/merlin/merlin.json\n"),
+              std::string::npos);
+  }
   writeText(root_ + "/etc/merlin/merlin.json", "{\"instance\": \"mine\"}");
   ASSERT_EQ(install().status, 0);
   EXPECT_EQ(readText(root_ + "/etc/merlin/merlin.json"), "{\"instance\": \"mine\"}");
@@ -170,28 +186,30 @@ TEST_F(Install, TheInstalledConfigurationShowsTheInstalledModelWithoutAnAlarm) {
   const Outcome checked = run({merlind_, "--check-config", path});
   EXPECT_EQ(checked.status, 0) << checked.output;
 
-  Process merlind(underUnit({merlind_, "--config", path}));
-  ASSERT_TRUE(merlind.saysEventually("ready")) << merlind.output();
+  const auto devices = start("devices", path), wall = start("wall", path);
   json status;
   EXPECT_TRUE(eventually([&] {
     status = json::parse(merlin({"status", "--json"}).output, nullptr, false);
     return !status.is_discarded() && status.value("playlist", "") == "running";
   })) << status.dump();
-  EXPECT_EQ(merlind.output().find(" warning: "), std::string::npos) << merlind.output();
-  EXPECT_EQ(merlind.output().find(" error: "), std::string::npos) << merlind.output();
-  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+  for (Process* const process : {devices.get(), wall.get()}) {
+    EXPECT_EQ(process->output().find(" warning: "), std::string::npos) << process->output();
+    EXPECT_EQ(process->output().find(" error: "), std::string::npos) << process->output();
+    EXPECT_EQ(process->kill(SIGTERM), 0);
+  }
 }
 
-TEST_F(Install, TheInstalledDaemonRunsUnderItsUnit) {
-  Process merlind(underUnit({merlind_, "--config", configuration(json::object())}));
-  ASSERT_TRUE(merlind.saysEventually("ready")) << merlind.output();
+TEST_F(Install, TheInstalledDaemonRunsUnderItsUnits) {
+  const std::string path = configuration(json::object());
+  const auto devices = start("devices", path), wall = start("wall", path);
   const Outcome status = merlin({"status", "--json"});
   ASSERT_EQ(status.status, 0) << status.output;
   EXPECT_GT(json::parse(status.output)["rate_asked"], 0);
   const Outcome snapshot = merlin({"snapshot", "-o", dir_ / "frame.png"});
   EXPECT_EQ(snapshot.status, 0) << snapshot.output;
   EXPECT_TRUE(fs::is_regular_file(dir_ / "frame.png"));
-  EXPECT_EQ(merlind.kill(SIGTERM), 0) << merlind.output();
+  EXPECT_EQ(devices->kill(SIGTERM), 0) << devices->output();
+  EXPECT_EQ(wall->kill(SIGTERM), 0) << wall->output();
 }
 
 TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
@@ -201,7 +219,7 @@ TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
   EXPECT_TRUE(fs::is_regular_file(root_ + "/usr/lib/sysusers.d/merlin-rfb.conf"));
   Process rfb(
       underUnit({root_ + "/usr/bin/merlin-rfb", "--instance", instance_, "--listen", "127.0.0.1:0"},
-                {}, "merlin-rfb.service"));
+                "merlin-rfb.service"));
   ASSERT_TRUE(rfb.saysEventually("clients at most")) << rfb.output();
   const std::string said = rfb.output(), before = "at 127.0.0.1:";
   const int port = std::stoi(said.substr(said.find(before) + before.size()));
@@ -235,30 +253,28 @@ class InstalledServers : public Install {
   std::string config_;
 };
 
-TEST_F(InstalledServers, AreSaidToBeForbiddenAndTheWallRuns) {
-  Process merlind(underUnit({merlind_, "--config", config_}));
-  ASSERT_TRUE(merlind.saysEventually("ready")) << merlind.output();
+TEST_F(InstalledServers, AreSaidToBeForbiddenAndTheDevicesAreRead) {
+  const auto devices = start("devices", config_);
   for (const char* what : {"VRPN: failed (/serve/vrpn_port: network sockets are forbidden",
                            "samples for other machines: failed (/serve/samples_endpoint: network "
                            "sockets are forbidden",
                            "drop-in network.conf"}) {
-    EXPECT_TRUE(merlind.saysEventually(what)) << merlind.output();
+    EXPECT_TRUE(devices->saysEventually(what)) << devices->output();
   }
   const Outcome status = merlin({"status", "--json"});
   ASSERT_EQ(status.status, 0) << status.output;
   const json servers = json::parse(status.output)["servers"];
   EXPECT_EQ(servers["VRPN"]["state"], "failed") << status.output;
   EXPECT_EQ(servers["samples for other machines"]["state"], "failed") << status.output;
-  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+  EXPECT_EQ(devices->kill(SIGTERM), 0);
 }
 
 TEST_F(InstalledServers, AreServedWithTheDropIn) {
-  Process merlind(underUnit({merlind_, "--config", config_}, {"network.conf"}));
-  ASSERT_TRUE(merlind.saysEventually("ready")) << merlind.output();
-  EXPECT_TRUE(connects(vrpn_)) << merlind.output();
-  EXPECT_TRUE(connects(samples_)) << merlind.output();
-  EXPECT_EQ(merlind.output().find("failed (/serve"), std::string::npos) << merlind.output();
-  EXPECT_EQ(merlind.kill(SIGTERM), 0);
+  const auto devices = start("devices", config_, {"network.conf"});
+  EXPECT_TRUE(connects(vrpn_)) << devices->output();
+  EXPECT_TRUE(connects(samples_)) << devices->output();
+  EXPECT_EQ(devices->output().find("failed (/serve"), std::string::npos) << devices->output();
+  EXPECT_EQ(devices->kill(SIGTERM), 0);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/status/client.h"
+#include "render/panel/panel_layout.h"
 #include "tests/support/emulated_projector.h"
 #include "tests/system/merlind.h"
 
@@ -69,6 +71,44 @@ TEST_F(ProjectorSwitching, ByCommandAllAtOnceAndStatusShowsThem) {
   EXPECT_TRUE(is("left", "off") && is("right", "off"));
   left_.vanish();
   EXPECT_EQ(left_.projector.log, "10");
+}
+
+// As under systemd, where the wall is a process of its own.
+TEST_F(ProjectorSwitching, ThePanelOfAWallInAnotherProcessSwitchesThem) {
+  start();
+  EXPECT_TRUE(is("left", "off") && is("right", "off"));
+  json config = json::parse(readText(m_->config()));
+  config["wall"] = {
+      {"model", makeModel(dir_, 5)}, {"rate", {{"rate_hz", 10}}}, {"operator", {{"panel", true}}}};
+  writeText(dir_ / "wall.json", config.dump());
+  Process wall({kMerlind, "--config", dir_ / "wall.json", "--role", "wall"});
+  ASSERT_TRUE(wall.saysEventually("ready")) << wall.output();
+  render::panel::PanelOptions options;
+  options.projectors = true;
+  const auto layout = *render::panel::layOutPanel(640, 480, 13, options);
+  const auto press = [&](render::panel::ControlId id) {
+    const render::text::Rect r = layout.find(id)->at;
+    // The operator's tile is the lower right one of the default wall.
+    const int x = 640 + layout.at.x + r.x + r.width / 2, y = 480 + layout.at.y + r.y + r.height / 2;
+    for (const int button : {0, 1, 0}) {
+      const auto pointed = status::ask(
+          fmt::format("ipc://{}/{}-wall.command", dir_.path(), m_->instance()), "operator_pointer",
+          std::chrono::seconds(10), fmt::format("{} {} {}", x, y, button));
+      EXPECT_TRUE(pointed) << pointed.error().what;
+    }
+  };
+  press(render::panel::ControlId::kProjectorsOn);
+  EXPECT_TRUE(is("left", "on") && is("right", "on")) << wall.output();
+  EXPECT_EQ(left_.projector.log, "1");
+  // Nobody answers: the panel says so, and the wall goes on.
+  EXPECT_EQ(m_->process().kill(SIGTERM), 0);
+  const auto shown =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(m_->instance(), "wall"));
+  ASSERT_TRUE(shown);
+  const std::uint64_t frames = (*shown)->stats.read()->frames;
+  press(render::panel::ControlId::kProjectorsOff);
+  EXPECT_TRUE(eventually([&] { return (*shown)->stats.read()->frames > frames; }));
+  EXPECT_EQ(wall.kill(SIGTERM), 0) << wall.output();
 }
 
 TEST_F(ProjectorSwitching, OneThatWarmsUpIsNotSwitchedOffBeforeItIsOn) {

@@ -191,7 +191,7 @@ TEST_F(Reload, WhatOnlyARestartTakesIsRefusedWithAllTheRest) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(refused.output,
             "merlin: nothing was changed, since merlind takes this setting only when it starts: "
-            "systemctl restart merlind\n  /cpu_latency_us\n");
+            "systemctl restart merlin.target\n  /cpu_latency_us\n");
   EXPECT_TRUE(
       merlind_->process().saysEventually("/cpu_latency_us changed, which only a restart takes"));
   write({{"cpu_latency_us", -1}, {"page", {{"port", 7999}}}});

@@ -134,8 +134,9 @@ TEST(Report, TheJournalIsThatOfTheUnitsWithoutSecrets) {
   ASSERT_EQ(made.wait(), 0) << made.output();
   const auto files = unpack(dir, dir / "none.tar.gz");
   const std::string& journal = files.at("none/journal.txt");
-  for (const char* part : {"--unit=merlind.service", "--unit=merlin-page.service", "--since=-1day",
-                           "--lines=20000", "\ntyped (left out)\n"})
+  for (const char* part :
+       {"--unit=merlin-devices.service", "--unit=merlin-wall.service", "--unit=merlin-page.service",
+        "--since=-1day", "--lines=20000", "\ntyped (left out)\n"})
     EXPECT_NE(journal.find(part), std::string::npos) << part << " is not in " << journal;
   expectNowhere(files, kPassword);
 }

@@ -18,6 +18,7 @@ import vm
 OPTIONS = None
 MACHINE = None
 MODE = (1024, 768)
+UNITS = ("merlin-devices", "merlin-wall", "merlin-page")
 
 # Hands the shell of vm.Vm to the tests when everything that starts with the machine has started.
 SHELL_UNIT = """[Unit]
@@ -73,7 +74,7 @@ def setUpModule():
             file.write(SHELL_UNIT)
         os.makedirs(f"{units}/multi-user.target.wants", exist_ok=True)
         os.symlink("../vm-shell.service", f"{units}/multi-user.target.wants/vm-shell.service")
-        for unit in ("merlind", "merlin-page"):
+        for unit in UNITS:
             os.makedirs(f"{units}/{unit}.service.d")
             with open(f"{units}/{unit}.service.d/slow.conf", "w", encoding="utf-8") as file:
                 file.write(SLOW)
@@ -94,9 +95,39 @@ def state(unit):
     return MACHINE.run(f"systemctl is-active {unit}", succeeds=False).strip()
 
 
-def since(event):
-    """When merlind last was in a state, "ActiveEnter" (READY) or "InactiveEnter" [s]."""
-    return int(MACHINE.run(f"systemctl show -p {event}TimestampMonotonic --value merlind")) / 1e6
+def since(event, unit="merlin-wall"):
+    """When systemd last noted this of the unit: "ActiveEnter" (READY), "InactiveEnter", "ExecMainExit" [s]."""
+    return int(MACHINE.run(f"systemctl show -p {event}TimestampMonotonic --value {unit}")) / 1e6
+
+
+def pid(unit):
+    return int(MACHINE.run(f"systemctl show -p MainPID --value {unit}"))
+
+
+def frame_buffers():
+    """How many pictures the kernel holds for the card's displays, those of its console too."""
+    return MACHINE.run("cat /sys/kernel/debug/dri/0/framebuffer").count("framebuffer[")
+
+
+def spread(name, seconds):
+    """The distribution as a line."""
+    ordered = sorted(seconds)
+    at = lambda share: ordered[min(len(ordered) - 1, int(share * len(ordered)))]
+    print(f"{name}, {len(ordered)} times: least {ordered[0]:.2f} s, median {at(0.5):.2f} s, 95 % {at(0.95):.2f} s, "
+          f"most {ordered[-1]:.2f} s")
+
+
+def shown_until(condition):
+    """The least share of a display that was lit in any screendump, and their number, until the condition is true."""
+    least, count, until = 1.0, 0, time.monotonic() + vm.DEADLINE_S
+    while True:
+        for head in range(vm.HEADS):
+            least = min(least, lit(MACHINE.screendump(head)))
+        count += 1
+        if condition():
+            return least, count
+        if time.monotonic() > until:
+            raise AssertionError(f"not within {vm.DEADLINE_S} s; the least lit display showed {least:.3f}")
 
 
 def status():
@@ -115,15 +146,15 @@ class Package(unittest.TestCase):
     def test_1_installed_it_is_neither_enabled_nor_started(self):
         MACHINE.run("apt-get install -qy --no-install-recommends /mnt/merlin.deb")
         self.assertEqual(MACHINE.run("systemctl is-enabled merlin.target", succeeds=False).strip(), "disabled")
-        for unit in ("merlin.target", "merlind", "merlin-page"):
+        for unit in ("merlin.target",) + UNITS:
             self.assertEqual(state(unit), "inactive", unit)
         self.assertIn("merlin", MACHINE.run("stat -c %U /var/lib/merlin"))
 
     def test_2_started_it_shows_the_model_on_every_display_without_an_alarm(self):
         begin = time.monotonic()
-        MACHINE.run("systemctl start merlin.target merlind || { journalctl -u merlind --no-pager | tail -n 30; false; }")
+        MACHINE.run("systemctl start merlin.target merlin-devices merlin-wall || { journalctl -u 'merlin-*' --no-pager | tail -n 30; false; }")
         print(f"from systemctl start to READY {time.monotonic() - begin:.1f} s")
-        self.assertEqual([state(u) for u in ("merlin.target", "merlind", "merlin-page")], ["active"] * 3)
+        self.assertEqual([state(u) for u in ("merlin.target",) + UNITS], ["active"] * 4)
         print(MACHINE.run("merlin status"))
         until = time.monotonic() + vm.DEADLINE_S
         shown = []
@@ -134,30 +165,80 @@ class Package(unittest.TestCase):
         print("share of each display that is lit:", ", ".join(f"{share:.2f}" for share in shown))
         self.assertGreater(min(shown), 0.03)
         self.assertEqual(status()["playlist"], "running")
-        self.assertEqual(MACHINE.run("journalctl -u merlind -p warning -o cat --no-pager"), "")
+        self.assertEqual(MACHINE.run("journalctl -u merlin-devices -u merlin-wall -p warning -o cat --no-pager"), "")
         before = MACHINE.screendump(0)
         while MACHINE.screendump(0) == before and time.monotonic() < until:
             pass
         self.assertNotEqual(MACHINE.screendump(0), before, "the model does not turn")
 
-    def test_3_an_upgrade_restarts_the_wall_and_keeps_the_configuration(self):
-        pid = MACHINE.run("systemctl show -p MainPID --value merlind")
+    def test_3_killed_at_any_time_the_wall_is_back_and_no_display_was_dark(self):
+        MACHINE.run("mountpoint -q /sys/kernel/debug || mount -t debugfs debugfs /sys/kernel/debug")
+        until_back, pictures, held = [], 0, 0
+        for i in range(OPTIONS.kills):
+            before, devices = pid("merlin-wall"), pid("merlin-devices")
+            MACHINE.run(f"kill -KILL {before}")
+            least, count = shown_until(lambda: state("merlin-wall") == "active" and pid("merlin-wall") not in (0, before))
+            self.assertGreater(least, 0.03, "a display was dark")
+            pictures += count
+            until_back.append(since("ActiveEnter") - since("ExecMainExit"))
+            self.assertEqual(pid("merlin-devices"), devices, "the devices' process was restarted as well")
+            vm.until(lambda: status()["frames"] > 2, "frames after the restart")
+            vm.until(lambda: frame_buffers() <= 3 * vm.HEADS + 1, "the killed process's pictures are freed")
+            held = max(held, frame_buffers())
+        spread("the wall's process killed, to READY", until_back)
+        print(f"{pictures} times four screendumps meanwhile, none dark; {held} frame buffers in the kernel afterwards")
+        least, _ = self.restarted("merlin-wall")
+        self.assertGreater(least, 0.03, "a display was dark during systemctl restart")
+
+    def restarted(self, unit):
+        before = pid(unit)
+        MACHINE.run(f"systemctl restart --no-block {unit}")
+        return shown_until(lambda: state(unit) == "active" and pid(unit) not in (0, before))
+
+    def test_4_killed_the_devices_process_is_back_and_the_wall_does_not_notice(self):
+        wall, until_back = pid("merlin-wall"), []
+        for _ in range(OPTIONS.kills):
+            before, frames = pid("merlin-devices"), status()["frames"]
+            MACHINE.run(f"kill -KILL {before}")
+            least, _ = shown_until(lambda: state("merlin-devices") == "active" and pid("merlin-devices") not in (0, before))
+            self.assertGreater(least, 0.03)
+            until_back.append(since("ActiveEnter", "merlin-devices") - since("ExecMainExit", "merlin-devices"))
+            vm.until(lambda: status()["frames"] > frames, "the wall goes on")
+        spread("the devices' process killed, to READY", until_back)
+        self.assertEqual(pid("merlin-wall"), wall)
+
+    def test_5_a_broken_configuration_starts_with_the_last_good_one(self):
+        MACHINE.run("cp /etc/merlin/merlin.json /root/good.json; echo '{' >/etc/merlin/merlin.json")
+        MACHINE.run("systemctl restart merlin-devices merlin-wall")
+        self.assertEqual([state(u) for u in UNITS[:2]], ["active"] * 2)
+        self.assertEqual(status()["services"]["configuration"]["health"], "failed")
+        MACHINE.run("cp /root/good.json /etc/merlin/merlin.json; systemctl reload merlin-devices merlin-wall")
+        vm.until(lambda: status()["services"]["configuration"]["health"] == "ok", "the file is in effect again")
+
+    def test_6_stopped_the_displays_are_the_consoles_again(self):
+        MACHINE.run("systemctl stop merlin.target")
+        vm.until(lambda: max(lit(MACHINE.screendump(head)) for head in range(vm.HEADS)) < 0.03, "dark displays")
+        self.assertLessEqual(frame_buffers(), 1)
+        MACHINE.run("systemctl start merlin.target merlin-wall")
+
+    def test_7_an_upgrade_restarts_the_wall_and_keeps_the_configuration(self):
+        before = pid("merlin-wall")
         MACHINE.run("sed -i 's/\"rate_hz\": 30/\"rate_hz\": 12/' /etc/merlin/merlin.json; echo x >/var/lib/merlin/mine")
         begin = time.monotonic()
         MACHINE.run("dpkg -i --force-confold /mnt/merlin.deb")
         print(f"upgrade of a running wall {time.monotonic() - begin:.1f} s, of which it was down "
               f"{since('ActiveEnter') - since('InactiveEnter'):.1f} s")
-        self.assertNotEqual(MACHINE.run("systemctl show -p MainPID --value merlind"), pid)
-        self.assertEqual(state("merlind"), "active")
+        self.assertNotIn(pid("merlin-wall"), (0, before))
+        self.assertEqual(state("merlin-wall"), "active")
         self.assertEqual(status()["rate_asked"], 12)
         MACHINE.run("test -e /var/lib/merlin/mine")
 
-    def test_4_removal_stops_it_and_keeps_configuration_and_state(self):
+    def test_8_removal_stops_it_and_keeps_configuration_and_state(self):
         MACHINE.run("dpkg --remove merlin")
-        self.assertIn(state("merlind"), ("inactive", "unknown"))
+        self.assertIn(state("merlin-wall"), ("inactive", "unknown"))
         MACHINE.run("test -e /var/lib/merlin/mine && grep -q 12 /etc/merlin/merlin.json && test ! -e /usr/bin/merlind")
 
-    def test_5_purge_leaves_no_file(self):
+    def test_9_purge_leaves_no_file(self):
         MACHINE.run("dpkg --purge merlin")
         left = MACHINE.run("find / -xdev -name '*merlin*' ! -path '/proc/*' ! -path '/mnt/*'; ls -d /run/merlin* /dev/shm/merlin*",
                            succeeds=False)
@@ -168,6 +249,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--packages", required=True, help="folder of the packages")
     parser.add_argument("--work", required=True, help="folder for the machine's files")
+    parser.add_argument("--kills", type=int, default=3, help="of each of the two processes (3)")
     OPTIONS, rest = parser.parse_known_args()
     OPTIONS.work = os.path.abspath(OPTIONS.work)
     unittest.main(argv=["package_test.py", *rest], failfast=True)

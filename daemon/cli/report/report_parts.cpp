@@ -30,8 +30,8 @@ using std::chrono::seconds;
 
 constexpr std::size_t kMega = 1 << 20;
 constexpr std::size_t kMostFlightBytes = 2 * kMega;  // of one recording
-constexpr const char* kUnits[] = {"merlind.service", "merlin-page.service", "merlin-rfb.service",
-                                  "merlin.target"};
+constexpr const char* kUnits[] = {"merlin-devices.service", "merlin-wall.service",
+                                  "merlin-page.service", "merlin-rfb.service", "merlin.target"};
 
 std::string changesText(const Settings& settings) {
   std::string text;

@@ -170,7 +170,7 @@ void printRefusal(const std::vector<Reloaded>& all) {
   const auto restart = together(all, "restart", itself);
   printError(
       "merlin: nothing was changed, since merlind takes {} only when it starts: systemctl restart "
-      "merlind\n",
+      "merlin.target\n",
       restart.size() == 1 ? "this setting" : "these settings");
   for (const std::string& setting : restart) printError("  {}\n", printable(setting));
 }

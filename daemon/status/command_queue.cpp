@@ -1,8 +1,8 @@
-#include "daemon/page/command_queue.h"
+#include "daemon/status/command_queue.h"
 
 #include <utility>
 
-namespace merlin::page {
+namespace merlin::status {
 namespace {
 
 // Without the socket's address, which says nothing to a person at a browser.
@@ -42,4 +42,4 @@ void CommandQueue::update(const std::string& command_endpoint, Timestamp now,
   endpoint_ = command_endpoint;
 }
 
-}  // namespace merlin::page
+}  // namespace merlin::status

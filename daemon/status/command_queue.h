@@ -11,7 +11,7 @@
 #include "daemon/base/result.h"
 #include "daemon/status/client.h"
 
-namespace merlin::page {
+namespace merlin::status {
 
 // Thread-bound.
 class CommandQueue {
@@ -35,10 +35,10 @@ class CommandQueue {
   static constexpr std::size_t kMostWaiting = 16;
 
  private:
-  status::CommandSender sender_;
+  CommandSender sender_;
   std::deque<Waiting> waiting_;
   std::optional<std::uint64_t> sent_;  // the command whose answer is outstanding
   std::string endpoint_;               // where it was sent
 };
 
-}  // namespace merlin::page
+}  // namespace merlin::status

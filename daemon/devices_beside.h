@@ -1,0 +1,45 @@
+// DevicesBeside: the role devices in another process of this machine, as the process of the wall
+// sees it: gives it the commands of the operator's panel, and knows its projectors.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/shm/segment.h"
+#include "daemon/status/command_queue.h"
+#include "daemon/status/topic_follower.h"
+#include "daemon/wall/operator_panel.h"
+
+namespace merlin {
+
+class DevicesBeside {
+ public:
+  explicit DevicesBeside(const std::string& instance);
+
+  // Has the command sent by the next update(). Thread-safe. Errors: kBusy: too many wait.
+  Result<Ok> send(const std::string& command, Timestamp now);
+
+  // On one thread, ten times a second: sends, and takes what has arrived; never waits. Calls
+  // `refused` with the reason for each command that was not executed.
+  void update(Timestamp now, const std::function<void(const std::string& why)>& refused);
+
+  // Of the newest status document; none while the role does not run. On the thread of update().
+  const std::vector<wall::ProjectorsSeen>& projectors() const noexcept { return projectors_; }
+
+ private:
+  void follow(const shm::Header* header);
+
+  shm::SegmentFollower<shm::DevicesReader> segment_;
+  status::TopicFollower topics_;
+  std::uint64_t generation_ = 0;  // of the run that is followed; 0: none
+  std::string command_endpoint_;
+  std::vector<wall::ProjectorsSeen> projectors_;
+  std::mutex mutex_;  // guards commands_
+  status::CommandQueue commands_;
+};
+
+}  // namespace merlin

@@ -1,0 +1,31 @@
+// KeptBySystemd: open files in the descriptor store of systemd (FileDescriptorStoreMax= of the
+// unit), which hands them to the next process of the service.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "daemon/base/kept_files.h"
+
+namespace merlin {
+
+class KeptBySystemd final : public KeptFiles {
+ public:
+  // Takes over what systemd handed to this process. To be made before any process is forked, once:
+  // the environment says nothing of it afterwards.
+  KeptBySystemd();
+
+  UniqueFd take(const std::string& name) override;
+  bool keep(const std::string& name, int fd) override;
+  void forget(const std::string& name) override;
+
+ private:
+  void removeFromStore(const std::string& name) const;
+
+  const bool is_service_;
+  std::mutex mutex_;
+  std::map<std::string, UniqueFd> taken_over_;
+};
+
+}  // namespace merlin

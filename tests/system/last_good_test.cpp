@@ -1,0 +1,93 @@
+// merlind --last-good with a configuration that somebody broke while it did not run.
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+class LastGood : public testing::Test {
+ protected:
+  LastGood() {
+    fs::create_directories(state_);
+    writeText(config_, valid(7).dump());
+  }
+  json valid(int rate_hz) const {
+    return {{"instance", instance_},
+            {"run_directory", dir_.path()},
+            {"wall", {{"model", model_}, {"rate", {{"rate_hz", rate_hz}}}}}};
+  }
+  std::unique_ptr<Process> start(const std::vector<std::string>& more = {"--last-good"}) {
+    std::vector<std::string> arguments = {kMerlind, "--config", config_, "--role", "wall"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return std::make_unique<Process>(
+        arguments, std::map<std::string, std::string>{{"STATE_DIRECTORY", state_}});
+  }
+  // The settings that a process has kept; empty if it has kept none.
+  std::string kept() const {
+    for (const auto& entry : fs::directory_iterator(state_))
+      if (entry.path().extension() == ".last-good") return readText(entry.path());
+    return {};
+  }
+  bool keeps(const std::string& setting) const {
+    return eventually([&] { return kept().find(setting) != std::string::npos; });
+  }
+  json status() const {
+    return json::parse(run({kMerlin, "status", "--json", "--instance", instance_}).output, nullptr,
+                       false);
+  }
+
+  TempDir dir_;
+  std::string instance_ = privateName("last-good"), state_ = dir_ / "state";
+  std::string config_ = dir_ / "wall.json", model_ = makeModel(dir_, 5);
+};
+
+TEST_F(LastGood, IsStartedWithSaidAndLeftByTheNextReload) {
+  auto wall = start();
+  ASSERT_TRUE(wall->saysEventually("ready")) << wall->output();
+  EXPECT_TRUE(keeps("\"rate_hz\": 7")) << kept();
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+
+  writeText(config_, "{\"instance\": \"" + instance_ + "\", \"wall\": {\"rate\": 9}}");
+  wall = start();
+  ASSERT_TRUE(wall->saysEventually("ready")) << wall->output();
+  EXPECT_TRUE(wall->saysEventually("merlind runs with the last valid configuration"));
+  json now = status();
+  EXPECT_EQ(now["rate_asked"], 7);
+  EXPECT_EQ(now["services"]["configuration"]["health"], "failed");
+  const std::string why = now["services"]["configuration"]["reason"];
+  EXPECT_EQ(why.find(config_ + ":1: /wall/rate"), 0U) << "the first finding begins it: " << why;
+  EXPECT_NE(kept().find("\"rate_hz\": 7"), std::string::npos) << "a broken one is not kept";
+
+  writeText(config_, valid(12).dump());
+  const Outcome reloaded = run({kMerlin, "reload", "--instance", instance_});
+  EXPECT_EQ(reloaded.status, 0) << reloaded.output;
+  EXPECT_TRUE(eventually([&] { return (now = status())["rate_asked"] == 12; })) << now;
+  EXPECT_EQ(now["services"]["configuration"]["health"], "ok");
+  EXPECT_TRUE(keeps("\"rate_hz\": 12")) << kept();
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+}
+
+TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
+  writeText(config_, "{");
+  EXPECT_EQ(start()->wait(), 2);
+  writeText(config_, valid(7).dump());
+  const auto wall = start();
+  ASSERT_TRUE(wall->saysEventually("ready")) << wall->output();
+  EXPECT_TRUE(keeps("\"rate_hz\": 7"));
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+  writeText(config_, "{");
+  EXPECT_EQ(start({})->wait(), 2) << "a person at a terminal wants to hear of it";
+  // What it names is gone as well: it is no better.
+  fs::remove(model_);
+  EXPECT_EQ(start()->wait(), 2);
+  EXPECT_EQ(run({kMerlind, "--config", config_, "--role", "page", "--last-good"}).status, 2);
+}
+
+}  // namespace
+}  // namespace merlin::test
