@@ -205,6 +205,29 @@ void checkGesture(const std::string& text, const std::string& hand, const std::s
                                     excerpt(text), flag));
 }
 
+// A key of a device that is not there, or whose driver knows no keys by name.
+void checkKey(const std::string& text, const std::string& name, const std::string& at,
+              LoadedSettings& loaded) {
+  std::string there, known;
+  const auto add = [](std::string& list, const std::string& word) {
+    list += (list.empty() ? "" : ", ") + word;
+  };
+  for (const DeviceSettings& device : loaded.settings.devices.list) {
+    const DriverEntry* const driver = findDriver(device.line.driver);
+    if (!driver || !driver->has_keys) continue;
+    if (device.name == name) return;
+    add(there, device.name);
+  }
+  for (const DriverEntry& driver : drivers()) {
+    if (driver.has_keys) add(known, driver.name);
+  }
+  loaded.addFinding(
+      at, fmt::format("is \"{}\", and \"{}\" is not the name of a device whose keys have names, "
+                      "which are those of the drivers {}; /devices has {}",
+                      excerpt(text), excerpt(name), known,
+                      there.empty() ? "none: leave the binding out, or add one" : there));
+}
+
 // An input of a device that is not there, or of another kind. An input that names no device is that
 // of any device; what is no input is a finding of the bindings' own check.
 void checkInputAt(const std::string& text, const std::string& at, LoadedSettings& loaded) {
@@ -213,6 +236,7 @@ void checkInputAt(const std::string& text, const std::string& at, LoadedSettings
   if (!input || input->device.empty()) return;
   if (input->kind == actions::Input::Kind::kGesture)
     return checkGesture(text, input->device, at, loaded);
+  if (input->kind == actions::Input::Kind::kKey) return checkKey(text, input->device, at, loaded);
   if (findDevice(d, kindOf(*input), input->device)) return;
   const char* const kind = kindName(kindOf(*input));
   const std::string there = namesOf(d, kindOf(*input));

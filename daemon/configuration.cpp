@@ -175,6 +175,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   if (options.devices) {
     devices::checkPostures(loaded);
     devices::checkGestures(loaded);
+    devices::checkKeys(loaded);
     devices::checkPasswords(loaded);
     if (!options.emulate) devices::checkPorts(loaded);
     checkSamples(loaded);

@@ -84,13 +84,15 @@ constexpr DriverEntry kDrivers[] = {
      describeOwn<&DriverSettings::evdev>,
      [](const DriverSettings& s, const LineSettings&) {
        return within("evdev", validate(s.evdev));
-     }},
+     },
+     true},
     {"touch", SampleKind::kTouch, 0, "touch frame, touch screen or mouse, through the kernel",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return touch::makeDevice(s.touch, c, k);
      },
      describeOwn<&DriverSettings::touch>,
-     [](const DriverSettings& s, const LineSettings& line) { return validate(s.touch, line); }},
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.touch, line); },
+     true},
     {"tuio", SampleKind::kTouch, 0, "touch surface of a TUIO 1.1 tracker, over the network",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return tuio::makeDevice(s.tuio, c, k);

@@ -47,6 +47,7 @@ struct DriverEntry {
   // Finds faults in them, also together with the device's line; null: none is possible. Pointers
   // are relative to the device: "/port", "/cyberglove/rate_hz".
   SettingFaults (*validate)(const DriverSettings&, const LineSettings&);
+  bool has_keys = false;  // whether it knows the kernel's keys and buttons by name
 };
 
 std::span<const DriverEntry> drivers();

@@ -42,7 +42,10 @@ class ActionSink final : public SampleSink, public HealthSink {
     parts_.samples.publish(sample);
   }
   void publish(const TrackerSample& sample) noexcept override { parts_.samples.publish(sample); }
-  void publish(const TouchSample& sample) noexcept override { parts_.samples.publish(sample); }
+  void publish(const TouchSample& sample) noexcept override {
+    writer_.update(sample);
+    parts_.samples.publish(sample);
+  }
   void publish(const BallSample& sample) noexcept override {
     writer_.update(sample);
     parts_.samples.publish(sample);

@@ -29,6 +29,8 @@ ActionWriter::ParsedBindings ActionWriter::parse(const std::vector<Binding>& bin
     ParsedBinding& p = parsed.emplace_back();
     p.input = *std::move(input);
     if (!binding.with.empty()) p.with = parseInput(binding.with);
+    setNumber(p.input);
+    if (p.with) setNumber(*p.with);
     p.action = static_cast<std::size_t>(action - kActions.begin());
     p.lasts = isHeldAction(binding.action);
     p.on_leave = binding.when == When::kLeave;
@@ -36,6 +38,11 @@ ActionWriter::ParsedBindings ActionWriter::parse(const std::vector<Binding>& bin
     p.repeat_ns = fromSeconds(binding.repeat_s).count();
   }
   return parsed;
+}
+
+void ActionWriter::setNumber(Input& input) const {
+  if (input.kind == Input::Kind::kKey && source_.key_code)
+    input.button = source_.key_code(input.name).value_or(0);
 }
 
 void ActionWriter::rebind(const std::vector<Binding>& bindings) {
@@ -141,7 +148,18 @@ void ActionWriter::apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept {
 void ActionWriter::update(const BallSample& ball) noexcept {
   axes_ = pushedAxes(ball, axes_);
   const std::uint32_t held = ball.buttons | axes_;
-  apply(ball.received_ns, [&](const Input& input) { return (held & input.button) != 0; });
+  apply(ball.received_ns, [&](const Input& input) {
+    if (input.kind != Input::Kind::kKey) return (held & input.button) != 0;
+    return input.button != 0 && std::find(std::begin(ball.keys), std::end(ball.keys),
+                                          input.button) != std::end(ball.keys);
+  });
+}
+
+void ActionWriter::update(const TouchSample& touch) noexcept {
+  apply(touch.received_ns, [&](const Input& input) {
+    const std::uint32_t bit = input.button - kFirstMouseButton;  // other keys: large
+    return bit < 16 && (touch.buttons >> bit & 1) != 0;
+  });
 }
 
 void ActionWriter::update(const GloveSample& glove, const PostureState* posture) noexcept {

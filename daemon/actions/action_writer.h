@@ -25,6 +25,7 @@ class ActionWriter {
                shm::SeqSlot<shm::ActionState>& slot);
 
   void update(const BallSample& ball) noexcept;
+  void update(const TouchSample& touch) noexcept;
   // `posture`: the current posture, after its minimum hold time; may be null.
   void update(const GloveSample& glove, const PostureState* posture) noexcept;
   // The panel's button was pressed.
@@ -58,6 +59,7 @@ class ActionWriter {
   };
   using ParsedBindings = std::vector<ParsedBinding>;
   ParsedBindings parse(const std::vector<Binding>& bindings) const;
+  void setNumber(Input& input) const;
   template <typename IsHeld>
   void apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept;
   template <typename Happens>

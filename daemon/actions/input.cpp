@@ -61,6 +61,28 @@ std::optional<Input> button(std::string_view name) {
   return Input{Input::Kind::kButton, *device, *bit, {}};
 }
 
+// Whether the kernel may have a key of this name; that of a button begins with a letter, since
+// numbers are those of the device's own list of buttons.
+bool isKeyName(std::string_view name, bool is_button) {
+  const auto allowed = [](char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), allowed) &&
+         (!is_button || (name[0] >= 'a' && name[0] <= 'z'));
+}
+
+std::optional<Input> key(std::string_view name) {
+  const auto device = takeDevice(name, "key.");
+  if (!device || !isKeyName(name, false)) return std::nullopt;
+  return Input{Input::Kind::kKey, *device, 0, "key_" + std::string(name)};
+}
+
+std::optional<Input> namedButton(std::string_view name) {
+  const auto device = takeDevice(name, "button.");
+  if (!device || !isKeyName(name, true)) return std::nullopt;
+  return Input{Input::Kind::kKey, *device, 0, "btn_" + std::string(name)};
+}
+
 std::optional<Input> posture(std::string_view name) {
   const auto device = takeDevice(name, "posture.");
   if (!device || name.empty()) return std::nullopt;
@@ -85,7 +107,8 @@ bool Input::isOf(const Source& source) const {
   if (!source.kind && !source.hand) return kind == Kind::kPanelButton;
   if (!device.empty() && device != source.name) return false;
   if (source.hand) return kind == Kind::kGesture;
-  if (*source.kind == SampleKind::kBall) return kind == Kind::kButton;
+  if (*source.kind == SampleKind::kBall) return kind == Kind::kButton || kind == Kind::kKey;
+  if (*source.kind == SampleKind::kTouch) return kind == Kind::kKey;
   return *source.kind == SampleKind::kGlove &&
          (kind == Kind::kPosture || kind == Kind::kWristSwitch);
 }
@@ -112,6 +135,8 @@ std::uint32_t pushedAxes(const BallSample& ball, std::uint32_t before) noexcept 
 std::optional<Input> parseInput(std::string_view name) {
   if (name == "panel.button") return Input{Input::Kind::kPanelButton, {}, 0, {}};
   if (auto input = button(name)) return input;
+  if (auto input = namedButton(name)) return input;
+  if (auto input = key(name)) return input;
   if (auto input = axis(name)) return input;
   if (auto input = posture(name)) return input;
   if (auto input = gesture(name)) return input;

@@ -1,4 +1,4 @@
-// Input: a button, posture, gesture or switch that a binding names.
+// Input: a button, key, posture, gesture or switch that a binding names.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,20 @@ struct Source {
   std::string name;                // of the device or the hand
   std::optional<SampleKind> kind;  // of the device; none: a hand, or the panel
   bool hand = false;
+  // The kernel's number of a key by its name, "key_space" or "btn_south"; null: it has no keys.
+  std::optional<std::uint16_t> (*key_code)(std::string_view) = nullptr;
 };
 
 struct Input {
-  enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton, kGesture };
+  enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton, kGesture, kKey };
 
   Kind kind = Kind::kButton;
   // Whose input it is, a device or a hand; empty: that of every one that has such a one.
   std::string device;
   // kButton: its bit in BallSample::buttons; of an axis that is pushed: a bit of pushedAxes().
+  // kKey: the kernel's number, 0 until Source::key_code() gave it.
   std::uint32_t button = 0;
-  std::string name;  // kPosture, kGesture: the posture's or the gesture's
+  std::string name;  // kPosture, kGesture: its name; kKey: "key_space", "btn_south"
 
   bool isOf(const Source& source) const;
   // Whether it is over as soon as it begins, so that nothing can last or be timed with it.

@@ -22,7 +22,10 @@ struct Binding {
 
 // All names of inputs, for descriptions and messages.
 inline constexpr const char* kInputForms =
-    "DEVICE.button.1 to DEVICE.button.12, DEVICE.axis.x+, x-, y+, y-, z+, z-, rx+ ... rz- (a push "
+    "DEVICE.button.1 to DEVICE.button.12, DEVICE.key.NAME and DEVICE.button.NAME (a key or button "
+    "of "
+    "an input device by the kernel's name in lower case, such as key.space, button.south), "
+    "DEVICE.axis.x+, x-, y+, y-, z+, z-, rx+ ... rz- (a push "
     "or "
     "twist of more than half), DEVICE.posture.NAME, DEVICE.switch (DEVICE is the name of a device; "
     "without \"DEVICE.\" it is the input of any device), HAND.gesture.NAME (HAND is the name of a "

@@ -1,5 +1,6 @@
 #include "daemon/devices/device_chain.h"
 
+#include "drivers/io/evdev_stream.h"
 #include "nn/io/gesture_file.h"
 #include "nn/io/network_file.h"
 
@@ -50,11 +51,12 @@ DeviceChain::DeviceChain(const DevicesSettings& settings, std::size_t device, De
       health_(segment.health[device]) {
   SampleSink* next = &memory_;
   HealthSink* health = &health_;
-  if (place.kind == SampleKind::kGlove || place.kind == SampleKind::kBall) {
+  if (place.kind != SampleKind::kTracker) {
     const shm::SeqSlot<PostureState>* state =
         place.kind == SampleKind::kGlove ? &segment.glove[place.of_kind].posture_state : nullptr;
     actions_ = std::make_unique<actions::ActionSink>(
-        actions::ActionWriter(settings.bindings, {settings.list[device].name, place.kind},
+        actions::ActionWriter(settings.bindings,
+                              {settings.list[device].name, place.kind, false, &io::keyCode},
                               generation, segment.actions[device]),
         actions::ActionSink::Parts{state, memory_, health_, fromSeconds(settings.stale_after_s)});
     next = actions_.get();

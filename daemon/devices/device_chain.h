@@ -64,7 +64,7 @@ class DeviceChain {
               const Trained& trained, std::uint64_t generation, shm::DevicesSegment& segment);
 
   struct Hand {
-    std::size_t index;  // in the list of hands
+    std::size_t index = 0;  // in the list of hands
     std::unique_ptr<HandGestures> gestures;
     std::unique_ptr<HandSink> sink;
   };

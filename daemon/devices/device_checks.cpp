@@ -8,6 +8,7 @@
 
 #include "daemon/actions/input.h"
 #include "daemon/base/did_you_mean.h"
+#include "drivers/io/evdev_stream.h"
 #include "drivers/io/open_stream.h"
 #include "drivers/io/transcript.h"
 #include "drivers/pjlink/password.h"
@@ -32,15 +33,19 @@ struct KnownNames {
   std::vector<std::string> names;
 };
 
-// The place of each binding in the file whose input is of this kind, and the name in that input.
+// Calls each(place, input, name in it) for the inputs of this kind in the file's bindings, also for
+// those that have to be held with another.
 template <typename Each>
 void forBindings(const LoadedSettings& loaded, actions::Input::Kind kind, const Each& each) {
   if (!loaded.lines.contains("/bindings")) return;
   const auto& bindings = loaded.settings.devices.bindings;
   for (std::size_t i = 0; i < bindings.size(); ++i) {
-    const auto input = actions::parseInput(bindings[i].input);
-    if (input && input->kind == kind)
-      each(fmt::format("/bindings/{}/input", i), bindings[i].input, input->name);
+    for (const auto& [text, key] :
+         {std::pair{&bindings[i].input, "input"}, {&bindings[i].with, "with"}}) {
+      const auto input = actions::parseInput(*text);
+      if (input && input->kind == kind)
+        each(fmt::format("/bindings/{}/{}", i, key), *text, input->name);
+    }
   }
 }
 
@@ -68,6 +73,23 @@ void checkNoGestures(LoadedSettings& loaded) {
               });
 }
 
+constexpr std::string_view kButtonPrefix = "btn_";  // as long as that of the others, "key_"
+
+bool isButton(std::string_view key) { return key.starts_with(kButtonPrefix); }
+
+// The input that most resembles this key, "button.south" for "btn_sout"; empty if none does.
+std::string nearestKey(const std::string& name) {
+  std::vector<std::string> names;
+  for (std::uint16_t code = 0; code < io::kKeyCodes; ++code) {
+    const std::string known = io::keyNameOf(code);
+    if (!known.empty() && isButton(known) == isButton(name))
+      names.push_back(known.substr(kButtonPrefix.size()));
+  }
+  const std::string near = nearestWord(name.substr(kButtonPrefix.size()), names);
+  if (near.empty()) return near;
+  return (isButton(name) ? "button." : "key.") + near;
+}
+
 }  // namespace
 
 void checkPostures(LoadedSettings& loaded) {
@@ -87,6 +109,20 @@ void checkGestures(LoadedSettings& loaded) {
   std::vector<std::string> names;
   for (const nn::TrainedGesture& gesture : file->model.gestures) names.push_back(gesture.name);
   checkNames(loaded, actions::Input::Kind::kGesture, {"gesture", path, std::move(names)});
+}
+
+void checkKeys(LoadedSettings& loaded) {
+  forBindings(loaded, actions::Input::Kind::kKey,
+              [&](const std::string& at, const std::string& input, const std::string& name) {
+                if (io::keyCode(name)) return;
+                const std::string near = nearestKey(name);
+                loaded.addFinding(
+                    at, fmt::format("is \"{}\", and the kernel knows no {} of that name{}", input,
+                                    isButton(name) ? "button" : "key",
+                                    near.empty() ? "; `merlin devices` lists those of what is "
+                                                   "plugged in"
+                                                 : fmt::format("; did you mean \"{}\"?", near)));
+              });
 }
 
 void checkPorts(LoadedSettings& loaded) {

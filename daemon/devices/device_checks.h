@@ -15,6 +15,9 @@ void checkPostures(LoadedSettings& loaded);
 // while /gestures/file names none.
 void checkGestures(LoadedSettings& loaded);
 
+// Adds a finding for each binding to a key or button of which the kernel knows none of that name.
+void checkKeys(LoadedSettings& loaded);
+
 // Adds a finding for each port whose text is invalid, and for each transcript ("replay:FILE") that
 // cannot be played. A missing device is not a fault: it may be connected later.
 void checkPorts(LoadedSettings& loaded);

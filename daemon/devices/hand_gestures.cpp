@@ -8,6 +8,11 @@
 #include "daemon/base/fixed_text.h"
 
 namespace merlin::devices {
+namespace {
+
+constexpr std::array kHolds = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
+
+}  // namespace
 
 HandGestures::HandGestures(const std::optional<nn::GestureModel>& model, const Settings& settings,
                            actions::ActionWriter writer, shm::SeqSlot<GestureState>& slot)
@@ -22,7 +27,6 @@ std::unique_ptr<HandGestures::Recognition> HandGestures::made(
 }
 
 bool HandGestures::holdsModel() const noexcept {
-  constexpr std::array kHolds = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
   return std::ranges::any_of(recognition_->settings.actions, [&](const auto* slot) {
     const auto state = slot->read();
     return state && std::ranges::any_of(kHolds, [&](std::size_t i) { return state->held[i] != 0; });

@@ -29,7 +29,9 @@ class PostureSink final : public SampleSink {
   // Without `postures` none is recognised, and none published.
   PostureSink(const std::optional<nn::TrainedPostures>& postures, const Settings& settings,
               Outputs outputs, SampleSink& next)
-      : recognition_(made(postures, settings)), outputs_(outputs), next_(next) {}
+      : recognition_(made(postures, settings)),  // NOLINT(*NewDeleteLeaks): the member owns it
+        outputs_(outputs),
+        next_(next) {}
 
   // For one other thread: recognises these postures in this way from the next sample on. The
   // posture that is held ends, and is recognised anew; the drift that was followed is forgotten.

@@ -97,6 +97,7 @@ void addMembers(FieldTable& t, std::type_identity<BallSample>) {
   MERLIN_FIELD(t, BallSample, rotation, "full scale");
   MERLIN_FIELD(t, BallSample, raw, "");
   MERLIN_FIELD(t, BallSample, period_us, "us");
+  MERLIN_FIELD(t, BallSample, keys, "linux key");
 }
 
 void addMembers(FieldTable& t, std::type_identity<TouchSample>) {
@@ -106,6 +107,8 @@ void addMembers(FieldTable& t, std::type_identity<TouchSample>) {
   MERLIN_FIELD(t, TouchSample, id, "");
   MERLIN_FIELD(t, TouchSample, position, "10 x right, down");
   MERLIN_FIELD(t, TouchSample, aspect, "");
+  MERLIN_FIELD(t, TouchSample, buttons, "bits");
+  MERLIN_FIELD(t, TouchSample, wheel, "notches");
 }
 
 void addMembers(FieldTable& t, std::type_identity<HandSample>) {

@@ -90,17 +90,17 @@ OrderedJson ballJson(const BallSample& b) {
           {"period_us", b.period_us},
           {"raw", integers(std::span<const std::int16_t>(b.raw))},
           {"translation", list(std::span<const float>(b.translation))},
-          {"rotation", list(std::span<const float>(b.rotation))}};
+          {"rotation", list(std::span<const float>(b.rotation))},
+          {"keys", integers(std::span<const std::uint16_t>(b.keys))}};
 }
 
 OrderedJson touchJson(const TouchSample& t) {
   OrderedJson fingers = OrderedJson::array();
   for (std::size_t i = 0; i < std::min<std::size_t>(t.fingers, kFingers); ++i)
     fingers.push_back({{"id", t.id[i]}, {"position", list(std::span<const float>(t.position[i]))}});
-  return {{"received_ns", t.received_ns},
-          {"counter", t.counter},
-          {"fingers", std::move(fingers)},
-          {"aspect", round3(static_cast<double>(t.aspect))}};
+  return {{"received_ns", t.received_ns},  {"counter", t.counter},
+          {"fingers", std::move(fingers)}, {"aspect", round3(static_cast<double>(t.aspect))},
+          {"buttons", t.buttons},          {"wheel", t.wheel}};
 }
 
 // Each device's newest samples under its name; of the first glove the posture also beside it.

@@ -148,6 +148,7 @@ class Apply {
     read(*o, "rotation", s.rotation);
     read(*o, "raw", s.raw);
     read(*o, "period_us", s.period_us);
+    read(*o, "keys", s.keys);
     publish(slot, s);
   }
   void touch(const std::string& name, shm::Channel<TouchSample>& slot) {
@@ -156,6 +157,8 @@ class Apply {
     if (!o || list == o->end() || !list->is_array() || list->size() > kFingers) return;
     auto s = common<TouchSample>(*o);
     read(*o, "aspect", s.aspect);
+    read(*o, "buttons", s.buttons);
+    read(*o, "wheel", s.wheel);
     for (const Json& finger : *list) {
       if (!finger.is_object()) return;
       read(finger, "id", s.id[s.fingers]);

@@ -121,6 +121,7 @@ DeviceFeed::Acts DeviceFeed::readActs(const shm::DeviceSlots& devices, Timestamp
   for (std::size_t i = 0; i < devices.touches.size(); ++i) {
     const auto touch = fresh(*devices.touches[i].samples, *devices.touches[i].health, now);
     acts.touches.push_back(touches_[i].update(touch ? &*touch : nullptr));
+    if (!touch) ends(devices.touches[i].name);
   }
   for (const auto& glove : devices.gloves) {
     const auto sample = fresh(*glove.samples, *glove.health, now);
@@ -137,7 +138,8 @@ void DeviceFeed::takeTurns(const shm::DeviceSlots& devices, const Acts& now_acts
       acting.push_back(personOf(devices.balls[i].name));
   }
   for (std::size_t i = 0; i < devices.touches.size(); ++i) {
-    if (now_acts.touches[i].fingers > 0) acting.push_back(personOf(devices.touches[i].name));
+    if (now_acts.touches[i].fingers > 0 || now_acts.touches[i].moves())
+      acting.push_back(personOf(devices.touches[i].name));
   }
   for (std::size_t i = 0; i < devices.actions.size(); ++i) {
     const bool panel = i + 1 == devices.actions.size();
@@ -269,8 +271,11 @@ WallInput DeviceFeed::read(Timestamp now) {
     if (!input.scene.ball || replaces) input.scene.ball = ball;
   }
   for (std::size_t i = 0; i < d->touches.size(); ++i) {
-    if (acts.touches[i].fingers > input.scene.touch.fingers && counts(d->touches[i].name))
-      input.scene.touch = acts.touches[i];
+    const auto& touch = acts.touches[i];
+    const auto& used = input.scene.touch;
+    const bool turned = used.fingers == 0 && touch.moves();  // a mouse's wheel
+    if ((touch.fingers > used.fingers || turned) && counts(d->touches[i].name))
+      input.scene.touch = touch;
   }
   readHand(*d, acts.actions, now, input);
   if (settings_.head.station > 0) input.head = station(*d, settings_.head, now);

@@ -16,7 +16,8 @@ void describe(EvdevSettings& e, SettingsVisitor& v) {
           "Keys of the input device that are the buttons 1, 2 and so on of NAME.button.N in "
           "bindings: the kernel's names without "
           "KEY_ or BTN_, in lower case, such as south, tl or pagedown. Empty: the first twelve "
-          "buttons of the device.");
+          "buttons of the device. Bindings that name a key, NAME.key.pagedown, or a button, "
+          "NAME.button.south, need no entry here.");
   v.number("dead_zone", e.dead_zone, {0, 0.9},
            "Share of an axis's full deflection, to either side, that is treated as rest.");
   v.number("curve", e.curve, {1, 5},

@@ -207,6 +207,11 @@ void InputDevice::fill(BallSample& sample) const noexcept {
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     if (buttons_[i] > 0 && keys_[buttons_[i] - 1].pressed) sample.buttons |= 1U << i;
   }
+  std::size_t pressed = 0;
+  for (const Key& key : keys_) {
+    if (key.pressed && pressed < kKeys) sample.keys[pressed++] = key.code;
+  }
+  std::fill(sample.keys + pressed, std::end(sample.keys), std::uint16_t{0});
 }
 
 void InputDevice::restRelative() noexcept {

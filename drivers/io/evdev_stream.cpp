@@ -1,6 +1,7 @@
 #include "drivers/io/evdev_stream.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
@@ -40,6 +41,15 @@ std::string keyName(unsigned code) {
   if (!name) return fmt::format("{}", code);
   const std::string_view text(name);
   return std::string(text.substr(std::min(text.size(), text.find('_') + 1)));
+}
+
+static_assert(kKeyCodes == KEY_CNT);
+
+std::string cased(std::string_view text, int (*change)(int)) {
+  std::string changed(text);
+  std::ranges::transform(changed, changed.begin(),
+                         [&](unsigned char c) { return static_cast<char>(change(c)); });
+  return changed;
 }
 
 // The fingers that touch a multi-touch device now, and the slot that the next event is about.
@@ -177,6 +187,17 @@ Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path) {
     return Error{Errc::kBusy, path + ": another program has grabbed this input device"};
   return std::unique_ptr<ByteStream>(
       std::make_unique<EvdevStream>(std::move(fd), std::move(device)));
+}
+
+std::optional<std::uint16_t> keyCode(std::string_view name) {
+  const int code = libevdev_event_code_from_name(EV_KEY, cased(name, &std::toupper).c_str());
+  if (code < 0 || code >= kKeyCodes) return std::nullopt;
+  return static_cast<std::uint16_t>(code);
+}
+
+std::string keyNameOf(std::uint16_t code) {
+  const char* const name = libevdev_event_code_get_name(EV_KEY, code);
+  return name ? cased(name, &std::tolower) : "";
 }
 
 }  // namespace merlin::io

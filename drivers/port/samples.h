@@ -60,6 +60,9 @@ struct TrackerFrames {
 };
 static_assert(sizeof(TrackerFrames) == 208);
 
+// Keys of an input device that are followed at once.
+inline constexpr std::size_t kKeys = 8;
+
 struct BallSample {
   std::int64_t received_ns;
   std::uint32_t counter;
@@ -68,13 +71,20 @@ struct BallSample {
   float rotation[3];        // about the same axes, right-handed, share of full scale
   std::int16_t raw[6];      // as on the wire: X Y Z A B C
   std::uint32_t period_us;  // since the last displacement packet, by the device's clock
+  // Of an input device of the kernel: the kernel's numbers of the keys and buttons that are
+  // pressed, in ascending order, then 0.
+  std::uint16_t keys[kKeys];
 };
-static_assert(sizeof(BallSample) == 56 && offsetof(BallSample, translation) == 16);
+static_assert(sizeof(BallSample) == 72 && offsetof(BallSample, translation) == 16);
+
+// The kernel's number of the first button of a mouse, BTN_LEFT.
+inline constexpr std::uint16_t kFirstMouseButton = 0x110;
 
 // Fingers that a touch frame follows at once.
 inline constexpr std::size_t kFingers = 10;
 
-// The fingers on a touch frame or a screen. Sent when a finger comes, moves or goes.
+// The fingers on a touch frame or a screen, or the buttons and the wheel of a mouse. Sent when a
+// finger comes, moves or goes, and when a button or the wheel does.
 struct TouchSample {
   std::int64_t received_ns;
   std::uint32_t counter;
@@ -82,7 +92,8 @@ struct TouchSample {
   std::uint32_t id[kFingers];   // of a finger, the same for as long as it stays down
   float position[kFingers][2];  // share of the width, to the right, and of the height, down: 0..1
   float aspect;                 // the surface's width by its height
-  std::uint32_t reserved;
+  std::uint16_t buttons;  // that are pressed: bit i is the kernel's number kFirstMouseButton + i
+  std::uint16_t wheel;    // notches by which it was turned away from the person, modulo 65536
 };
 static_assert(sizeof(TouchSample) == 144 && offsetof(TouchSample, position) == 56);
 

@@ -9,8 +9,8 @@ namespace {
 // Also makes 0 of NaN.
 float share(float value) noexcept { return value > 0 ? std::min(value, 1.0F) : 0; }
 
-bool sameFingers(const TouchSample& a, const TouchSample& b) noexcept {
-  if (a.fingers != b.fingers) return false;
+bool isSame(const TouchSample& a, const TouchSample& b) noexcept {
+  if (a.fingers != b.fingers || a.buttons != b.buttons || a.wheel != b.wheel) return false;
   for (std::size_t i = 0; i < a.fingers; ++i) {
     if (a.id[i] != b.id[i] || a.position[i][0] != b.position[i][0] ||
         a.position[i][1] != b.position[i][1])
@@ -37,8 +37,16 @@ void TouchFrames::add(std::uint32_t id, float x, float y) noexcept {
   next_.position[at][1] = orientation_.invert_y ? 1 - y : y;
 }
 
+void TouchFrames::setMouse(std::uint16_t buttons, int notches) noexcept {
+  next_.buttons = buttons;
+  next_.wheel = static_cast<std::uint16_t>(next_.wheel + notches);
+}
+
 void TouchFrames::publish(Timestamp at) noexcept {
-  if (sameFingers(next_, newest_)) return;
+  if (!isSame(next_, newest_)) publishAnyway(at);
+}
+
+void TouchFrames::publishAnyway(Timestamp at) noexcept {
   for (std::size_t i = next_.fingers; i < kFingers; ++i) {
     next_.id[i] = 0;
     next_.position[i][0] = next_.position[i][1] = 0;
@@ -52,6 +60,7 @@ void TouchFrames::publish(Timestamp at) noexcept {
 
 void TouchFrames::lift(Timestamp at) noexcept {
   begin();
+  setMouse(0, 0);
   publish(at);
 }
 

@@ -30,11 +30,16 @@ class TouchFrames {
   // device's own axes, to its right and down; they are limited to 0..1 (NaN counts as 0). Fingers
   // beyond kFingers are left out.
   void begin() noexcept { next_.fingers = 0; }
+  // Of a mouse: TouchSample::buttons, and notches that the wheel has turned since the last frame.
+  void setMouse(std::uint16_t buttons, int notches) noexcept;
   void add(std::uint32_t id, float x, float y) noexcept;
-  // Publishes the frame, unless it has the same fingers at the same places as the one before.
+  // Publishes the frame, unless it has the same fingers at the same places as the one before, the
+  // same buttons, and the wheel was not turned.
   void publish(Timestamp at) noexcept;
+  // Publishes the frame in any case.
+  void publishAnyway(Timestamp at) noexcept;
 
-  // No finger touches any more; published if one did.
+  // No finger touches any more, and no button is pressed; published if one was.
   void lift(Timestamp at) noexcept;
 
   std::uint64_t samples() const noexcept { return samples_; }

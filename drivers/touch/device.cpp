@@ -37,7 +37,12 @@ Result<std::string> TouchDevice::open(ByteStream& stream) {
                           "space mouse set \"driver\": \"evdev\"")};
   }
   frames_.setAspect(surface_.aspect());
-  publish(clock_.now());  // fingers that touch already
+  frames_.begin();
+  surface_.fill(frames_);
+  if (surface_.kind() == Surface::Kind::kMouse)
+    frames_.publishAnyway(clock_.now());  // its wheel is counted from here
+  else
+    frames_.publish(clock_.now());  // fingers that touch already
   return fmt::format("{}, {}", name, kindOf(surface_));
 }
 

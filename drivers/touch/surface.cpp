@@ -1,12 +1,15 @@
 #include "drivers/touch/surface.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <linux/input-event-codes.h>
 #include <linux/input.h>
 
 namespace merlin::touch {
 namespace {
+
+constexpr std::int32_t kMostNotches = 100;  // of a wheel, in one report
 
 constexpr std::size_t kLongestName = 200;
 constexpr float kNarrowest = 0.02F, kWidest = 50;  // aspects of a surface
@@ -121,6 +124,7 @@ void Surface::moveSlot(const EvdevRecord& r) noexcept {
 }
 
 void Surface::shiftMouse(const EvdevRecord& r) noexcept {
+  if (r.code == REL_WHEEL) notches_ += std::clamp(r.value, -kMostNotches, kMostNotches);
   if (!down_) return;
   const auto shifted = [&](float from, float count) {
     return std::clamp(from + count * static_cast<float>(r.value), 0.0F, 1.0F);
@@ -132,6 +136,10 @@ void Surface::shiftMouse(const EvdevRecord& r) noexcept {
 void Surface::press(const EvdevRecord& r) noexcept {
   if (r.code == BTN_TOUCH) pressed_touch_ = r.value != 0;
   if (r.code == BTN_LEFT) pressed_left_ = r.value != 0;
+  if (r.code > BTN_LEFT && r.code <= BTN_TASK) {
+    const auto bit = static_cast<std::uint16_t>(1U << (r.code - kFirstMouseButton));
+    buttons_ = static_cast<std::uint16_t>(r.value != 0 ? buttons_ | bit : buttons_ & ~bit);
+  }
   if (kind_ != Kind::kNone) setDown(has_touch_ ? pressed_touch_ : pressed_left_);
 }
 
@@ -144,7 +152,7 @@ void Surface::setDown(bool down) noexcept {
   down_ = down;
 }
 
-void Surface::fill(TouchFrames& frames) const noexcept {
+void Surface::fill(TouchFrames& frames) noexcept {
   switch (kind_) {
     case Kind::kSlots:
       for (std::size_t i = 0; i < slots_used_; ++i) {
@@ -157,6 +165,7 @@ void Surface::fill(TouchFrames& frames) const noexcept {
       break;
     case Kind::kMouse:
       if (down_) frames.add(id_, place_[0], place_[1]);
+      frames.setMouse(buttons_, std::exchange(notches_, 0));
       break;
     case Kind::kNone: break;
   }

@@ -27,8 +27,9 @@ class Surface {
 
   // Takes one record of the events. Allocates nothing.
   void take(const EvdevRecord& record) noexcept;
-  // Adds the fingers that touch now, in a frame that has begun.
-  void fill(TouchFrames& frames) const noexcept;
+  // Adds the fingers that touch now, and a mouse's buttons and the notches of its wheel since the
+  // last call, to a frame that has begun.
+  void fill(TouchFrames& frames) noexcept;
 
   const std::string& name() const noexcept { return name_; }
   Kind kind() const noexcept { return kind_; }
@@ -80,6 +81,8 @@ class Surface {
   std::uint32_t id_ = 0;             // of the one finger, while down_
   float count_x_ = 0, count_y_ = 0;  // a mouse's count as a share of the sides
   std::array<float, 2> place_{};     // of a mouse's finger
+  std::uint16_t buttons_ = 0;        // as in TouchSample, without the left one
+  int notches_ = 0;                  // since the last fill()
 };
 
 }  // namespace merlin::touch

@@ -60,6 +60,9 @@ TouchMotion TouchFollower::update(const TouchSample* touch) {
   TouchMotion motion;
   motion.fingers = static_cast<std::uint32_t>(count(now));
   const std::vector<Moved> fingers = fingersInBoth(last_, now);
+  const auto notches = static_cast<std::int16_t>(now.wheel - last_.wheel);
+  if (touch && known_) motion.spread = kPerNotch * notches;
+  known_ = touch;
   last_ = now;
   if (fingers.empty()) return motion;
   Moved middle{Eigen::Vector2f::Zero(), Eigen::Vector2f::Zero()};

@@ -228,6 +228,20 @@ TEST(DevicesConfig, BindingsNameDevicesThatHaveTheInput) {
             "ball; /devices has no ball: leave the binding out, or add one\n");
 }
 
+TEST(DevicesConfig, BindingsNameDevicesWhoseKeysHaveNames) {
+  const auto bound = [](const std::string& input) {
+    return devicesAre(R"({"name": "pad", "driver": "evdev"}, {"name": "mouse", "driver": "touch"},
+                         {"driver": "spaceball"})",
+                      R"(, "bindings": [{"action": "reset_view", "input": ")" + input + "\"}]");
+  };
+  for (const char* good : {"pad.key.space", "mouse.button.right", "pad.button.south", "key.space"})
+    EXPECT_EQ(bound(good), "") << good;
+  EXPECT_EQ(bound("ball.button.south"),
+            "f.json:2: /bindings/0/input is \"ball.button.south\", and \"ball\" is not the name of "
+            "a device whose keys have names, which are those of the drivers evdev, touch; /devices "
+            "has pad, mouse\n");
+}
+
 TEST(DevicesConfig, BindingsNameHandsThatMakeGestures) {
   const auto bound = [](const std::string& input, const std::string& hands) {
     return devicesAre(kOneOfEach, R"(, "hands": [)" + hands +

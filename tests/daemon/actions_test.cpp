@@ -361,6 +361,54 @@ TEST_F(ActionsTest, AGestureIsThatOfItsHandOrOfAny) {
   EXPECT_EQ(state(test::kGlove).changed_ns, 6);
 }
 
+// The numbers that a kernel might have for these.
+std::optional<std::uint16_t> keyCode(std::string_view name) {
+  if (name == "key_space") return 57;
+  if (name == "key_tab") return 15;
+  if (name == "btn_right") return kFirstMouseButton + 1;
+  if (name == "btn_south") return 0x130;
+  return std::nullopt;
+}
+
+TEST_F(ActionsTest, AKeyIsNamedAsTheKernelDoes) {
+  Binding chord{"key.space", "reset_view"};
+  chord.with = "key.tab";
+  ActionWriter pad({{"pad.key.space", "next_mode"},
+                    chord,
+                    {"other.key.space", "lamp_on"},
+                    {"button.south", "grab"},
+                    {"key.none", "lamp_off"}},
+                   {"pad", SampleKind::kBall, false, &keyCode}, 1, segment_->actions[test::kBall]);
+  (void)read();
+  const auto press = [&](std::initializer_list<std::uint16_t> keys) {
+    BallSample sample = ball(0);
+    std::copy(keys.begin(), keys.end(), sample.keys);
+    pad.update(sample);
+    return read();
+  };
+  EXPECT_TRUE(press({15}).in_order.empty());
+  EXPECT_EQ(press({57}).in_order, std::vector<std::size_t>{kNextMode});
+  EXPECT_EQ(press({15, 57}).in_order, std::vector<std::size_t>{kReset}) << "with tab";
+  EXPECT_TRUE(press({57, 0x130}).all.held[kGrab]);
+  EXPECT_FALSE(press({}).all.held[kGrab]);
+  EXPECT_EQ(read().in_order.size(), 0u) << "a key that there is not is not the empty place";
+}
+
+TEST_F(ActionsTest, AMousesButtonsAreInputs) {
+  ActionWriter mouse({{"button.right", "next_mode"}, {"touch.button.south", "reset_view"}},
+                     {"touch", SampleKind::kTouch, false, &keyCode}, 1,
+                     segment_->actions[test::kBall]);
+  (void)read();
+  const auto press = [&](std::uint16_t buttons) {
+    TouchSample sample{};
+    sample.buttons = buttons;
+    mouse.update(sample);
+    return read().in_order;
+  };
+  EXPECT_TRUE(press(0xFFFD).empty()) << "all others";
+  EXPECT_EQ(press(2), std::vector<std::size_t>{kNextMode});
+}
+
 TEST(BindingSettings, AGestureTriggersWhatHappensOnce) {
   EXPECT_TRUE(validate({{"left.gesture.swipe_left", "next_content"}}).empty());
   const auto what = [](const Binding& binding) {
@@ -395,7 +443,11 @@ TEST(BindingSettings, AnInputThatIsNoneIsFound) {
                                   "ball.button.-1",
                                   "ball.button.+1",
                                   "ball.button.1x",
-                                  "ball.button.x1",
+                                  "ball.button.X1",
+                                  "ball.button.",
+                                  "ball.key.",
+                                  "ball.key.a b",
+                                  "key",
                                   "ball.button. 1",
                                   "ball.button.99999999999",
                                   "ball.axis.x",

@@ -38,6 +38,7 @@ test::LocalDevices filled(std::int64_t received_ns, std::uint32_t counter) {
   ball.rotation[2] = -0.5F;
   ball.raw[5] = -800;
   ball.buttons = 0x101;
+  ball.keys[1] = 57;
   segment->ball[0].publish(ball);
   PostureSample posture{};
   posture.received_ns = posture.since_ns = received_ns;
@@ -95,6 +96,7 @@ TEST(ApplySamples, BringsEverythingOverAsOldAsItWas) {
   EXPECT_STREQ(here->glove[0].posture.newest()->name, "fist");
   EXPECT_EQ(here->glove[0].posture.newest()->since_ns, 98'990'000'000);
   EXPECT_FLOAT_EQ(here->hand[0].newest()->velocity_m_s[0], 0.25F);
+  EXPECT_EQ(here->ball[0].newest()->keys[1], 57u);
   const auto gesture = here->gesture[0].read();
   ASSERT_TRUE(gesture);
   EXPECT_STREQ(gesture->name, "swipe_left");

@@ -41,6 +41,8 @@ TEST(Layout, OffsetsOfVersion5) {
   EXPECT_EQ(offsetof(GloveSample, raw), 112u);
   EXPECT_EQ(offsetof(TrackerSample, orientation_wxyz), 28u);
   EXPECT_EQ(offsetof(BallSample, rotation), 28u);
+  EXPECT_EQ(offsetof(BallSample, keys), 56u);
+  EXPECT_EQ(offsetof(TouchSample, wheel), 142u);
   EXPECT_EQ(offsetof(PostureSample, name), 44u);
   EXPECT_EQ(offsetof(GestureState, counter), 16u);
   EXPECT_EQ(offsetof(WallStats, rate_held_hz), 60u);
@@ -161,10 +163,9 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
                          "tracker4.stylus's ring 56",
                          "tracker.boresight_wxyz 40",
                          "ball.wake 4",
-                         "ball.period_us's ring 48",
-                         "touch.aspect 4",
+                         "ball.keys's ring 32",
                          "touch.wake 4",
-                         "touch.aspect's ring 24",
+                         "touch.wheel's ring 24",
                          "hand.delay_s 4",
                          "hand.wake 4",
                          "hand.delay_s's ring 56",

@@ -69,7 +69,10 @@ class Lines final : public SampleSink {
       text += fmt::format("{}[{},{:.4f},{:.4f}]", i == 0 ? "" : ",", s.id[i], s.position[i][0],
                           s.position[i][1]);
     }
-    text += "]}\n";
+    text += ']';
+    if (s.buttons != 0 || s.wheel != 0)
+      text += fmt::format(",\"buttons\":{},\"wheel\":{}", s.buttons, s.wheel);
+    text += "}\n";
   }
   void publish(const TrackerSample& s) noexcept override {
     text += fmt::format("{{\"tracker\":{},\"station\":{},\"error\":\"{}\",\"m\":{},\"wxyz\":{}}}\n",

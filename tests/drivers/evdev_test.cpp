@@ -187,6 +187,27 @@ TEST_F(EvdevTest, AClickersKeysAreTheButtonsThatTheConfigurationNames) {
   EXPECT_EQ(after(pressed(KEY_PAGEDOWN, 0)).buttons, 2u);
 }
 
+TEST_F(EvdevTest, KeysThatArePressedAreThereByTheKernelsNumbers) {
+  connect(gamepad(), {{}, {"east"}, 0.08, 2});
+  const BallSample& two = after(pressed(BTN_START, 1) + pressed(BTN_SOUTH, 1));
+  EXPECT_EQ(two.buttons, 0u) << "neither is a numbered one";
+  EXPECT_EQ(two.keys[0], BTN_SOUTH);
+  EXPECT_EQ(two.keys[1], BTN_START);
+  EXPECT_EQ(two.keys[2], 0);
+  const BallSample& one = after(pressed(BTN_SOUTH, 0));
+  EXPECT_EQ(one.keys[0], BTN_START);
+  EXPECT_EQ(one.keys[1], 0);
+}
+
+TEST_F(EvdevTest, OfManyKeysEightAreThere) {
+  std::string keyboard;
+  for (int code = KEY_1; code <= KEY_0; ++code) keyboard += named(EvdevRecord::kKey, code, "1");
+  connect(keyboard + record(EvdevRecord::kReady));
+  std::string all;
+  for (int code = KEY_1; code <= KEY_0; ++code) all += pressed(code, 1);
+  EXPECT_EQ(after(all).keys[kKeys - 1], KEY_1 + 7);
+}
+
 TEST_F(EvdevTest, WhatTheConfigurationNamesAndTheDeviceLacksIsAComplaint) {
   EvdevSettings settings;
   settings.axes = {"x", "-y", "none", "throttle", "none", "none"};

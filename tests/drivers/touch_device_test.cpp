@@ -198,7 +198,8 @@ TEST_F(TouchTest, APressedMouseIsAFingerThatBeginsInTheMiddle) {
   EXPECT_EQ(identity_, "mouse, a mouse");
   stream_.feed(shifted(REL_X, 500) + kReport);
   ASSERT_TRUE(device_->poll(stream_));
-  EXPECT_TRUE(sink_.touch.empty());  // its button is not pressed
+  ASSERT_EQ(sink_.touch.size(), 1u) << "its button is not pressed";
+  EXPECT_EQ(sink_.touch[0].fingers, 0u);
   const TouchSample down = after(pressed(BTN_LEFT, 1));
   EXPECT_FLOAT_EQ(down.position[0][0], 0.5F);
   EXPECT_FLOAT_EQ(down.position[0][1], 0.5F);
@@ -211,6 +212,30 @@ TEST_F(TouchTest, APressedMouseIsAFingerThatBeginsInTheMiddle) {
   const TouchSample again = after(pressed(BTN_LEFT, 1));
   EXPECT_FLOAT_EQ(again.position[0][0], 0.5F);
   EXPECT_NE(again.id[0], down.id[0]);
+}
+
+TEST_F(TouchTest, AMousesOtherButtonsAndWheelAreThereWithoutAFinger) {
+  connect(mouse());
+  const auto after = [&](const std::string& events) {
+    stream_.feed(events + kReport);
+    EXPECT_TRUE(device_->poll(stream_));
+    return sink_.touch.empty() ? TouchSample{} : sink_.touch.back();
+  };
+  EXPECT_EQ(after(shifted(REL_WHEEL, 2)).wheel, 2u);
+  EXPECT_EQ(after(shifted(REL_WHEEL, -3)).wheel, 65535u);
+  EXPECT_EQ(after(pressed(BTN_RIGHT, 1)).buttons, 2u);
+  EXPECT_EQ(after(pressed(BTN_MIDDLE, 1)).buttons, 6u);
+  EXPECT_EQ(after(pressed(BTN_RIGHT, 0)).buttons, 4u);
+  EXPECT_EQ(sink_.touch.size(), 6u) << "the first one is that of its beginning";
+  EXPECT_EQ(sink_.touch.front().wheel, 0u);
+  EXPECT_EQ(sink_.touch.back().fingers, 0u);
+  EXPECT_EQ(after(pressed(BTN_LEFT, 1)).fingers, 1u);
+  EXPECT_EQ(sink_.touch.back().buttons, 4u) << "the left one is the finger";
+  EXPECT_EQ(after(shifted(REL_HWHEEL, 1)).counter, 7u) << "nothing is published";
+  stream_.feed(mouse());
+  ASSERT_TRUE(device_->open(stream_));
+  EXPECT_EQ(sink_.touch.back().buttons, 0u);
+  EXPECT_EQ(sink_.touch.back().wheel, 65535u) << "the count goes on";
 }
 
 TEST_F(TouchTest, ASurfaceThatIsMountedOtherwiseIsTurned) {
@@ -260,7 +285,7 @@ TEST_F(TouchTest, ReconnectedItHasNoFingerOfBefore) {
   stream_.feed(mouse());
   ASSERT_TRUE(device_->open(stream_));
   EXPECT_EQ(sink_.touch.back().fingers, 0u);
-  EXPECT_EQ(sink_.touch.back().counter, 2u);
+  EXPECT_EQ(sink_.touch.back().counter, 3u) << "the finger, its end, and the mouse's beginning";
 }
 
 TEST_F(TouchTest, EventsAllocateNothing) {

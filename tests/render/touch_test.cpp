@@ -56,6 +56,21 @@ TEST(Touch, TwoFingersPinchAndTurnAboutTheirMiddle) {
   EXPECT_NEAR(turned.spread, 0, 1e-6F);
 }
 
+TEST(Touch, AMousesWheelSpreads) {
+  TouchSample mouse{};
+  mouse.wheel = 65535;
+  TouchFollower follower;
+  EXPECT_FALSE(follower.update(&mouse).moves()) << "its count so far";
+  mouse.wheel = 1;
+  EXPECT_FLOAT_EQ(follower.update(&mouse).spread, 2 * TouchFollower::kPerNotch);
+  EXPECT_FALSE(follower.update(&mouse).moves());
+  mouse.wheel = 0;
+  EXPECT_FLOAT_EQ(follower.update(&mouse).spread, -TouchFollower::kPerNotch);
+  EXPECT_FALSE(follower.update(nullptr).moves());
+  mouse.wheel = 40;
+  EXPECT_FALSE(follower.update(&mouse).moves()) << "it was unplugged meanwhile";
+}
+
 TEST(Touch, AFingerThatComesOrGoesMovesNothing) {
   const TouchSample one = touch({{1, 0.4F, 0.5F}});
   EXPECT_FALSE(between(one, touch({{1, 0.4F, 0.5F}, {2, 0.9F, 0.9F}})).moves());

@@ -181,6 +181,22 @@ TEST_F(BadInput, BindingsToGesturesThatTheFileDoesNotKnow) {
                  "name a file of gestures in /gestures/file"});
 }
 
+TEST_F(BadInput, BindingsToKeysThatTheKernelDoesNotKnow) {
+  writeText(dir_ / "c.json", R"({"devices": [{"name": "pad", "driver": "evdev"}], "bindings": [
+      {"input": "pad.key.space", "action": "next_mode"},
+      {"input": "pad.key.spcae", "action": "reset_view"},
+      {"input": "button.souht", "action": "blank"},
+      {"input": "button.north", "with": "button.zzzzzzzz", "action": "freeze"}]})");
+  const std::vector<std::string> said = {
+      "c.json:3: /bindings/1/input is \"pad.key.spcae\", and the kernel knows no key of that name; "
+      "did you mean \"key.space\"?",
+      "c.json:4: /bindings/2/input is \"button.souht\", and the kernel knows no button of that "
+      "name; did you mean \"button.south\"?",
+      "c.json:5: /bindings/3/with is \"button.zzzzzzzz\", and the kernel knows no button of that "
+      "name; `merlin devices` lists those of what is plugged in"};
+  expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);
+}
+
 TEST_F(BadInput, AFullStandardOutputIsAFailure) {
   for (const char* command : {"mesh info config/models/ankylosaurus.ply", "--help"}) {
     const Outcome o =

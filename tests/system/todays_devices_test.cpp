@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 
+#include "daemon/base/commands.h"
 #include "daemon/net/connection_server.h"
 #include "drivers/io/pty_master.h"
 #include "drivers/port/evdev_line.h"
@@ -118,6 +119,18 @@ class Gamepad {
   io::PtyMaster line_;
 };
 
+// A line that says nothing is opened again and again. It is described once for each time, when it
+// is open: what was sent before is dropped then, from some byte on.
+bool isConnected(Merlind& merlind, Gamepad& pad) {
+  std::int64_t opened_ns = 0;
+  return eventually([&] {
+    const auto health = merlind.health("ball");
+    const bool opening = health && health->state == HealthState::kOpening;
+    if (opening && std::exchange(opened_ns, health->since_ns) != health->since_ns) pad.describe();
+    return health && health->state == HealthState::kOk;
+  });
+}
+
 TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
   const TempDir dir;
   Gamepad pad(dir / "pad");
@@ -125,15 +138,7 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
   options.emulate = false;
   options.also = ballOf("evdev", "pty:" + dir / "pad");
   Merlind merlind(dir, makeModel(dir, 5), "pad", options);
-  // A line that says nothing is opened again and again. It is described once for each time, when it
-  // is open: what was sent before is dropped then, from some byte on.
-  std::int64_t opened_ns = 0;
-  EXPECT_TRUE(eventually([&] {
-    const auto health = merlind.health("ball");
-    const bool opening = health && health->state == HealthState::kOpening;
-    if (opening && std::exchange(opened_ns, health->since_ns) != health->since_ns) pad.describe();
-    return health && health->state == HealthState::kOk;
-  })) << merlind.process().output();
+  EXPECT_TRUE(isConnected(merlind, pad)) << merlind.process().output();
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   EXPECT_STREQ(merlind.health("ball")->identity, "made-up pad, 4 axes, 1 keys");
   ASSERT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
@@ -151,6 +156,24 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
     const auto actions = merlind.actions("ball");
     return actions && actions->sequence == 1;
   }));
+}
+
+TEST(TodaysDevices, KeysAreInputsByTheKernelsNames) {
+  const TempDir dir;
+  Gamepad pad(dir / "pad");
+  MerlindOptions options;
+  options.role = "devices";
+  options.emulate = false;
+  options.also = ballOf("evdev", "pty:" + dir / "pad");
+  options.also["bindings"] = {{{"input", "button.south"}, {"action", "next_mode"}}};
+  Merlind merlind(dir, "", "keys", options);
+  EXPECT_TRUE(isConnected(merlind, pad)) << merlind.process().output();
+  pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));
+  EXPECT_TRUE(eventually([&] {
+    const auto actions = merlind.actions("ball");
+    return actions && actions->begun[actionIndex("next_mode")] == 1;
+  }));
+  EXPECT_EQ(ballOf(merlind)->keys[0], BTN_SOUTH);
 }
 
 // A TCP port that is free: the system has just assigned it, and it was closed again.

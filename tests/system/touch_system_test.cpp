@@ -7,6 +7,7 @@
 #include <linux/input-event-codes.h>
 #include <sys/socket.h>
 
+#include "daemon/base/commands.h"
 #include "daemon/base/unique_fd.h"
 #include "drivers/io/pty_master.h"
 #include "drivers/port/evdev_line.h"
@@ -98,6 +99,36 @@ TEST(TouchSystem, AFrameOfTheKernelTouches) {
   EXPECT_FLOAT_EQ(newestTouch(merlind, "frame")->aspect, 2);
   say(moved(ABS_MT_TRACKING_ID, -1) + record(EvdevRecord::kReport));
   EXPECT_TRUE(fingersAre(merlind, "frame", 1));
+}
+
+TEST(TouchSystem, AMousesWheelMovesTheModelAndItsRightButtonActs) {
+  const TempDir dir;
+  const auto line = io::PtyMaster::open(dir / "mouse");
+  ASSERT_TRUE(line);
+  const auto say = [&](const std::string& bytes) {
+    (void)!::write(line->fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
+  };
+  MerlindOptions options;
+  options.emulate = false;
+  options.also = onlyDevice(deviceEntry("mouse", "touch", "pty:" + dir / "mouse"));
+  options.also["bindings"] = {{{"input", "mouse.button.right"}, {"action", "next_mode"}}};
+  Merlind merlind(dir, makeModel(dir, 5), "mouse", options);
+  EXPECT_TRUE(eventually([&] {
+    say(record(EvdevRecord::kRelative, REL_X) + record(EvdevRecord::kRelative, REL_Y) +
+        record(EvdevRecord::kKey, BTN_LEFT) + record(EvdevRecord::kReady));
+    const auto health = merlind.health("mouse");
+    return health && health->state == HealthState::kOk;
+  })) << merlind.process().output();
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
+  const std::uint32_t resumed = merlind.wall().resumed;
+  say(record(EvdevRecord::kShifted, REL_WHEEL, 1) + record(EvdevRecord::kReport));
+  EXPECT_TRUE(eventually([&] { return merlind.wall().resumed > resumed; }));
+  say(record(EvdevRecord::kPressed, BTN_RIGHT, 1) + record(EvdevRecord::kReport));
+  EXPECT_TRUE(eventually([&] {
+    const auto actions = merlind.actions("mouse");
+    return actions && actions->begun[actionIndex("next_mode")] == 1;
+  }));
 }
 
 TEST(TouchSystem, FingersOfATuioTrackerTouchUntilItIsSilent) {

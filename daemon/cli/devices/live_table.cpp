@@ -9,11 +9,20 @@
 #include <fmt/format.h>
 
 #include "daemon/base/fixed_text.h"
+#include "drivers/io/evdev_stream.h"
 
 namespace merlin::cli {
 namespace {
 
 constexpr int kHalfBar = 10;  // characters to either side of rest
+
+// What bindings call a key or button of this number: "key.space", "button.south".
+std::string inputOf(std::uint16_t code) {
+  std::string name = io::keyNameOf(code);
+  if (name.starts_with("key_")) return "key." + name.substr(4);
+  if (name.starts_with("btn_")) return "button." + name.substr(4);
+  return fmt::format("number {}", code);
+}
 
 std::string ballLines(const BallSample& ball) {
   constexpr const char* kNames[] = {"x", "y", "z", "about x", "about y", "about z"};
@@ -27,7 +36,12 @@ std::string ballLines(const BallSample& ball) {
   for (int button = 0; button < 12; ++button) {
     if (ball.buttons >> button & 1) pressed += fmt::format(" {}", button + 1);
   }
-  return text + fmt::format("    buttons {}\n", pressed.empty() ? " none" : pressed);
+  text += fmt::format("    buttons {}\n", pressed.empty() ? " none" : pressed);
+  std::string keys;
+  for (const std::uint16_t code : ball.keys) {
+    if (code != 0) keys += " " + inputOf(code);
+  }
+  return text + (keys.empty() ? "" : fmt::format("    keys    {}\n", keys));
 }
 
 std::string gloveLines(const GloveSample& glove, const shm::SeqSlot<PostureState>& state) {
@@ -77,6 +91,12 @@ std::string touchLines(const TouchSample& touch) {
     text += fmt::format("    finger {}  {:5.3f} to the right, {:5.3f} down\n", touch.id[i],
                         touch.position[i][0], touch.position[i][1]);
   }
+  std::string pressed;
+  for (std::uint16_t bit = 0; bit < 16; ++bit) {
+    if (touch.buttons >> bit & 1)
+      pressed += " " + inputOf(static_cast<std::uint16_t>(kFirstMouseButton + bit));
+  }
+  if (!pressed.empty()) text += fmt::format("    pressed {}\n", pressed);
   return text;
 }
 
