@@ -19,7 +19,7 @@ class DumbBuffer final : public Buffer {
   explicit DumbBuffer(DrmFile file) : file_(std::move(file)) {}
   ~DumbBuffer() override {
     if (!bytes_.empty()) ::munmap(bytes_.data(), bytes_.size());
-    if (id_ != 0) drmModeRmFB(file_->get(), id_);
+    if (id_ != 0 && !file_->stays_shown) drmModeRmFB(file_->get(), id_);
   }
   DumbBuffer(const DumbBuffer&) = delete;
   DumbBuffer& operator=(const DumbBuffer&) = delete;

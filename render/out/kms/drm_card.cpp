@@ -54,7 +54,7 @@ std::string keptName(const std::string& path) { return "card " + path; }
 
 // The file of this card that the process before this one kept; null if there is none.
 DrmFile takeKept(const std::string& path, KeptFiles& kept_files) {
-  auto file = std::make_shared<UniqueFd>(kept_files.take(keptName(path)));
+  auto file = std::make_shared<DeviceFile>(kept_files.take(keptName(path)));
   struct stat kept {
   }, there{};
   const bool same = file->valid() && ::fstat(file->get(), &kept) == 0 &&
@@ -136,6 +136,7 @@ class DrmCard final : public Card {
 // nobody has, the kernel restores its console.
 DrmCard::~DrmCard() {
   if (is_kept_ && is_gone_) kept_files_.forget(keptName(path_));
+  file_->stays_shown = is_kept_;
   if (is_kept_) return;
   if (drmIsMaster(fd())) saved_.restore(fd());
   drmDropMaster(fd());
@@ -161,7 +162,7 @@ void DrmCard::dropInherited() {
 }
 
 Result<DrmFile> DrmCard::openFile(const std::string& path) {
-  auto file = std::make_shared<UniqueFd>(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK));
+  auto file = std::make_shared<DeviceFile>(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK));
   if (!file->valid() && errno == EACCES) {
     return Error{Errc::kIo, fmt::format("no permission to open {}; the user who runs merlind must "
                                         "be in the group that owns it, mostly video",
