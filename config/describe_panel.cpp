@@ -14,6 +14,10 @@ void describePanel(GpioSettings& g, SettingsVisitor& v) {
   v.integer("lamp_line", g.lamp_line, {-1, 1023},
             "Number of the GPIO line that merlind sets high to light the status lamp; -1: no such "
             "line.");
+  v.flag("lamp_warns", g.lamp_warns,
+         "Whether the status lamp blinks fast, whatever it was switched to, while an output of the "
+         "wall fails or shows something else than it was sent, or while the wall that ran has not "
+         "run for 15 seconds.");
   v.integer("button_line", g.button_line, {-1, 1023},
             "Number of the GPIO line that is high while the panel's button is pressed; -1: no such "
             "line.");

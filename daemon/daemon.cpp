@@ -159,6 +159,9 @@ void Daemon::connectRoles() {
   }
   // SIGCHLD is waited for anyway, and asks for a round of the main loop.
   const auto wake = [main = ::pthread_self()] { ::pthread_kill(main, SIGCHLD); };
+  const GpioSettings& gpio = settings_.devices.gpio;
+  if (devices_ && devices_->panel() && gpio.lamp_line >= 0 && gpio.lamp_warns)
+    wall_fault_ = std::make_unique<devices::WallFault>(settings_.instance);
   if (wall_ && !devices_ && !remote_devices_)
     devices_beside_ = std::make_unique<DevicesBeside>(settings_.instance);
   reloader_.emplace(file_, options_, std::move(configured_), settings_,
@@ -191,6 +194,15 @@ void Daemon::executeActions() {
     const auto done = commands_->run(command->name);
     if (!done) logWarning("an input's action failed: {}", done.error().what);
   }
+}
+
+// The lamp of the control panel shows that the wall needs somebody.
+void Daemon::tendLamp(Timestamp now) {
+  std::string why = wall_fault_->look(now);
+  devices_->panel()->warn(!why.empty());
+  if (why.empty() != warned_of_.empty())
+    logInfo("the panel's lamp {}", why.empty() ? "warns no longer" : "warns: " + why);
+  warned_of_ = std::move(why);
 }
 
 // What the operator's panel asks for, by the ball, and what it shows of the projectors.
@@ -294,6 +306,7 @@ void Daemon::housekeeping() {
   if (now - mended_ >= kOnceASecond) {
     mended_ = now;
     mendSharedMemory();
+    if (wall_fault_) tendLamp(now);
   }
   if (now - summarised_ >= kSummary) {
     summarised_ = now;

@@ -16,6 +16,7 @@
 #include "daemon/base/watched_thread.h"
 #include "daemon/configuration.h"
 #include "daemon/devices/devices_role.h"
+#include "daemon/devices/wall_fault.h"
 #include "daemon/devices_beside.h"
 #include "daemon/emulator_children.h"
 #include "daemon/kept_by_systemd.h"
@@ -57,6 +58,7 @@ class Daemon {
   void makeKeeper();
   void tendState();
   void executeActions();
+  void tendLamp(Timestamp now);
   void tendPanel();
   void serveWindows();
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
@@ -86,6 +88,8 @@ class Daemon {
   // Of a process with a wall whose devices are read by another process of this machine.
   std::unique_ptr<DevicesBeside> devices_beside_;
   actions::ActionReader device_actions_;
+  std::unique_ptr<devices::WallFault> wall_fault_;  // if the panel's lamp warns
+  std::string warned_of_;                           // what the lamp warns of; empty: nothing
   // Of a process with a wall or projectors; used by wall_ and devices_.
   std::unique_ptr<state::StateKeeper> keeper_;
   std::optional<Reloader> reloader_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -45,6 +46,10 @@ Result<Ok> Panel::execute(std::string_view command, Timestamp now) {
   }
   return Error{Errc::kInvalidArgument,
                fmt::format("\"{}\" is not a command of the panel", command)};
+}
+
+void Panel::warn(bool on, Timestamp now) {
+  if (std::exchange(warns_, on) != on) note(now);
 }
 
 // A projector lamp that is switched on while it cools down can burst; frequent switching wears out
@@ -97,8 +102,9 @@ Outputs Panel::outputs(Timestamp now) const {
   Outputs o;
   o.projector = power_ == GpioSample::kWarming || power_ == GpioSample::kOn;
   o.video = video_;
-  o.lamp = lamp_ == GpioSample::kLampOn ||
-           (blinks(lamp_) && (now.time_since_epoch() / halfPeriod(lamp_)) % 2 == 0);
+  const GpioSample::Lamp lamp = shownLamp();
+  o.lamp = lamp == GpioSample::kLampOn ||
+           (blinks(lamp) && (now.time_since_epoch() / halfPeriod(lamp)) % 2 == 0);
   return o;
 }
 
@@ -113,7 +119,7 @@ GpioSample Panel::sample(Timestamp now) const {
   s.counter = counter_;
   s.power = power_;
   s.video = video_ ? 1 : 0;
-  s.lamp = lamp_;
+  s.lamp = shownLamp();
   s.presses = presses_;
   s.wait_s = static_cast<float>(toSeconds(powerWait(now)));
   return s;
@@ -123,8 +129,8 @@ Timestamp Panel::nextDue(Timestamp now) const {
   Timestamp due = Timestamp::max();
   if (power_ == GpioSample::kWarming || power_ == GpioSample::kCooling) due = phase_until_;
   if (raw_ != down_) due = std::min(due, raw_since_ + fromSeconds(settings_.debounce_s));
-  if (blinks(lamp_)) {
-    const Duration half = halfPeriod(lamp_);
+  if (blinks(shownLamp())) {
+    const Duration half = halfPeriod(shownLamp());
     due = std::min(due, Timestamp((now.time_since_epoch() / half + 1) * half));
   }
   return due;

@@ -26,6 +26,8 @@ class Panel {
   // "lamp_on". Errors: kInvalidArgument (no such command), kBusy (the projectors cool down or were
   // just switched), with the seconds to wait.
   Result<Ok> execute(std::string_view command, Timestamp now);
+  // While it is on, the lamp blinks fast, whatever it was switched to.
+  void warn(bool on, Timestamp now);
 
   // Advances the state to `now`; the button's line reads `pressed`. Returns true once for each
   // press, when the button has been down for the debounce time.
@@ -42,11 +44,13 @@ class Panel {
  private:
   Result<Ok> switchPower(bool on, Timestamp now);
   Duration powerWait(Timestamp now) const;
+  GpioSample::Lamp shownLamp() const { return warns_ ? GpioSample::kLampFast : lamp_; }
   void note(Timestamp now);
 
   GpioSettings settings_;
   GpioSample::Power power_ = GpioSample::kOff;
-  GpioSample::Lamp lamp_ = GpioSample::kLampOff;
+  GpioSample::Lamp lamp_ = GpioSample::kLampOff;  // as it was switched
+  bool warns_ = false;
   bool video_ = false;
   Timestamp switched_, phase_until_;  // projectors: last switched; end of warming or cooling
   Timestamp changed_;

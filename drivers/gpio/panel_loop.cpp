@@ -102,6 +102,11 @@ Result<Ok> PanelLoop::execute(const std::string& command) {
   return panel_.execute(command, clock_.now());
 }
 
+void PanelLoop::warn(bool on) {
+  const std::lock_guard lock(mutex_);
+  panel_.warn(on, clock_.now());
+}
+
 Duration PanelLoop::phaseLeft() {
   const std::lock_guard lock(mutex_);
   return panel_.phaseLeft(clock_.now());

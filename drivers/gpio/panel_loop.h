@@ -31,6 +31,7 @@ class PanelLoop {
   // Like Panel::execute(); thread-safe. The lines follow within 50 ms. Errors also: kIo (the chip
   // is not open).
   Result<Ok> execute(const std::string& command);
+  void warn(bool on);    // like Panel::warn(); thread-safe
   Duration phaseLeft();  // like Panel::phaseLeft(); thread-safe
 
  private:

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -36,6 +37,33 @@ struct Bench {
   }
   std::uint32_t power() { return panel.sample(clock.now()).power; }
 };
+
+TEST(Panel, TheLampWarnsWhateverItWasSwitchedTo) {
+  Bench b;
+  ASSERT_TRUE(b.panel.execute("lamp_on", b.clock.now()));
+  const auto changes = [&] {  // of the lamp, in a second
+    int count = 0;
+    bool lit = b.panel.outputs(b.clock.now()).lamp;
+    for (int i = 0; i < 100; ++i) {
+      b.pass(milliseconds(10));
+      if (std::exchange(lit, b.panel.outputs(b.clock.now()).lamp) != lit) ++count;
+    }
+    return count;
+  };
+  EXPECT_EQ(changes(), 0);
+  b.panel.warn(true, b.clock.now());
+  EXPECT_EQ(b.panel.sample(b.clock.now()).lamp, GpioSample::kLampFast);
+  EXPECT_EQ(changes(), 8);
+  EXPECT_NE(b.panel.nextDue(b.clock.now()), Timestamp::max());
+  ASSERT_TRUE(b.panel.execute("lamp_off", b.clock.now()));
+  EXPECT_EQ(changes(), 8) << "it is not switched off while something is wrong";
+  const auto counter = b.panel.sample(b.clock.now()).counter;
+  b.panel.warn(true, b.clock.now());
+  EXPECT_EQ(b.panel.sample(b.clock.now()).counter, counter) << "nothing changed";
+  b.panel.warn(false, b.clock.now());
+  EXPECT_EQ(b.panel.sample(b.clock.now()).lamp, GpioSample::kLampOff);
+  EXPECT_EQ(changes(), 0);
+}
 
 TEST(Panel, ProjectorsWarmUpAndCoolDown) {
   Bench b;
