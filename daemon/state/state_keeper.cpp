@@ -9,7 +9,6 @@ namespace merlin::state {
 namespace {
 
 constexpr auto kStep = std::chrono::milliseconds(500);
-constexpr auto kTryAgain = std::chrono::seconds(5);
 
 Result<State> parsed(const Result<std::string>& text, const std::string& name) {
   if (!text) return text.error();
@@ -18,8 +17,8 @@ Result<State> parsed(const Result<std::string>& text, const std::string& name) {
 
 }  // namespace
 
-StateKeeper::StateKeeper(std::unique_ptr<StateFiles> files, ThreadWatch& watch)
-    : files_(std::move(files)) {
+StateKeeper::StateKeeper(std::unique_ptr<StateFiles> files, ThreadWatch& watch, Duration try_again)
+    : files_(std::move(files)), try_again_(try_again) {
   load();
   if (!may_save_) return;
   thread_ = WatchedThread(watch, "state", [this](const std::stop_token& stop, Progress& progress) {
@@ -116,19 +115,20 @@ void StateKeeper::save() {
   saving_ = false;
   unsaved_ = unsaved_ || !written;
   fault_ = written ? std::string()
-                   : fmt::format("{}; it is tried again every 5 s", written.error().what);
+                   : fmt::format("{}; it is tried again every {:.3g} s", written.error().what,
+                                 toSeconds(try_again_));
   settled_.notify_all();
 }
 
 void StateKeeper::loop(const std::stop_token& stop, Progress& progress) {
   giveWay();
-  auto tried = std::chrono::steady_clock::now() - kTryAgain;
+  auto tried = std::chrono::steady_clock::now() - try_again_;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
       const auto due = [&] {
         return unsaved_ &&
-               (fault_.empty() || std::chrono::steady_clock::now() - tried >= kTryAgain);
+               (fault_.empty() || std::chrono::steady_clock::now() - tried >= try_again_);
       };
       wake_.wait_for(lock, stop, kStep, due);
       progress.step();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/clock.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/state/state.h"
 #include "daemon/state/state_files.h"
@@ -21,15 +22,17 @@ class StateKeeper {
   // Reads the state: what was written last, or the previous one if that is damaged (which is put
   // aside then), or else the defaults. A state of a newer version, or one that cannot be read, is
   // left alone: the defaults hold, and nothing is saved. `files`: null if there is no place for
-  // them, which is a fault too. `watch` outlives this.
-  StateKeeper(std::unique_ptr<StateFiles> files, ThreadWatch& watch);
+  // them, which is a fault too. `watch` outlives this. `try_again`: after this time what could not
+  // be saved is tried again.
+  StateKeeper(std::unique_ptr<StateFiles> files, ThreadWatch& watch,
+              Duration try_again = std::chrono::seconds(5));
   ~StateKeeper();  // saves what is not saved yet, if the disk takes it
   StateKeeper(const StateKeeper&) = delete;
   StateKeeper& operator=(const StateKeeper&) = delete;
 
   State state() const;
   // `edit` changes the state; it is called at once, with the lock held. Saves soon afterwards; of
-  // several changes in a row the last one. What cannot be saved is tried again every 5 s.
+  // several changes in a row the last one. What cannot be saved is tried again and again.
   void change(const std::function<void(State&)>& edit);
 
   // Why changes are not saved at present; empty: they are.
@@ -48,6 +51,7 @@ class StateKeeper {
   void save();
 
   std::unique_ptr<StateFiles> files_;
+  const Duration try_again_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_, settled_;
   State state_;

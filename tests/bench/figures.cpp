@@ -58,6 +58,38 @@ Measured scaled(const Measured& measured, double factor) {
   return Measured::of(factor * measured, measured.count(), "measurements");
 }
 
+// As in soak/measures.py, of which the tests are the same.
+Slope slopeOf(const std::vector<std::pair<double, double>>& points, std::string_view what) {
+  if (points.size() < 10)
+    throw DidNotRun(fmt::format("{} {} are too few for a slope", points.size(), what));
+  const auto n = static_cast<double>(points.size());
+  double mx = 0, my = 0, sxx = 0, sxy = 0;
+  for (const auto& [x, y] : points) {
+    mx += x / n;
+    my += y / n;
+  }
+  for (const auto& [x, y] : points) {
+    sxx += (x - mx) * (x - mx);
+    sxy += (x - mx) * (y - my);
+  }
+  const double slope = sxy / sxx;
+  double square = 0, product = 0, last = 0;
+  for (const auto& [x, y] : points) {
+    const double residual = y - my - slope * (x - mx);
+    square += residual * residual;
+    product += residual * last;
+    last = residual;
+  }
+  const double alike = square > 0 ? std::clamp(product / square, 0.0, 0.999) : 0;
+  const double degrees = std::max(n * (1 - alike) / (1 + alike) - 2, 1.0);
+  constexpr double kNormal = 1.96;
+  // Student's t, within 3 % from 3 degrees of freedom on.
+  const double t =
+      kNormal * (1 + (kNormal * kNormal + 1) / (4 * degrees) + 2.5 / (degrees * degrees));
+  return {Measured::of(slope, points.size(), what),
+          Measured::of(t * std::sqrt(square / degrees / sxx), points.size(), what)};
+}
+
 void Report::figure(const std::string& name, const Measured& measured, const std::string& unit) {
   assert(!figures_.contains(name));
   figures_[name] = {{"value", measured.value()}, {"unit", unit}, {"count", measured.count()}};

@@ -60,6 +60,15 @@ Measured ratioOf(const Measured& over, const Measured& under, std::string_view w
 // The value multiplied by `factor`, for another unit; the count stays.
 Measured scaled(const Measured& measured, double factor);
 
+// A slope by least squares, and the half width of its 95 % interval.
+struct Slope {
+  Measured value, half_width;
+};
+// Of points (x, y) in the order of x. What is sampled often, such as a process's memory, changes in
+// steps, so neighbouring residuals are alike: as many points count as independent ones as the
+// correlation of neighbours leaves. Throws DidNotRun if there are fewer than ten points.
+Slope slopeOf(const std::vector<std::pair<double, double>>& points, std::string_view what);
+
 // The results so far, held back until everything has been measured. Thread-bound.
 class Report {
  public:

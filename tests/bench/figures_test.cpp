@@ -2,6 +2,8 @@
 #include "tests/bench/figures.h"
 
 #include <cmath>
+#include <functional>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +102,43 @@ TEST(Figures, ABrokenPromiseIsPrintedAndFails) {
   const Said s = said(false, [](Report& report) { return !measureTwo(report); });
   EXPECT_EQ(s.status, 1);
   EXPECT_EQ(s.output, "late 2.50 %\n");
+}
+
+std::vector<std::pair<double, double>> series(const std::function<double(int)>& value) {
+  std::vector<std::pair<double, double>> points;
+  for (int i = 0; i < 600; ++i) points.emplace_back(i, value(i));
+  return points;
+}
+
+TEST(Slope, OfALineWithNoiseIsFoundAndIsBeyondChance) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0, 0.5);
+  const Slope slope = slopeOf(series([&](int i) { return 200 + 0.01 * i + noise(random); }), "MiB");
+  EXPECT_NEAR(slope.value, 0.01, 0.001);
+  EXPECT_GT(slope.value - slope.half_width, 0);
+}
+
+TEST(Slope, OfNoiseIsWithinChanceInAbout39Of40Runs) {
+  int beyond = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0, 0.5);
+    const Slope slope = slopeOf(series([&](int) { return 200 + noise(random); }), "MiB");
+    beyond += slope.value - slope.half_width > 0 ? 1 : 0;
+  }
+  EXPECT_LE(beyond, 12);
+  EXPECT_GE(beyond, 1);
+}
+
+TEST(Slope, OfStepsUpAndDownIsWithinChanceSinceNeighboursAreAlike) {
+  const Slope slope = slopeOf(series([](int i) { return 200 + 20 * (i / 150 % 2); }), "MiB");
+  EXPECT_GT(slope.half_width, std::abs(slope.value));
+}
+
+TEST(Slope, OfFewerThanTenPointsIsNone) {
+  auto points = series([](int) { return 1.0; });
+  points.resize(9);
+  EXPECT_THROW(slopeOf(points, "MiB"), DidNotRun);
 }
 
 }  // namespace

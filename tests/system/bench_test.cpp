@@ -216,6 +216,26 @@ TEST_F(Bench, ADurationThatIsNoneIsBadUsage) {
   }
 }
 
+nlohmann::json soakOnVirtualTime(const Said& s) {
+  EXPECT_EQ(s.status, 0) << s.message;
+  const auto object = nlohmann::json::parse(s.output, nullptr, false);
+  EXPECT_TRUE(object.is_object()) << s.output;
+  return object["figures"];
+}
+
+TEST_F(Bench, ADayOnVirtualTimeIsTheSameForTheSameSeed) {
+  const auto day = [this](const char* seed) {
+    return soakOnVirtualTime(
+        said({kBin + "/soak_bench", "--hours", "0.2", "--seed", seed, "--json"}));
+  };
+  const auto first = day("3"), again = day("3"), other = day("4");
+  EXPECT_GE(first["events"]["value"], 8);
+  EXPECT_EQ(first["wrong"]["value"], 0);
+  for (const char* figure : {"digest", "events", "late_first_hour", "descriptors_last"})
+    EXPECT_EQ(first[figure]["value"], again[figure]["value"]) << figure;
+  EXPECT_NE(first["digest"]["value"], other["digest"]["value"]);
+}
+
 // Checks that there are figures; whether they keep their bounds depends on the machine.
 TEST_F(Bench, AKillOfEachRoleHasFigures) {
   const Said s =

@@ -1,0 +1,80 @@
+// Emulated devices on virtual lines, and what merlind's role devices does with them, except for its
+// threads: loops, drivers, chains, flight recorder and shared memory are the product's.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/settings.h"
+#include "daemon/devices/device_chain.h"
+#include "daemon/devices/flight_recorder.h"
+#include "daemon/shm/segment.h"
+#include "drivers/emulate/emulator.h"
+#include "drivers/loop/device_loop.h"
+#include "tests/bench/soak/virtual_time.h"
+
+namespace merlin::bench {
+
+// A device at the end of a line, and what can happen to both. Thread-bound.
+class VirtualLine {
+ public:
+  using Maker = std::function<std::unique_ptr<emulate::Emulator>(Timestamp start)>;
+  VirtualLine(Fibers& fibers, Maker make) : fibers_(fibers), make_(std::move(make)) { power(true); }
+
+  // Opens the port. Errors: kClosed (unplugged).
+  Result<std::unique_ptr<ByteStream>> open();
+
+  // Plugs the adapter in, or out: what is open is closed.
+  void plug(bool in);
+  // Switches the device off, or on again as after a start; the line stays.
+  void power(bool on) { emulator_ = on ? make_(fibers_.now()) : nullptr; }
+  // Bytes that no device sent, as of a bad contact.
+  void disturb(const std::string& bytes) { input_ += bytes; }
+
+ private:
+  friend class VirtualStream;
+  Fibers& fibers_;
+  Maker make_;
+  std::unique_ptr<emulate::Emulator> emulator_;  // null: switched off
+  std::string input_;
+  std::uint64_t plugged_ = 1;  // odd: it is in; a stream belongs to one number
+};
+
+// The role's devices. Thread-bound.
+class VirtualDevices {
+ public:
+  struct Line {
+    std::string name;
+    std::unique_ptr<VirtualLine> line;
+  };
+  // `lines`: by device of the settings. Ends the benchmark where merlind would not start.
+  VirtualDevices(const Settings& settings, std::vector<Line> lines, Fibers& fibers, Clock& clock);
+
+  // Starts a fiber for each device.
+  void start(const std::stop_token& stop);
+
+  // As merlind's role does on a reload, except for lines.
+  void reload(const Settings& settings, bool bindings, bool hand, bool postures);
+
+  VirtualLine& line(std::size_t device) { return *lines_[device].line; }
+  std::size_t count() const { return lines_.size(); }
+  const std::string& name(std::size_t device) const { return lines_[device].name; }
+  shm::SegmentWriter<shm::DevicesSegment>& segment() { return *segment_; }
+  const shm::DeviceSlots& slots() const { return *slots_; }
+  devices::FlightRecorder& flight() { return *flight_; }
+  // Samples of all devices so far.
+  std::uint64_t samples() const;
+
+ private:
+  Fibers& fibers_;
+  Clock& clock_;
+  std::vector<Line> lines_;
+  std::optional<shm::SegmentWriter<shm::DevicesSegment>> segment_;
+  std::optional<shm::DeviceSlots> slots_;
+  std::optional<devices::FlightRecorder> flight_;
+  std::vector<std::unique_ptr<devices::DeviceChain>> chains_;
+  std::vector<std::unique_ptr<DeviceLoop>> loops_;
+};
+
+}  // namespace merlin::bench
