@@ -4,8 +4,6 @@
 #include <optional>
 #include <string_view>
 
-#include "daemon/base/fixed_text.h"
-#include "daemon/base/log.h"
 #include "daemon/json/json_tree.h"
 
 namespace merlin {
@@ -41,7 +39,7 @@ std::vector<wall::ProjectorsSeen> projectorsIn(const std::string& document) {
 }  // namespace
 
 DevicesBeside::DevicesBeside(const std::string& instance)
-    : segment_(shm::segmentName(instance, "devices")), topics_({"status"}) {}
+    : devices_(instance, "devices", {"status"}) {}
 
 Result<Ok> DevicesBeside::send(const std::string& command, Timestamp now) {
   const std::lock_guard lock(mutex_);
@@ -51,31 +49,17 @@ Result<Ok> DevicesBeside::send(const std::string& command, Timestamp now) {
 
 void DevicesBeside::update(Timestamp now,
                            const std::function<void(const std::string& why)>& refused) {
-  const shm::DeviceSlots* const slots = segment_.get(now);
-  follow(slots ? slots->header : nullptr);
-  while (const auto message = topics_.take()) projectors_ = projectorsIn(message->document);
+  if (devices_.update(now)) projectors_.clear();
+  while (const auto message = devices_.take()) projectors_ = projectorsIn(message->document);
   std::vector<std::string> reasons;
   {
     const std::lock_guard lock(mutex_);
-    commands_.update(command_endpoint_, now, [&](std::uint64_t, const Result<std::string>& answer) {
-      if (!answer) reasons.push_back(answer.error().what);
-    });
+    commands_.update(devices_.commandEndpoint(), now,
+                     [&](std::uint64_t, const Result<std::string>& answer) {
+                       if (!answer) reasons.push_back(answer.error().what);
+                     });
   }
   for (const std::string& why : reasons) refused(why);
-}
-
-// Connects to a new run of the role, and forgets what an earlier one published.
-void DevicesBeside::follow(const shm::Header* header) {
-  const std::uint64_t generation = header ? header->generation : 0;
-  if (generation == generation_) return;
-  generation_ = generation;
-  projectors_.clear();
-  command_endpoint_ = header ? textIn(header->command_endpoint) : "";
-  // A new socket for each run: the old one would connect again, but not after every fault.
-  (void)topics_.connect("").ok();
-  const auto connected =
-      topics_.connect(std::string(header ? textIn(header->status_endpoint) : ""));
-  if (!connected) logWarning("the role devices cannot be followed: {}", connected.error().what);
 }
 
 }  // namespace merlin

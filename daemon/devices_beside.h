@@ -2,7 +2,6 @@
 // sees it: gives it the commands of the operator's panel, and knows its projectors.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -11,7 +10,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/shm/segment.h"
 #include "daemon/status/command_queue.h"
-#include "daemon/status/topic_follower.h"
+#include "daemon/status/role_follower.h"
 #include "daemon/wall/operator_panel.h"
 
 namespace merlin {
@@ -31,12 +30,7 @@ class DevicesBeside {
   const std::vector<wall::ProjectorsSeen>& projectors() const noexcept { return projectors_; }
 
  private:
-  void follow(const shm::Header* header);
-
-  shm::SegmentFollower<shm::DevicesReader> segment_;
-  status::TopicFollower topics_;
-  std::uint64_t generation_ = 0;  // of the run that is followed; 0: none
-  std::string command_endpoint_;
+  status::RoleFollower<shm::DevicesReader> devices_;
   std::vector<wall::ProjectorsSeen> projectors_;
   std::mutex mutex_;  // guards commands_
   status::CommandQueue commands_;

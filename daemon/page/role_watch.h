@@ -6,7 +6,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/page/event_log.h"
 #include "daemon/shm/segment.h"
-#include "daemon/status/topic_follower.h"
+#include "daemon/status/role_follower.h"
 
 namespace merlin::page {
 
@@ -22,30 +22,25 @@ class RoleWatch {
   // gone. Never waits; takes a microsecond if nothing has arrived.
   void update(Timestamp now);
 
-  const std::string& role() const noexcept { return role_; }
-  bool isRunning() const noexcept { return segment_ != nullptr; }
+  const std::string& role() const noexcept { return follower_.role(); }
+  bool isRunning() const noexcept { return segment() != nullptr; }
   // The role's segment; null while it does not run. Valid until the next update().
-  const typename Reader::View* segment() const noexcept { return segment_; }
+  const typename Reader::View* segment() const noexcept { return follower_.segment(); }
   // Newest documents of the topics, JSON objects; empty while there is none.
   const std::string& status() const noexcept { return status_; }
   const std::string& metrics() const noexcept { return metrics_; }
   // Where the role takes commands; empty while it does not run here.
-  const std::string& commandEndpoint() const noexcept { return command_endpoint_; }
+  const std::string& commandEndpoint() const noexcept { return follower_.commandEndpoint(); }
   // When status() arrived, if there is one.
   Timestamp heard() const noexcept { return heard_; }
 
  private:
-  void follow(const shm::Header* header);
   void take(const status::TopicFollower::Message& message, Timestamp now);
 
-  std::string role_;
   EventLog& events_;
-  shm::SegmentFollower<Reader> follower_;
-  status::TopicFollower topics_;
-  const typename Reader::View* segment_ = nullptr;
-  std::uint64_t generation_ = 0;  // of the run that is followed; 0: none
+  status::RoleFollower<Reader> follower_;
   bool told_ = false, was_running_ = false;
-  std::string status_, metrics_, command_endpoint_;
+  std::string status_, metrics_;
   Timestamp heard_{};
 };
 

@@ -1,0 +1,42 @@
+#include "daemon/status/role_follower.h"
+
+#include <utility>
+
+#include "daemon/base/fixed_text.h"
+#include "daemon/base/log.h"
+
+namespace merlin::status {
+namespace {
+
+const shm::Header& headerOf(const shm::WallSegment& segment) { return segment.header; }
+const shm::Header& headerOf(const shm::DeviceSlots& slots) { return *slots.header; }
+
+}  // namespace
+
+template <typename Reader>
+RoleFollower<Reader>::RoleFollower(const std::string& instance, std::string role,
+                                   std::vector<std::string> topics, SharedMemory::From from)
+    : role_(std::move(role)),
+      follower_(shm::segmentName(instance, role_.c_str()), from),
+      topics_(std::move(topics)) {}
+
+template <typename Reader>
+bool RoleFollower<Reader>::update(Timestamp now) {
+  segment_ = follower_.get(now);
+  const shm::Header* const header = segment_ ? &headerOf(*segment_) : nullptr;
+  const std::uint64_t generation = header ? header->generation : 0;
+  if (generation == generation_) return false;
+  generation_ = generation;
+  command_endpoint_ = header ? textIn(header->command_endpoint) : "";
+  // A new socket for each run: the old one would connect again, but not after every fault.
+  (void)topics_.connect("").ok();
+  const auto connected =
+      topics_.connect(std::string(header ? textIn(header->status_endpoint) : ""));
+  if (!connected) logWarning("the role {} cannot be followed: {}", role_, connected.error().what);
+  return true;
+}
+
+template class RoleFollower<shm::SegmentReader<shm::WallSegment>>;
+template class RoleFollower<shm::DevicesReader>;
+
+}  // namespace merlin::status

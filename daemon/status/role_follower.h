@@ -1,0 +1,46 @@
+// RoleFollower: a role of merlind that runs in another process of this machine: its segment, the
+// topics that it publishes, and where it takes commands, over its restarts.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/base/clock.h"
+#include "daemon/shm/segment.h"
+#include "daemon/status/topic_follower.h"
+
+namespace merlin::status {
+
+// Thread-bound. `Reader`: shm::SegmentReader<shm::WallSegment> or shm::DevicesReader, instantiated
+// in role_follower.cpp.
+template <typename Reader>
+class RoleFollower {
+ public:
+  // `role`: "wall" or "devices", of this instance of merlind. `from`: whose processes it trusts.
+  RoleFollower(const std::string& instance, std::string role, std::vector<std::string> topics,
+               SharedMemory::From from = SharedMemory::From::kOwnUserOrRoot);
+
+  // Looks for the role, and connects to a new run of it. True if it is another run than before, or
+  // none any more: what an earlier one published is to be forgotten. Never waits.
+  bool update(Timestamp now);
+
+  const std::string& role() const noexcept { return role_; }
+  // Null while the role does not run. Valid until the next update().
+  const typename Reader::View* segment() const noexcept { return segment_; }
+  // Where the role takes commands; empty while it does not run here.
+  const std::string& commandEndpoint() const noexcept { return command_endpoint_; }
+  // The next document that has arrived; nothing if there is none.
+  std::optional<TopicFollower::Message> take() { return topics_.take(); }
+
+ private:
+  const std::string role_;
+  shm::SegmentFollower<Reader> follower_;
+  TopicFollower topics_;
+  const typename Reader::View* segment_ = nullptr;
+  std::uint64_t generation_ = 0;  // of the run that is followed; 0: none
+  std::string command_endpoint_;
+};
+
+}  // namespace merlin::status
