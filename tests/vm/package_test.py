@@ -48,6 +48,14 @@ def make_debian(folder, package):
     if shutil.which("debootstrap") is None or os.geteuid() != 0:
         raise vm.Missing("debootstrap is not there, or this is not root")
     shutil.rmtree(folder, ignore_errors=True)
+    try:
+        debootstrap(folder, package)
+    except subprocess.CalledProcessError as failed:
+        raise vm.Missing(f"the Debian was not made: {failed}") from failed
+    open(f"{folder}/made", "w", encoding="utf-8").close()
+
+
+def debootstrap(folder, package):
     subprocess.run(["debootstrap", "--variant=minbase", "--include=systemd,systemd-sysv,udev,dbus,procps", "bookworm",
                     f"{folder}/root"], check=True, stdout=subprocess.DEVNULL)
     for name in glob.glob("/etc/apt/apt.conf.d/*"):  # a proxy
@@ -58,7 +66,6 @@ def make_debian(folder, package):
     subprocess.run(["chroot", f"{folder}/root", "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "install", "-qy",
                     "--no-install-recommends", *dependencies(package)], check=True, stdout=subprocess.DEVNULL)
     os.unlink(f"{folder}/root/usr/sbin/policy-rc.d")
-    open(f"{folder}/made", "w", encoding="utf-8").close()
 
 
 def setUpModule():
