@@ -37,16 +37,16 @@ struct DriverSettings {
 
 // All that the rest of MERLIN needs to know about a driver.
 struct DriverEntry {
-  const char* name;  // also the key of its settings in the configuration
-  SampleKind kind;
-  int baud;  // default speed of its line; 0: it has none
-  const char* help;
-  std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&);
+  const char* name = nullptr;  // also the key of its settings in the configuration
+  SampleKind kind = SampleKind::kGlove;
+  int baud = 0;  // default speed of its line; 0: it has none
+  const char* help = nullptr;
+  std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&) = nullptr;
   // Describes the driver's own settings; null: it has none.
-  void (*describe)(DriverSettings&, SettingsVisitor&);
+  void (*describe)(DriverSettings&, SettingsVisitor&) = nullptr;
   // Finds faults in them, also together with the device's line; null: none is possible. Pointers
   // are relative to the device: "/port", "/cyberglove/rate_hz".
-  SettingFaults (*validate)(const DriverSettings&, const LineSettings&);
+  SettingFaults (*validate)(const DriverSettings&, const LineSettings&) = nullptr;
   bool has_keys = false;  // whether it knows the kernel's keys and buttons by name
 };
 
