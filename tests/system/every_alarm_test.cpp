@@ -1,0 +1,261 @@
+// Every kind of alarm that the documents describe, raised for real once: a fault at a real merlind,
+// of which a real merlind --role alarms tells a program that is for that kind alone.
+#include <array>
+#include <cstring>
+#include <functional>
+#include <set>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+
+#include "daemon/base/event_kinds.h"
+#include "daemon/base/unique_fd.h"
+#include "daemon/net/connection_server.h"
+#include "render/out/shared_frame_layout.h"
+#include "tests/support/emulated_projector.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+using Json = nlohmann::json;
+namespace framebuffer = render::out::framebuffer;
+
+// What a program was told: one JSON document for each start.
+std::vector<Json> told(const std::string& file) {
+  std::vector<Json> all;
+  std::istringstream lines(readText(file));
+  for (std::string line; std::getline(lines, line);)
+    all.push_back(Json::parse(line, nullptr, false));
+  return all;
+}
+
+// merlind with what a fault needs beside it, and the alarms' process. What happened before that
+// process follows a role is not told, so a row's fault waits until a harmless change of the role
+// was told.
+struct Stage {
+  TempDir dir;
+  ProjectorServer projector;
+  std::vector<UniqueFd> held;
+  int vrpn_port = 0;
+  std::string model = dir / "model.mrm";
+  std::unique_ptr<Merlind> merlind;
+  std::unique_ptr<Process> alarms;
+
+  std::string file(const std::string& name) const { return dir / name; }
+};
+
+// A kind of alarms and how it is raised. `act` is called again and again until it was told, and may
+// act anew each time.
+struct Row {
+  const char* kind;
+  const char* says;  // part of the sentence
+  const char* role;  // of merlind, whose fault it is
+  std::function<Json(Stage&)> also;
+  std::function<void(Stage&)> act;
+  // Why nobody can be told of it yet; null: somebody is.
+  const char* untold = nullptr;
+};
+
+void PrintTo(const Row& row, std::ostream* out) { *out << row.kind; }
+
+Json nothing(Stage&) { return Json::object(); }
+
+Json outputs(const Json& list) { return {{"wall", {{"outputs", list}}}}; }
+
+Json checkedOutput(Stage&) { return outputs({{{"kind", "shared_memory"}, {"check_s", 0.2}}}); }
+
+// A picture that turns, so that files of it are written.
+Json fileOutput(Stage& stage) {
+  std::filesystem::create_directories(stage.file("png"));
+  Json also = outputs({{{"kind", "png"}, {"path", stage.file("png/wall.png")}, {"interval_s", 1}}});
+  also["wall"]["playlist"] = {{"after_s", 1}};
+  return also;
+}
+
+Json oneProjector(Stage& stage) {
+  return {{"projectors", {{{"name", "left"}, {"address", "127.0.0.1:" + stage.projector.port}}}}};
+}
+
+Json vrpn(Stage& stage) {
+  const auto probe = net::listenTcp("127.0.0.1", 0);
+  stage.vrpn_port = probe ? net::portOf(probe->get()) : 0;
+  return {{"serve", {{"vrpn_port", stage.vrpn_port}}}};
+}
+
+void killTheBall(Stage& stage) {
+  for (const pid_t pid : stage.merlind->children("spaceball")) ::kill(pid, SIGKILL);
+}
+
+void removeFolderOfFiles(Stage& stage) { std::filesystem::remove_all(stage.file("png")); }
+
+// Overwrites the newest frame in shared memory with zeros, as a program of the same user may.
+void blacken(Stage& stage) {
+  const std::string path = "/dev/shm/" + stage.merlind->instance() + "-framebuffer";
+  const auto size = static_cast<std::size_t>(std::filesystem::file_size(path));
+  const UniqueFd file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  void* const at = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+  ASSERT_NE(at, MAP_FAILED);
+  const auto& header = *static_cast<const framebuffer::Header*>(at);
+  const std::size_t newest = header.newest.load() % framebuffer::kBuffers;
+  std::memset(static_cast<std::byte*>(at) + header.buffers[newest].offset, 0,
+              std::size_t{header.stride} * header.height);
+  ::munmap(at, size);
+}
+
+void damageModel(Stage& stage) {
+  if (std::filesystem::exists(stage.file("damaged"))) return;
+  writeText(stage.file("damaged"), "no model");
+  writeText(stage.file("new.mrm"), "this is no model");
+  std::filesystem::rename(stage.file("new.mrm"), stage.model);
+}
+
+void reloadNonsense(Stage& stage) {
+  writeText(stage.merlind->config(), "{\"no_such_key\": 1}");
+  ::kill(stage.merlind->process().pid(), SIGHUP);
+}
+
+// More clients than VRPN has places for.
+void crowdVrpn(Stage& stage) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(stage.vrpn_port));
+  while (stage.held.size() < 300) {
+    UniqueFd client(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    if (::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      return;
+    stage.held.push_back(std::move(client));
+  }
+}
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> all = {
+      {"device", "ball: ", "devices", nothing, killTheBall},
+      {"wall", "output png failed: ", "wall", fileOutput, removeFolderOfFiles},
+      {"picture", "is black instead of what was meant", "wall", checkedOutput, blacken},
+      {"model", "model.mrm", "wall", nothing, damageModel},
+      {"projector", "projector left: unknown, ", "devices", oneProjector,
+       [](Stage& stage) { stage.projector.vanish(); }},
+      {"service", "configuration: failed (", "devices", nothing, reloadNonsense},
+      {"server", "VRPN: ", "devices", vrpn, crowdVrpn},
+      // It happens as merlind starts, and is published before anybody can have connected.
+      {"state", "", "devices", nothing, nullptr,
+       "an event of a role's start is published before the alarms' process follows the role"},
+      {"flight", "ball", "devices", nothing, killTheBall},
+      {"role", "has not run for 15 s", "devices", nothing,
+       [](Stage& stage) { ::kill(stage.merlind->process().pid(), SIGKILL); }},
+  };
+  return all;
+}
+
+class EveryAlarm : public testing::TestWithParam<Row> {
+ protected:
+  // The configuration with an alarm of this kind alone, and one for the harmless change.
+  Json alarmsFor(const Row& row) {
+    const auto program = [this](const std::string& file) {
+      return Json{"/bin/sh", "-c", "cat >> \"$0\"", stage_.file(file)};
+    };
+    return {{{"run", program("told")}, {"kinds", {row.kind}}, {"most_per_hour", 3600}},
+            {{"run", program("probed")}, {"kinds", {"service"}}, {"most_per_hour", 3600}}};
+  }
+
+  void startMerlind(const Row& row) {
+    MerlindOptions options;
+    options.role = row.role;
+    options.emulate = options.role == "devices";
+    options.also = row.also(stage_);
+    options.also["alarms"] = alarmsFor(row);
+    stage_.merlind = std::make_unique<Merlind>(stage_.dir, stage_.model, "alarm", options);
+  }
+
+  void startAlarms() {
+    stage_.alarms = std::make_unique<Process>(std::vector<std::string>{
+        kMerlind, "--config", stage_.merlind->config(), "--role", "alarms"});
+    ASSERT_TRUE(stage_.alarms->saysEventually("ready")) << stage_.alarms->output();
+  }
+
+  // A configuration that is refused, and then is not, is two events of each role.
+  bool followsRole() {
+    const std::string good = readText(stage_.merlind->config());
+    bool said = true;
+    const bool follows = eventually([&] {
+      said = said && reload("{\"no_such_key\": 1}", "configuration: failed (") &&
+             reload(good, "configuration: works again");
+      return !said || !told(stage_.file("probed")).empty();
+    });
+    return said && follows;
+  }
+
+  // Has the configuration read again and waits until merlind says what becomes of it.
+  bool reload(const std::string& text, const std::string& says) {
+    Process& merlind = stage_.merlind->process();
+    const std::size_t before = merlind.output().size();
+    writeText(stage_.merlind->config(), text);
+    ::kill(merlind.pid(), SIGHUP);
+    return eventually([&] { return merlind.output().find(says, before) != std::string::npos; });
+  }
+
+  bool isTold(const Row& row) {
+    return eventually(
+        [&] {
+          row.act(stage_);
+          for (const Json& event : told(stage_.file("told"))) {
+            if (event.is_object() &&
+                event["what"].get<std::string>().find(row.says) != std::string::npos)
+              return true;
+          }
+          return false;
+        },
+        std::chrono::seconds(60));
+  }
+
+  Stage stage_;
+};
+
+TEST_P(EveryAlarm, IsToldToTheProgramThatIsForIt) {
+  const Row& row = GetParam();
+  if (row.untold) GTEST_SKIP() << row.untold;
+  if (std::string_view(row.role) == "wall")
+    std::filesystem::rename(makeModel(stage_.dir, 2), stage_.model);
+  startMerlind(row);
+  ASSERT_TRUE(stage_.merlind->ready()) << stage_.merlind->process().output();
+  if (std::string_view(row.role) == "devices") {
+    ASSERT_TRUE(stage_.merlind->healthIs("ball", HealthState::kOk));
+  }
+  startAlarms();
+  ASSERT_TRUE(followsRole()) << stage_.alarms->output();
+  EXPECT_TRUE(isTold(row)) << readText(stage_.file("told")) << stage_.merlind->process().output();
+  for (const Json& event : told(stage_.file("told"))) {
+    EXPECT_EQ(event["kind"], row.kind);
+    EXPECT_EQ(event["instance"], stage_.merlind->instance());
+    EXPECT_EQ(event["role"], std::string_view(row.kind) == "role" ? "alarms" : row.role);
+  }
+}
+
+std::string kindOf(const testing::TestParamInfo<Row>& of) { return of.param.kind; }
+
+INSTANTIATE_TEST_SUITE_P(OfTheDocuments, EveryAlarm, testing::ValuesIn(rows()), kindOf);
+
+// The kinds that the alarms' page describes: the first column of its table.
+std::set<std::string> documented() {
+  const std::string page = readText(kSource + "/daemon/alarms/README.md");
+  std::istringstream lines(page.substr(page.find("## What each kind means")));
+  std::set<std::string> kinds;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("| `")) kinds.insert(line.substr(3, line.find('`', 3) - 3));
+  }
+  return kinds;
+}
+
+TEST(EveryAlarmOfTheDocuments, HasARowInThisTestAndNoRowIsOfAnother) {
+  std::set<std::string> known, tested;
+  for (const EventKind& kind : kEventKinds) known.insert(kind.name);
+  for (const Row& row : rows()) tested.insert(row.kind);
+  EXPECT_EQ(tested, known) << "kinds that alarms can be for: daemon/base/event_kinds.h";
+  EXPECT_EQ(tested, documented()) << "kinds that daemon/alarms/README.md describes";
+}
+
+}  // namespace
+}  // namespace merlin::test
