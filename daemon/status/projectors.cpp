@@ -37,4 +37,24 @@ std::string addProjectors(const std::string& document,
                    std::move(schedule));
 }
 
+std::vector<ProjectorStatus> projectorsIn(const std::string& document) {
+  const auto parsed = nlohmann::json::parse(document, nullptr, false);
+  const auto list = parsed.is_object() ? parsed.find("projectors") : parsed.end();
+  std::vector<ProjectorStatus> all;
+  if (list == parsed.end() || !list->is_object()) return all;
+  for (const auto& [name, projector] : list->items()) {
+    const auto text = [&, &projector = projector](const char* key) {
+      const auto found = projector.find(key);
+      return found != projector.end() && found->is_string() ? found->template get<std::string>()
+                                                            : std::string();
+    };
+    ProjectorStatus status;
+    status.name = name;
+    status.power = text("power");
+    status.wanted = text("wanted");
+    all.push_back(std::move(status));
+  }
+  return all;
+}
+
 }  // namespace merlin::status

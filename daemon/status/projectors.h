@@ -30,4 +30,8 @@ std::string addProjectors(const std::string& document,
                           const std::vector<ProjectorStatus>& projectors,
                           const std::optional<ProjectorSwitching>& next = {});
 
+// The projectors in a document that addProjectors() wrote, with name, power and wanted alone; none
+// if it has none, or is not JSON.
+std::vector<ProjectorStatus> projectorsIn(const std::string& document);
+
 }  // namespace merlin::status

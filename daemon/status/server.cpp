@@ -17,6 +17,8 @@
 namespace merlin::status {
 namespace {
 
+// Who follows a role looks for it twice a second, and then subscribes.
+constexpr Duration kFollowersCome = std::chrono::milliseconds(1500);
 constexpr int kRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
 constexpr int kMostSaidBytes = 4096;  // of one frame from a subscriber
@@ -143,7 +145,8 @@ StatusServer::StatusServer(StatusServerSettings settings, const Clock& clock)
       clock_(clock),
       doors_{{kSamplesDomain, settings_.network.clients},
              {kCommandsDomain, settings_.network_commands.clients}},
-      due_(settings_.publications.size()) {
+      due_(settings_.publications.size()),
+      followed_from_(clock.now() + kFollowersCome) {
   settings_.commands.push_back(
       {"events", std::string(findCommand("events")->help), [this]() -> Result<std::string> {
          return fmt::format("[{}]", fmt::join(last_events_, ","));
@@ -343,9 +346,14 @@ void StatusServer::publishDue() {
   };
   const Timestamp now = clock_.now();
   for (const std::string& event : settings_.events()) {
-    send("event", event);
     last_events_.push_back(event);
-    if (last_events_.size() > kEventsKept) last_events_.pop_front();
+    unsent_events_.push_back(event);
+    for (auto* const events : {&last_events_, &unsent_events_})
+      if (events->size() > kEventsKept) events->pop_front();
+  }
+  if (now >= followed_from_) {
+    for (const std::string& event : unsent_events_) send("event", event);
+    unsent_events_.clear();
   }
   for (std::size_t i = 0; i < due_.size(); ++i) {
     if (now < due_[i]) continue;

@@ -88,10 +88,11 @@ class StatusServer {
   const Clock& clock_;
   std::unique_ptr<Sockets> sockets_;
   Doors doors_;
-  std::deque<std::string> last_events_;
+  std::deque<std::string> last_events_, unsent_events_;
   std::vector<Timestamp> due_;
-  Timestamp checked_{};  // when the inner sockets' files were last checked
-  Timestamp said_{};     // when an error was last logged
+  Timestamp followed_from_;  // events wait until then, so that those of the start are heard too
+  Timestamp checked_{};      // when the inner sockets' files were last checked
+  Timestamp said_{};         // when an error was last logged
   std::vector<std::unique_ptr<Relay>> relays_;
   WatchedThread thread_;
 };

@@ -281,5 +281,22 @@ TEST(Projectors, TheStatusListsThem) {
   EXPECT_NE(status::addProjectors("{}", {left}).find(R"("within_s":42)"), std::string::npos);
 }
 
+TEST(ProjectorStatus, IsReadFromADocumentByWhoeverGetsIt) {
+  status::ProjectorStatus left;
+  left.name = "left";
+  left.power = "warming";
+  left.wanted = "on";
+  const auto read = status::projectorsIn(status::addProjectors(R"({"role":"devices"})", {left}));
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].name, "left");
+  EXPECT_EQ(read[0].power, "warming");
+  EXPECT_EQ(read[0].wanted, "on");
+  for (const char* none : {"", "[]", "{", "{}", R"({"projectors": 3})", R"({"projectors": []})"})
+    EXPECT_TRUE(status::projectorsIn(none).empty()) << none;
+  const auto odd = status::projectorsIn(R"({"projectors": {"a": 7, "b": {"power": 1}}})");
+  ASSERT_EQ(odd.size(), 2U);
+  EXPECT_EQ(odd[1].power, "");
+}
+
 }  // namespace
 }  // namespace merlin::devices

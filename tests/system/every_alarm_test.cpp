@@ -42,6 +42,7 @@ struct Stage {
   std::string model = dir / "model.mrm";
   std::unique_ptr<Merlind> merlind;
   std::unique_ptr<Process> alarms;
+  std::unique_ptr<Process> again;  // merlind, restarted
 
   std::string file(const std::string& name) const { return dir / name; }
 };
@@ -54,8 +55,6 @@ struct Row {
   const char* role;  // of merlind, whose fault it is
   std::function<Json(Stage&)> also;
   std::function<void(Stage&)> act;
-  // Why nobody can be told of it yet; null: somebody is.
-  const char* untold = nullptr;
 };
 
 void PrintTo(const Row& row, std::ostream* out) { *out << row.kind; }
@@ -130,6 +129,15 @@ void crowdVrpn(Stage& stage) {
   }
 }
 
+// What it says while it starts, before anybody can follow it, is told too.
+void restartWithDamagedState(Stage& stage) {
+  if (stage.again) return;
+  EXPECT_EQ(stage.merlind->process().kill(SIGTERM), 0);
+  writeText(stage.file("alarm.state.json"), "{");
+  stage.again = std::make_unique<Process>(
+      std::vector<std::string>{kMerlind, "--config", stage.merlind->config(), "--role", "wall"});
+}
+
 const std::vector<Row>& rows() {
   static const std::vector<Row> all = {
       {"device", "ball: ", "devices", nothing, killTheBall},
@@ -140,9 +148,7 @@ const std::vector<Row>& rows() {
        [](Stage& stage) { stage.projector.vanish(); }},
       {"service", "configuration: failed (", "devices", nothing, reloadNonsense},
       {"server", "VRPN: ", "devices", vrpn, crowdVrpn},
-      // It happens as merlind starts, and is published before anybody can have connected.
-      {"state", "", "devices", nothing, nullptr,
-       "an event of a role's start is published before the alarms' process follows the role"},
+      {"state", "the state file is damaged", "wall", nothing, restartWithDamagedState},
       {"flight", "ball", "devices", nothing, killTheBall},
       {"role", "has not run for 15 s", "devices", nothing,
        [](Stage& stage) { ::kill(stage.merlind->process().pid(), SIGKILL); }},
@@ -216,7 +222,6 @@ class EveryAlarm : public testing::TestWithParam<Row> {
 
 TEST_P(EveryAlarm, IsToldToTheProgramThatIsForIt) {
   const Row& row = GetParam();
-  if (row.untold) GTEST_SKIP() << row.untold;
   if (std::string_view(row.role) == "wall")
     std::filesystem::rename(makeModel(stage_.dir, 2), stage_.model);
   startMerlind(row);

@@ -1,10 +1,10 @@
 // The whole of it: real merlind, real emulators on ptys, real ZeroMQ, real EGL.
+#include <algorithm>
+#include <array>
+
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
-
-#include <algorithm>
-#include <array>
 
 #include "tests/support/picture_files.h"
 #include "tests/system/merlind.h"
