@@ -37,7 +37,7 @@ class EmulatorChildren {
  private:
   struct Child {
     Emulated emulated;
-    pid_t pid;
+    pid_t pid = -1;
   };
   std::vector<Child> children_;
 };

@@ -227,6 +227,21 @@ class Package(unittest.TestCase):
         spread("the devices' process killed, to READY", until_back)
         self.assertEqual(pid("merlin-wall"), wall)
 
+    def test_4b_out_of_memory_it_is_back_and_a_clock_that_is_set_back_is_nothing(self):
+        before = pid("merlin-wall")
+        MACHINE.run("systemctl set-property --runtime merlin-wall MemoryMax=32M")
+        least, _ = shown_until(lambda: pid("merlin-wall") != before)
+        MACHINE.run("systemctl set-property --runtime merlin-wall MemoryMax=infinity")
+        also, _ = shown_until(lambda: runs_again("merlin-wall", before))
+        self.assertGreater(min(least, also), 0.03)
+        self.assertIn("oom-kill", MACHINE.run("journalctl -u merlin-wall -o cat --no-pager"))
+        before, frames = pid("merlin-wall"), status()["frames"]
+        MACHINE.run("date --set '-1 hour'")
+        vm.until(lambda: status()["frames"] > frames + 3, "the wall goes on")
+        MACHINE.run("date --set '+1 hour'")
+        vm.until(lambda: status()["frames"] > frames + 6, "the wall goes on")
+        self.assertEqual([pid("merlin-wall"), state("merlin-devices")], [before, "active"])
+
     def test_5_a_broken_configuration_starts_with_the_last_good_one(self):
         MACHINE.run("cp /etc/merlin/merlin.json /root/good.json; echo '{' >/etc/merlin/merlin.json")
         MACHINE.run("systemctl restart merlin-devices merlin-wall")
