@@ -361,7 +361,7 @@ CommitResult DrmCard::commit(std::span<const Lit> lit, bool test_only) {
 
 // The kernel hands out whole events only.
 void DrmCard::readEvents() {
-  std::array<char, 1024> events;
+  std::array<char, 1024> events{};
   const ssize_t size = ::read(fd(), events.data(), events.size());
   drm_event event{};
   for (std::size_t at = 0; size > 0 && at + sizeof event <= static_cast<std::size_t>(size);
