@@ -117,6 +117,9 @@ DeviceFeed::Acts DeviceFeed::readActs(const shm::DeviceSlots& devices, Timestamp
     acts.balls.push_back(readBall(ball, now));
     if (!acts.balls.back() || leaves_out_ball_) ends(ball.name);
   }
+  // Another run of the devices' process counts fingers and a wheel's notches anew.
+  const std::uint64_t run = devices.header->generation;
+  if (std::exchange(touches_of_, run) != run) touches_.clear();
   touches_.resize(devices.touches.size());
   for (std::size_t i = 0; i < devices.touches.size(); ++i) {
     const auto touch = fresh(*devices.touches[i].samples, *devices.touches[i].health, now);

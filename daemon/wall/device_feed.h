@@ -72,6 +72,7 @@ class DeviceFeed final : public InputFeed {
   std::optional<Timestamp> last_read_;
   actions::ActionReader actions_;
   std::vector<render::scene::TouchFollower> touches_;  // index: DeviceSlots::touches
+  std::uint64_t touches_of_ = 0;  // the run of the devices' process, by its generation
 };
 
 }  // namespace merlin::wall

@@ -84,6 +84,33 @@ TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   EXPECT_EQ(feed.read(now_).scene.hand->position_m[0], 0.5F);
 }
 
+// The wheel of a mouse counts from zero in each run of the devices' process.
+TEST_F(DeviceFeedTest, ARestartOfTheDevicesTurnsNoWheel) {
+  const auto start = [&](std::uint64_t generation) {
+    segment_.reset();
+    auto made = shm::SegmentWriter<shm::DevicesSegment>::make(
+        name_, shm::devicesFields({{{"mouse", SampleKind::kTouch}}, {}}), generation, now_, {});
+    ASSERT_TRUE(made);
+    segment_.emplace(*std::move(made));
+    for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
+  };
+  const auto wheel = [&](std::uint16_t notches) {
+    TouchSample touch{};
+    touch.received_ns = toNanoseconds(now_);
+    touch.aspect = 1;
+    touch.wheel = notches;
+    (*segment_)->touch[0].publish(touch);
+    return read().scene.touch.spread;
+  };
+  start(1);
+  EXPECT_EQ(wheel(40), 0) << "where it stands at first moves nothing";
+  EXPECT_GT(wheel(41), 0);
+  now_ += seconds(2);  // the old segment counts as alive for one
+  start(2);
+  EXPECT_EQ(wheel(0), 0);
+  EXPECT_LT(wheel(65535), 0);
+}
+
 TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
   push();
   TrackerSample hand{};
