@@ -235,6 +235,7 @@ Result<Ok> Daemon::run() {
     serveWindows();
     if (auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
   }
+  kept_files_.forgetUntaken();  // the cards that are used were opened before the first frame
   ::sd_notify(0, "READY=1");
   logInfo("ready");
   keepLastGood();
@@ -252,10 +253,7 @@ Result<Ok> Daemon::run() {
 
 // A configuration is good when merlind runs with it.
 void Daemon::keepLastGood() {
-  if (!instead_of_.empty()) {
-    logError("{}", instead_of_);
-    services_.failed("configuration", instead_of_);
-  }
+  if (!instead_of_.empty()) services_.failed("configuration", instead_of_);
   if (options_.last_good.empty()) return;
   last_good_ = std::make_unique<LastGoodKeeper>(options_.last_good, threads_);
   if (instead_of_.empty()) last_good_->keep(reloader_->configured());

@@ -39,6 +39,12 @@ void KeptBySystemd::forget(const std::string& name) {
   if (is_service_) removeFromStore(name);
 }
 
+void KeptBySystemd::forgetUntaken() {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, file] : taken_over_) removeFromStore(name);
+  taken_over_.clear();
+}
+
 void KeptBySystemd::removeFromStore(const std::string& name) const {
   ::sd_notify(0, ("FDSTOREREMOVE=1\nFDNAME=" + name).c_str());
 }

@@ -19,6 +19,9 @@ class KeptBySystemd final : public KeptFiles {
   UniqueFd take(const std::string& name) override;
   bool keep(const std::string& name, int fd) override;
   void forget(const std::string& name) override;
+  // Forgets what the process before this one kept and nobody has taken: a card that is not used any
+  // more would show its last picture for ever.
+  void forgetUntaken();
 
  private:
   void removeFromStore(const std::string& name) const;

@@ -17,6 +17,7 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 #include <xf86drm.h>
 #include <xf86drmMode.h>
@@ -50,7 +51,12 @@ Mode modeOf(const drmModeModeInfo& info, int index) {
           interlaced,    index};
 }
 
-std::string keptName(const std::string& path) { return "card " + path; }
+// systemd takes no name with a colon, as paths of /dev/dri/by-path have them.
+std::string keptName(const std::string& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return "card";
+  return fmt::format("card {}-{}", major(file.st_rdev), minor(file.st_rdev));
+}
 
 // The file of this card that the process before this one kept; null if there is none.
 DrmFile takeKept(const std::string& path, KeptFiles& kept_files) {
@@ -121,8 +127,10 @@ class DrmCard final : public Card {
   KeptFiles& kept_files_;
   DrmProperties properties_;
   bool was_master_ = false;
-  bool is_kept_ = false;  // file_, in kept_files_
-  bool is_gone_ = false;  // the card
+  const std::string kept_name_ = keptName(path_);
+  bool is_kept_ = false;       // file_, in kept_files_
+  bool is_inherited_ = false;  // file_ was opened by the process before this one
+  bool is_gone_ = false;       // the card
   // Frame buffers of the process before this one, until no display shows them any more.
   std::vector<Id> inherited_;
   std::vector<Id> crtcs_, connectors_, planes_;
@@ -135,7 +143,7 @@ class DrmCard final : public Card {
 // As long as the file is kept, somebody has the card open, and it shows the last picture. When
 // nobody has, the kernel restores its console.
 DrmCard::~DrmCard() {
-  if (is_kept_ && is_gone_) kept_files_.forget(keptName(path_));
+  if (is_kept_ && is_gone_) kept_files_.forget(kept_name_);
   file_->stays_shown = is_kept_;
   if (is_kept_) return;
   if (drmIsMaster(fd())) saved_.restore(fd());
@@ -146,6 +154,7 @@ void DrmCard::inherit() {
   const auto resources = resourcesOf(fd());
   if (resources) inherited_.assign(resources->fbs, resources->fbs + resources->count_fbs);
   is_kept_ = true;
+  is_inherited_ = true;
   was_master_ = isMaster();  // what the displays showed before both processes is not known
 }
 
@@ -180,20 +189,21 @@ Result<DrmFile> DrmCard::openFile(const std::string& path) {
   return file;
 }
 
-// Whoever opens a card that has no master becomes it; who never was it may not ask for it unless
-// root. So that one opens the card again, before it has any buffer there.
+// Whoever opens a card that has no master becomes it; who never was it, or whose file another
+// process opened, may not ask for it unless root. So that one opens the card again. Buffers stay
+// with the file by which they were made.
 bool DrmCard::becomeMaster() {
   if (!isMaster()) dropMasterElsewhere(path_, fd());
   if (!isMaster() && drmSetMaster(fd()) != 0) {
-    if (errno != EACCES || was_master_) return false;
+    if (errno != EACCES || (was_master_ && !is_inherited_)) return false;
     auto again = openFile(path_);
     if (!again) return false;
     file_ = *std::move(again);
-    is_kept_ = false;
+    is_kept_ = is_inherited_ = false;
     inherited_.clear();
     if (!isMaster()) return false;
   }
-  if (!is_kept_) is_kept_ = kept_files_.keep(keptName(path_), fd());
+  if (!is_kept_) is_kept_ = kept_files_.keep(kept_name_, fd());
   if (!std::exchange(was_master_, true)) saved_ = DrmSavedState(fd(), properties_);
   return true;
 }
@@ -436,13 +446,15 @@ Result<std::unique_ptr<Card>> openCard(const std::string& path, KeptFiles& kept_
 Result<std::unique_ptr<Card>> openDrmCard(const std::string& path, KeptFiles& kept_files) {
   const std::vector<std::string> paths = cardPaths();
   if (!path.empty()) {
-    if (!fs::exists(path)) {
+    std::error_code error;
+    const fs::path real = fs::canonical(path, error);  // /dev/dri/by-path/... is a link
+    if (error) {
       return Error{Errc::kNotFound,
                    fmt::format("there is no card {}; this machine has {}", path,
                                paths.empty() ? "none in /dev/dri"
                                              : fmt::format("{}", fmt::join(paths, ", ")))};
     }
-    return openCard(path, kept_files);
+    return openCard(real, kept_files);
   }
   Error reason{Errc::kNotFound, "this machine has no graphics card (/dev/dri/card*)"};
   for (const std::string& candidate : paths) {

@@ -22,27 +22,12 @@ namespace {
 class MappedBuffer {
  public:
   MappedBuffer(int fd, Id buffer) : fd_(fd), info_(drmModeGetFB2(fd, buffer), drmModeFreeFB2) {
-    if (!info_ || info_->handles[0] == 0) return;
-    const bool readable =
-        info_->pixel_format == DRM_FORMAT_XRGB8888 &&
-        (info_->modifier == DRM_FORMAT_MOD_LINEAR || (info_->flags & DRM_MODE_FB_MODIFIERS) == 0);
-    std::uint64_t offset = 0;
-    if (!readable || drmModeMapDumbBuffer(fd, info_->handles[0], &offset) != 0) return;
-    size_ = info_->offsets[0] + std::size_t{info_->pitches[0]} * info_->height;
-    void* const at = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, fd, static_cast<off_t>(offset));
-    if (at != MAP_FAILED) at_ = static_cast<const std::uint8_t*>(at);
+    if (!info_) return;
+    if (info_->handles[0] != 0) map();
+    closeHandles();  // at once: the file may outlive this process
   }
-  // The kernel made handles for this reading alone; several planes may share one.
   ~MappedBuffer() {
     if (at_) ::munmap(const_cast<std::uint8_t*>(at_), size_);
-    if (!info_) return;
-    for (std::size_t i = 0; i < std::size(info_->handles); ++i) {
-      const std::uint32_t handle = info_->handles[i];
-      bool closed = handle == 0;
-      for (std::size_t earlier = 0; earlier < i; ++earlier)
-        closed = closed || info_->handles[earlier] == handle;
-      if (!closed) drmCloseBufferHandle(fd_, handle);
-    }
   }
   MappedBuffer(const MappedBuffer&) = delete;
   MappedBuffer& operator=(const MappedBuffer&) = delete;
@@ -56,6 +41,27 @@ class MappedBuffer {
   }
 
  private:
+  void map() {
+    const bool readable =
+        info_->pixel_format == DRM_FORMAT_XRGB8888 &&
+        (info_->modifier == DRM_FORMAT_MOD_LINEAR || (info_->flags & DRM_MODE_FB_MODIFIERS) == 0);
+    std::uint64_t offset = 0;
+    if (!readable || drmModeMapDumbBuffer(fd_, info_->handles[0], &offset) != 0) return;
+    size_ = info_->offsets[0] + std::size_t{info_->pitches[0]} * info_->height;
+    void* const at = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, fd_, static_cast<off_t>(offset));
+    if (at != MAP_FAILED) at_ = static_cast<const std::uint8_t*>(at);
+  }
+  // The kernel made handles for this reading alone; several planes may share one.
+  void closeHandles() const {
+    for (std::size_t i = 0; i < std::size(info_->handles); ++i) {
+      const std::uint32_t handle = info_->handles[i];
+      bool closed = handle == 0;
+      for (std::size_t earlier = 0; earlier < i; ++earlier)
+        closed = closed || info_->handles[earlier] == handle;
+      if (!closed) drmCloseBufferHandle(fd_, handle);
+    }
+  }
+
   int fd_;
   Owned<drmModeFB2> info_;
   const std::uint8_t* at_ = nullptr;
