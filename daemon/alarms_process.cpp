@@ -1,6 +1,6 @@
 #include "daemon/alarms_process.h"
 
-#include <array>
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,43 +10,31 @@
 
 #include "daemon/alarms/alarm_queue.h"
 #include "daemon/alarms/child_program.h"
+#include "daemon/alarms/role_state.h"
 #include "daemon/base/event_kinds.h"
 #include "daemon/base/log.h"
 #include "daemon/page/event_log.h"
 #include "daemon/page/role_watch.h"
 #include "daemon/stop_asked.h"
+#include "daemon/wall/wall_contents.h"
 
 namespace merlin {
 namespace {
 
 constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kWatchdogPing = std::chrono::seconds(1);
-// A merlind reads large models and compiles shaders before it runs.
-constexpr Duration kFirstStart = std::chrono::minutes(3);
-// A role that is back within this time was restarted, and nobody is told.
-constexpr Duration kRestart = std::chrono::seconds(15);
 
-// Tells that a role ended, and that it is back. A role that has never run is not missed.
-class RoleState {
- public:
-  explicit RoleState(std::string role) : role_(std::move(role)) {}
-
-  std::optional<std::string> update(bool running, Timestamp now) {
-    if (running) {
-      last_ran_ = now;
-      if (!std::exchange(missing_, false)) return std::nullopt;
-      return fmt::format("the role {} runs again", role_);
-    }
-    if (!last_ran_ || missing_ || now - *last_ran_ < kRestart) return std::nullopt;
-    missing_ = true;
-    return fmt::format("the role {} has not run for {:.0f} s", role_, toSeconds(kRestart));
-  }
-
- private:
-  std::string role_;
-  std::optional<Timestamp> last_ran_;
-  bool missing_ = false;
-};
+// Whether a process of this role has something to do on this machine.
+bool hasWall(const Settings& settings) {
+  const auto contents = wall::contentsOf(settings.wall);
+  return std::ranges::any_of(contents, [](const auto& entry) { return !entry.path.empty(); });
+}
+bool hasDevices(const Settings& settings) {
+  const DevicesSettings& devices = settings.devices;
+  const bool reads = std::ranges::any_of(
+      devices.list, [](const auto& device) { return !device.line.port.empty(); });
+  return reads || !devices.gpio.chip.empty() || !devices.projectors.empty();
+}
 
 // One alarm: its events and its program, of which one runs at a time.
 class Alarm {
@@ -87,7 +75,9 @@ class AlarmsProcess {
   AlarmsProcess(const Settings& settings, Clock& clock)
       : clock_(clock),
         wall_(settings.instance, "wall", events_),
-        devices_(settings.instance, "devices", events_) {
+        devices_(settings.instance, "devices", events_),
+        wall_state_("wall", hasWall(settings), clock.now()),
+        devices_state_("devices", hasDevices(settings), clock.now()) {
     for (const AlarmSettings& alarm : settings.alarms)
       alarms_.emplace_back(alarm, settings.instance);
   }
@@ -123,22 +113,15 @@ class AlarmsProcess {
     const auto add = [&](const std::optional<std::string>& said) {
       if (said) events_.add("alarms", kRoleEvent.name, *said);
     };
-    add(wall_state_.update(wall_.isRunning(), now));
-    add(devices_state_.update(devices_.isRunning(), now));
-    if (wall_.isRunning() || devices_.isRunning()) any_ran_ = true;
-    if (any_ran_ || now - started_ < kFirstStart) return;
-    any_ran_ = true;  // told once
-    add(fmt::format("no merlind has run since the alarms were started {:.0f} s ago",
-                    toSeconds(kFirstStart)));
+    add(wall_state_.update(wall_.generation(), now));
+    add(devices_state_.update(devices_.generation(), now));
   }
 
   Clock& clock_;
-  Timestamp started_ = clock_.now();
-  bool any_ran_ = false;  // a role has run, or it was told that none has
   page::EventLog events_{1};
   page::WallWatch wall_;
   page::DevicesWatch devices_;
-  RoleState wall_state_{"wall"}, devices_state_{"devices"};
+  alarms::RoleState wall_state_, devices_state_;
   std::vector<Alarm> alarms_;
   std::uint64_t told_ = 0;  // number of the last event that the alarms were told
   Timestamp pinged_{};

@@ -24,6 +24,8 @@ class RoleWatch {
 
   const std::string& role() const noexcept { return follower_.role(); }
   bool isRunning() const noexcept { return segment() != nullptr; }
+  // Of the run that is followed; 0: none.
+  std::uint64_t generation() const noexcept { return follower_.generation(); }
   // The role's segment; null while it does not run. Valid until the next update().
   const typename Reader::View* segment() const noexcept { return follower_.segment(); }
   // Newest documents of the topics, JSON objects; empty while there is none.

@@ -29,6 +29,8 @@ class RoleFollower {
   const std::string& role() const noexcept { return role_; }
   // Null while the role does not run. Valid until the next update().
   const typename Reader::View* segment() const noexcept { return segment_; }
+  // Of the run that is followed; 0: none.
+  std::uint64_t generation() const noexcept { return generation_; }
   // Where the role takes commands; empty while it does not run here.
   const std::string& commandEndpoint() const noexcept { return command_endpoint_; }
   // The next document that has arrived; nothing if there is none.
@@ -39,7 +41,7 @@ class RoleFollower {
   shm::SegmentFollower<Reader> follower_;
   TopicFollower topics_;
   const typename Reader::View* segment_ = nullptr;
-  std::uint64_t generation_ = 0;  // of the run that is followed; 0: none
+  std::uint64_t generation_ = 0;
   std::string command_endpoint_;
 };
 

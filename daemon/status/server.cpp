@@ -17,8 +17,9 @@
 namespace merlin::status {
 namespace {
 
-// Who follows a role looks for it twice a second, and then subscribes.
-constexpr Duration kFollowersCome = std::chrono::milliseconds(1500);
+// Who follows a role takes a killed one for alive for 1 s, then looks for the next one twice a
+// second, and subscribes.
+constexpr Duration kFollowersCome = std::chrono::seconds(3);
 constexpr int kRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
 constexpr int kMostSaidBytes = 4096;  // of one frame from a subscriber

@@ -4,6 +4,7 @@
 
 #include "daemon/alarms/alarm_queue.h"
 #include "daemon/alarms/child_program.h"
+#include "daemon/alarms/role_state.h"
 #include "daemon/json/json_tree.h"
 #include "tests/support/eventually.h"
 #include "tests/support/temp_dir.h"
@@ -11,9 +12,10 @@
 namespace merlin::alarms {
 namespace {
 
+using std::chrono::seconds;
 using test::TempDir;
 
-Timestamp at(double seconds) { return Timestamp(fromSeconds(1000 + seconds)); }
+Timestamp at(double after_s) { return Timestamp(fromSeconds(1000 + after_s)); }
 
 AlarmEvent event(const std::string& what, const std::string& kind = "device") {
   return {"devices", "2026-11-25T12:00:00.000000Z", kind, what};
@@ -144,6 +146,54 @@ TEST(ChildProgram, IsEndedWithAllThatItStartedWhenItsTimeIsOver) {
     const std::string stat = test::readText("/proc/" + std::to_string(sleeper) + "/stat");
     return stat.empty() || stat.find(") Z") != std::string::npos;
   }));
+}
+
+TEST(RoleStateTest, TellsOfARoleThatEndedAndIsBackButNotOfARestart) {
+  Timestamp now{};
+  RoleState wall("wall", true, now);
+  const auto after = [&](Duration time, std::uint64_t generation) {
+    now += time;
+    return wall.update(generation, now).value_or("");
+  };
+  EXPECT_EQ(after(seconds(1), 7), "");
+  EXPECT_EQ(after(seconds(14), 0), "");
+  EXPECT_EQ(after(seconds(0), 8), "") << "it was restarted";
+  EXPECT_EQ(after(seconds(14), 0), "");
+  EXPECT_EQ(after(seconds(1), 0), "the role wall has not run for 15 s");
+  EXPECT_EQ(after(seconds(100), 0), "") << "once";
+  EXPECT_EQ(after(seconds(1), 9), "the role wall runs again");
+  EXPECT_EQ(after(seconds(1), 9), "");
+}
+
+TEST(RoleStateTest, TellsOfARoleThatNeverCameIfItHasWork) {
+  RoleState wall("wall", true, {}), devices("devices", false, {});
+  EXPECT_EQ(wall.update(0, Timestamp(seconds(179))), std::nullopt);
+  EXPECT_EQ(wall.update(0, Timestamp(seconds(180))),
+            "the role wall has not run since the alarms were started 180 s ago");
+  EXPECT_EQ(wall.update(0, Timestamp(seconds(1000))), std::nullopt);
+  EXPECT_EQ(wall.update(3, Timestamp(seconds(1001))), "the role wall runs again");
+  EXPECT_EQ(devices.update(0, Timestamp(seconds(1000))), std::nullopt);
+}
+
+TEST(RoleStateTest, TellsOfARoleThatDoesNotStay) {
+  RoleState wall("wall", true, {});
+  std::uint64_t generation = 1;
+  int told = 0;
+  const auto starts = [&](int count, Duration apart, Timestamp from) {
+    told = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto said = wall.update(generation++, from + i * apart);
+      if (!said) continue;
+      ++told;
+      EXPECT_EQ(*said, "the role wall was started 5 times within 10 minutes: it does not stay");
+    }
+    return told;
+  };
+  EXPECT_EQ(starts(4, seconds(5), Timestamp(seconds(0))), 0);
+  EXPECT_EQ(starts(1, seconds(5), Timestamp(seconds(20))), 1) << "the fifth";
+  EXPECT_EQ(starts(10, seconds(5), Timestamp(seconds(25))), 2) << "every fifth, while it goes on";
+  EXPECT_EQ(starts(50, std::chrono::minutes(3), Timestamp(std::chrono::hours(2))), 0)
+      << "now and then is no loop";
 }
 
 }  // namespace
