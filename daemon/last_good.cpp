@@ -1,6 +1,5 @@
 #include "daemon/last_good.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -26,12 +25,12 @@ std::string absolute(const std::string& path) {
 }  // namespace
 
 // "etc-merlin-merlin.json.wall.last-good": configurations of the same name may be in several
-// folders, and each role checks other files.
+// folders, and each role checks other files. A dash of the name is doubled.
 std::string lastGoodFile(const std::string& configuration, const std::string& role) {
-  const std::string folder = state::stateFolder();
-  if (folder.empty()) return {};
-  std::string name = absolute(configuration).substr(1);
-  std::ranges::replace(name, '/', '-');
+  const std::string folder = state::stateFolder(), path = absolute(configuration);
+  if (folder.empty() || path.empty()) return {};
+  std::string name;
+  for (const char c : path.substr(1)) name += c == '/' ? "-" : c == '-' ? "--" : std::string(1, c);
   return fmt::format("{}/{}.{}.last-good", folder, name, role);
 }
 

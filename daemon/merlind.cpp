@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -62,6 +64,30 @@ DaemonOptions daemonOptions(const Options& options) {
           options.role == "page",
           options.role == "alarms",
           options.last_good ? lastGoodFile(options.config, options.role) : std::string()};
+}
+
+// The settings to start with when the configuration is invalid. The page and the alarms, which keep
+// none, take those of the processes that they follow.
+std::optional<Configuration> lastGood(const Options& options, const Configuration& broken) {
+  const DaemonOptions with = daemonOptions(options);
+  if (!options.last_good) return std::nullopt;
+  if (!with.page && !with.alarms) return readLastGood(with.last_good, broken, with);
+  for (const char* role : {"wall", "devices", "all"}) {
+    auto kept = readLastGood(lastGoodFile(options.config, role), broken, with);
+    if (kept) return kept;
+  }
+  return std::nullopt;
+}
+
+// Restarts that follow one another at once would only fill the journal.
+void delayRestart() {
+  if (::getenv("NOTIFY_SOCKET") == nullptr) return;  // NOLINT(concurrency-mt-unsafe)
+  constexpr timespec kDelay{5, 0};
+  sigset_t stop;
+  ::sigemptyset(&stop);
+  ::sigaddset(&stop, SIGTERM);
+  ::sigaddset(&stop, SIGINT);
+  ::sigtimedwait(&stop, nullptr, &kDelay);
 }
 
 Configuration checkedConfiguration(const std::string& file, const Options& options) {
@@ -126,10 +152,13 @@ int runDaemon(const Options& options) {
   blockSignals();  // first, because reading a large model takes long and a signal may arrive
   Configuration configuration = checkedConfiguration(options.config, options);
   if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) {
-    const DaemonOptions with = daemonOptions(options);
-    auto kept = readLastGood(with.last_good, configuration, with);
-    if (!kept) return kExitBadInput;
+    auto kept = lastGood(options, configuration);
+    if (!kept) {
+      delayRestart();
+      return kExitBadInput;
+    }
     configuration = *std::move(kept);
+    logError("{}", configuration.instead_of);
   }
   raiseDescriptorLimit();
   if (options.role == "alarms") {
@@ -146,6 +175,7 @@ int runDaemon(const Options& options) {
   const auto daemon = Daemon::make(std::move(configuration), daemonOptions(options), clock);
   if (!daemon) {
     logError("{}", daemon.error().what);
+    delayRestart();
     return exitStatus(daemon.error());
   }
   return exitStatusOf((*daemon)->run());
@@ -182,7 +212,8 @@ int runProgram(int argc, char** argv) {
                "Start an emulator for each device, on a pseudo-terminal");
   app.add_flag("--last-good", options.last_good,
                "Keep the settings beside the state whenever merlind runs with them, and start with "
-               "those if the configuration is invalid, which an event tells");
+               "those if the configuration is invalid, which an event tells. The roles page and "
+               "alarms start with those of the wall or the devices");
   app.add_flag("--print-config", options.print_config,
                "Print the configuration with every setting, including defaults, and exit");
   app.add_flag("--print-schema", options.print_schema,
@@ -195,10 +226,6 @@ int runProgram(int argc, char** argv) {
   if (options.print_schema || options.print_config_manual) {
     fmt::print("{}", options.print_schema ? settingsSchema() : settingsManual(MERLIN_VERSION));
     return kExitDone;
-  }
-  if (options.last_good && (options.role == "page" || options.role == "alarms")) {
-    printError("merlind: --last-good is for the roles devices, wall and all\n");
-    return kExitBadInput;
   }
   if (options.print_config) return printConfig(options);
   if (check->count() == 0) return runDaemon(options);

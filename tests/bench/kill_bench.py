@@ -21,7 +21,7 @@ import roles
 from figures import Measured
 
 PICTURE_S, DATA_S, READY_S = 2.0, 1.0, 1.0  # bounds: of the picture, of data, of a start
-RESTART_SEC = (0.1, 1.0)  # systemd's default, and a common setting
+RESTART_SEC = (0.1, 1.0)  # the units', and a common setting
 POLL_S, GIVE_UP_S, SETTLE_S = 0.0005, 30, 0.5
 BEAT_S = 0.5  # heartbeats come ten times a second; beyond this clients take a role for gone
 TRACKER_HZ, MOST_MISSING = 120, 2  # the emulated Fastrak's; what the ends of the interval may leave

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/page_process.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -73,6 +74,25 @@ TEST_F(LastGood, IsStartedWithSaidAndLeftByTheNextReload) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
+// Somebody has to be told of the broken file.
+TEST_F(LastGood, OfTheWallIsWhatThePageStartsWith) {
+  json config = valid(7);
+  config["page"] = {{"port", freePagePort()}};
+  writeText(config_, config.dump());
+  const auto wall = start();
+  ASSERT_TRUE(wall->saysEventually("ready")) << wall->output();
+  EXPECT_TRUE(keeps("\"rate_hz\": 7"));
+  writeText(config_, "{");
+  const std::vector<std::string> page = {kMerlind, "--config", config_, "--role", "page"};
+  EXPECT_EQ(run(page).status, 2);
+  std::vector<std::string> with = page;
+  with.emplace_back("--last-good");
+  Process served(with, {{"STATE_DIRECTORY", state_}});
+  EXPECT_TRUE(served.saysEventually("ready")) << served.output();
+  EXPECT_EQ(served.kill(SIGTERM), 0) << served.output();
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+}
+
 TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
   writeText(config_, "{");
   EXPECT_EQ(start()->wait(), 2);
@@ -86,7 +106,6 @@ TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
   // What it names is gone as well: it is no better.
   fs::remove(model_);
   EXPECT_EQ(start()->wait(), 2);
-  EXPECT_EQ(run({kMerlind, "--config", config_, "--role", "page", "--last-good"}).status, 2);
 }
 
 }  // namespace

@@ -252,7 +252,7 @@ def role_is_killed(day, role):
     day.explains(act, "role", f"the role {role} does not run")
     program.process.send_signal(signal.SIGKILL)
     program.process.wait()
-    day.after(1, lambda: day.wall.restart(role))
+    day.after(0.1, lambda: day.wall.restart(role))
 
 
 def good_reload(day):
