@@ -137,7 +137,8 @@ class Line:
         """The next match after the last one; AssertionError with what came instead."""
         pattern, until = re.compile(regex.encode(), re.MULTILINE), time.monotonic() + deadline_s
         while True:
-            found = pattern.search(self.seen, self.at)
+            # Of whole lines: one may arrive in pieces.
+            found = pattern.search(self.seen, self.at, self.seen.rfind(b"\n") + 1)
             if found:
                 self.at = found.end()
                 return found
