@@ -166,9 +166,8 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
   v.listOf<Binding>(
       "bindings", d.bindings,
       "Inputs (buttons, postures, gestures, switches) and the action of each. Every merlind that "
-      "draws a "
-      "wall executes the actions for walls, also on another machine; the merlind that has the "
-      "control panel executes the actions for the panel.",
+      "draws a wall executes the actions for walls, also on another machine; the merlind that has "
+      "the control panel executes the actions for the panel.",
       [&](Binding& b) {
         v.text("input", b.input, kInput.c_str());
         v.choiceOf("action", b.action, kActions, kAction.c_str());

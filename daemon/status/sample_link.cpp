@@ -101,6 +101,12 @@ class Apply {
     return found != parent.end() && found->is_object() ? &*found : nullptr;
   }
 
+  template <std::size_t N>
+  static void readName(const Json& o, char (&field)[N]) {
+    const auto name = o.find("name");
+    if (name != o.end() && name->is_string()) setText(field, name->get<std::string>());
+  }
+
   void posture(const Json& of_glove, shm::Channel<PostureSample>& slot) {
     const Json* o = object(of_glove, "posture");
     if (!o) return;
@@ -109,8 +115,7 @@ class Apply {
     s.since_ns = here(s.since_ns);
     read(*o, "code", s.code);
     read(*o, "activation", s.activation);
-    if (const auto name = o->find("name"); name != o->end() && name->is_string())
-      setText(s.name, name->get<std::string>());
+    readName(*o, s.name);
     publish(slot, s);
   }
   void glove(const std::string& name, shm::GloveSlots& slots) {
@@ -192,8 +197,7 @@ class Apply {
     read(*o, "passed_over", s.passed_over);
     read(*o, "certainty", s.certainty);
     if (!std::isfinite(s.certainty)) s.certainty = 0;
-    if (const auto name = o->find("name"); name != o->end() && name->is_string())
-      setText(s.name, name->get<std::string>());
+    readName(*o, s.name);
     const auto last = slot.read();
     if (!last || last->counter != s.counter || last->passed_over != s.passed_over) slot.publish(s);
   }

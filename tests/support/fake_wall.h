@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,8 +12,8 @@
 
 #include "daemon/wall/wall_loop.h"
 #include "render/content/model_content.h"
-#include "render/reduce/reduce.h"
 #include "tests/support/fake_clock.h"
+#include "tests/support/wavy_sheet.h"
 
 namespace merlin::wall {
 
@@ -24,21 +23,8 @@ using std::chrono::milliseconds;
 
 inline const Duration kPeriod = fromSeconds(1.0 / 30);
 
-// A wavy sheet of 5,000 triangles, reduced to the end.
 inline const Dendrogram& model() {
-  static const Dendrogram made = [] {
-    render::mesh::Mesh mesh;
-    constexpr std::uint32_t kSide = 51;
-    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-      const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
-      mesh.positions.insert(mesh.positions.end(), {x, y, std::sin(x / 5) + std::cos(y / 7)});
-      if (i % kSide + 1 == kSide || i / kSide + 1 == kSide) continue;
-      mesh.triangles.insert(mesh.triangles.end(),
-                            {i, i + 1, i + kSide, i + 1, i + kSide + 1, i + kSide});
-    }
-    render::mesh::ensureNormals(mesh);
-    return render::lod::buildDendrogram(mesh, render::reduce::reduce(mesh, {})->log);
-  }();
+  static const Dendrogram made = test::wavySheet();
   return made;
 }
 

@@ -3,20 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
+#include "tests/system/told.h"
 
 namespace merlin::test {
 namespace {
 
 using Json = nlohmann::json;
-
-// What the program has written: one JSON document for each start.
-std::vector<Json> told(const std::string& file) {
-  std::vector<Json> all;
-  std::istringstream lines(readText(file));
-  for (std::string line; std::getline(lines, line);)
-    all.push_back(Json::parse(line, nullptr, false));
-  return all;
-}
 
 bool isTold(const std::string& file, const std::string& role, const std::string& part) {
   return eventually(

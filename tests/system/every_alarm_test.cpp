@@ -1,35 +1,23 @@
 // Every kind of alarm that the documents describe, raised for real once: a fault at a real merlind,
 // of which a real merlind --role alarms tells a program that is for that kind alone.
 #include <array>
-#include <cstring>
 #include <functional>
 #include <set>
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 
 #include "daemon/base/event_kinds.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/net/connection_server.h"
-#include "render/out/shared_frame_layout.h"
 #include "tests/support/emulated_projector.h"
+#include "tests/system/blacken.h"
 #include "tests/system/merlind.h"
+#include "tests/system/told.h"
 
 namespace merlin::test {
 namespace {
 
 using Json = nlohmann::json;
-namespace framebuffer = render::out::framebuffer;
-
-// What a program was told: one JSON document for each start.
-std::vector<Json> told(const std::string& file) {
-  std::vector<Json> all;
-  std::istringstream lines(readText(file));
-  for (std::string line; std::getline(lines, line);)
-    all.push_back(Json::parse(line, nullptr, false));
-  return all;
-}
 
 // merlind with what a fault needs beside it, and the alarms' process. What happened before that
 // process follows a role is not told, so a row's fault waits until a harmless change of the role
@@ -89,19 +77,7 @@ void killTheBall(Stage& stage) {
 
 void removeFolderOfFiles(Stage& stage) { std::filesystem::remove_all(stage.file("png")); }
 
-// Overwrites the newest frame in shared memory with zeros, as a program of the same user may.
-void blacken(Stage& stage) {
-  const std::string path = "/dev/shm/" + stage.merlind->instance() + "-framebuffer";
-  const auto size = static_cast<std::size_t>(std::filesystem::file_size(path));
-  const UniqueFd file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
-  void* const at = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
-  ASSERT_NE(at, MAP_FAILED);
-  const auto& header = *static_cast<const framebuffer::Header*>(at);
-  const std::size_t newest = header.newest.load() % framebuffer::kBuffers;
-  std::memset(static_cast<std::byte*>(at) + header.buffers[newest].offset, 0,
-              std::size_t{header.stride} * header.height);
-  ::munmap(at, size);
-}
+void blackenFrame(Stage& stage) { blacken(stage.merlind->instance()); }
 
 void damageModel(Stage& stage) {
   if (std::filesystem::exists(stage.file("damaged"))) return;
@@ -142,7 +118,7 @@ const std::vector<Row>& rows() {
   static const std::vector<Row> all = {
       {"device", "ball: ", "devices", nothing, killTheBall},
       {"wall", "output png failed: ", "wall", fileOutput, removeFolderOfFiles},
-      {"picture", "is black instead of what was meant", "wall", checkedOutput, blacken},
+      {"picture", "is black instead of what was meant", "wall", checkedOutput, blackenFrame},
       {"model", "model.mrm", "wall", nothing, damageModel},
       {"projector", "projector left: unknown, ", "devices", oneProjector,
        [](Stage& stage) { stage.projector.vanish(); }},

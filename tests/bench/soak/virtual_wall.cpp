@@ -5,10 +5,9 @@
 #include <utility>
 
 #include "daemon/shm/fields.h"
-#include "render/lod/dendrogram.h"
 #include "render/out/shared_frame.h"
-#include "render/reduce/reduce.h"
 #include "tests/bench/figures.h"
+#include "tests/support/wavy_sheet.h"
 
 namespace merlin::bench {
 namespace {
@@ -20,21 +19,6 @@ constexpr Duration kPerTriangle = std::chrono::microseconds(6),
                    kFixed = std::chrono::milliseconds(4);
 constexpr Duration kSlice = std::chrono::milliseconds(3);
 constexpr int kSlices = 20;  // of full detail while nothing moves
-
-// A wavy sheet of 5,000 triangles, reduced to the end.
-render::lod::Dendrogram sheet() {
-  render::mesh::Mesh mesh;
-  constexpr std::uint32_t kSide = 51;
-  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-    const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
-    mesh.positions.insert(mesh.positions.end(), {x, y, std::sin(x / 5) + std::cos(y / 7)});
-    if (i % kSide + 1 == kSide || i / kSide + 1 == kSide) continue;
-    mesh.triangles.insert(mesh.triangles.end(),
-                          {i, i + 1, i + kSide, i + 1, i + kSide + 1, i + kSide});
-  }
-  render::mesh::ensureNormals(mesh);
-  return render::lod::buildDendrogram(mesh, render::reduce::reduce(mesh, {})->log);
-}
 
 render::tiles::TilePlan smallPlan() {
   render::tiles::TilesSettings settings;
@@ -146,7 +130,7 @@ VirtualWall::VirtualWall(const Settings& settings, std::uint64_t seed, Fibers& f
                          VirtualClock& clock)
     : fibers_(fibers),
       clock_(clock),
-      model_(sheet()),
+      model_(test::wavySheet()),
       detail_(model_),
       plan_(smallPlan()),
       scene_(*render::scene::Scene::make(settings.wall.scene)),

@@ -1,0 +1,23 @@
+// What the program of an alarm wrote into a file.
+#pragma once
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/temp_dir.h"
+
+namespace merlin::test {
+
+// One JSON document for each start of the program.
+inline std::vector<nlohmann::json> told(const std::string& file) {
+  std::vector<nlohmann::json> all;
+  std::istringstream lines(readText(file));
+  for (std::string line; std::getline(lines, line);)
+    all.push_back(nlohmann::json::parse(line, nullptr, false));
+  return all;
+}
+
+}  // namespace merlin::test
