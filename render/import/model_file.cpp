@@ -2,11 +2,23 @@
 
 #include <exception>
 #include <new>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
 
 namespace merlin::render::import {
+namespace {
+
+// What the sandbox leaves this process.
+std::string allowedMemory() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "there is";
+  return fmt::format("the {} MB that are allowed", limit.rlim_cur >> 20);
+}
+
+}  // namespace
 
 Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triangles) {
   const auto named = [&](Errc code, const std::string& why) {
@@ -22,7 +34,10 @@ Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triang
                                fmt::join(model->notes, "; ")));
     return model;
   } catch (const std::bad_alloc&) {
-    return named(Errc::kInvalidArgument, "reading it takes more memory than is allowed (--memory)");
+    return named(Errc::kInvalidArgument,
+                 fmt::format("reading it takes more memory than {} (--memory, by default the free "
+                             "memory)",
+                             allowedMemory()));
   } catch (const std::exception& e) {
     return named(Errc::kMalformed, fmt::format("cannot be read: {}", e.what()));
   }

@@ -1,4 +1,5 @@
-// TempDir: a temporary folder for one test, removed with the object.
+// What one test may leave on the machine: a temporary folder, removed with the object, and shared
+// memory under a private name, removed with the process.
 #pragma once
 
 #include <cstdlib>
@@ -6,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -45,9 +47,33 @@ inline std::string readText(const std::string& path) {
   return text.str();
 }
 
+// merlind leaves its shared memory behind for its readers; of a test nobody reads it any more.
+class PrivateNames {
+ public:
+  PrivateNames() : pid_(::getpid()), prefix_("merlin-test-" + std::to_string(pid_) + "-") {}
+  ~PrivateNames() {
+    if (::getpid() != pid_) return;  // a forked child that ends
+    std::error_code error;
+    std::vector<std::filesystem::path> left;
+    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", error)) {
+      if (entry.path().filename().string().starts_with(prefix_)) left.push_back(entry.path());
+    }
+    for (const auto& path : left) std::filesystem::remove(path, error);
+  }
+  PrivateNames(const PrivateNames&) = delete;
+  PrivateNames& operator=(const PrivateNames&) = delete;
+
+  std::string operator()(const std::string& what) const { return prefix_ + what; }
+
+ private:
+  pid_t pid_;
+  std::string prefix_;
+};
+
 // A shared memory name that no other test and no daemon uses.
 inline std::string privateName(const std::string& what) {
-  return "merlin-test-" + std::to_string(::getpid()) + "-" + what;
+  static const PrivateNames names;
+  return names(what);
 }
 
 }  // namespace merlin::test

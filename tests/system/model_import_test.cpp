@@ -308,7 +308,8 @@ TEST_F(ModelImport, InventorAndVrmlMayBePackedByGzip) {
   std::string bomb = gzipped(kSquareIv);
   const std::string member = gzipped(std::string(std::size_t{1} << 24, '#'));
   for (int i = 0; i < 64; ++i) bomb += member;
-  expectRefused("bomb.iv", bomb, "gzip: unpacks to more than 1073741824 bytes");
+  expectRefused("bomb.iv", bomb, "gzip: unpacks to more than 1073741824 bytes",
+                {"--memory", "4G"});  // whatever this machine has free
 #endif
 }
 
@@ -335,7 +336,7 @@ TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
   expectRefused("deep.iv", deep, "the import ended by signal 11");
   std::string large = "#Inventor V2.1 ascii\nDEF A Separator { Sphere { } }\n";
   for (int i = 0; i < 20'000; ++i) large += "Translation { translation 1 0 0 } USE A\n";
-  expectRefused("large.iv", large, "takes more memory than is allowed", {"--memory", "150M"});
+  expectRefused("large.iv", large, "takes more memory than the 150 MB that are allowed (--memory,", {"--memory", "150M"});
 #endif
 }
 
