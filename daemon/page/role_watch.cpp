@@ -24,18 +24,18 @@ RoleWatch<Reader>::RoleWatch(const std::string& instance, std::string role, Even
 
 template <typename Reader>
 void RoleWatch<Reader>::update(Timestamp now) {
-  if (follower_.update(now)) {
+  const bool ran = isRunning();
+  const bool another = follower_.update(now);
+  if (another) {
     status_.clear();
     metrics_.clear();
     heard_ = {};
   }
   while (const auto message = follower_.take()) take(*message, now);
-  if (!told_ || was_running_ != isRunning()) {
-    events_.add("page", "role",
-                fmt::format("the role {} {}", role(), isRunning() ? "runs" : "does not run"));
-    told_ = true;
-    was_running_ = isRunning();
-  }
+  if (!another && std::exchange(told_, true)) return;
+  const char* const what = !isRunning() ? "does not run" : ran ? "was started again" : "runs";
+  events_.add("page", "role", fmt::format("the role {} {}", role(), what));
+  told_ = true;
 }
 
 template <typename Reader>

@@ -18,8 +18,8 @@ class RoleWatch {
   // `role`: "wall" or "devices", of this instance of merlind. `events` must outlive this.
   RoleWatch(const std::string& instance, std::string role, EventLog& events);
 
-  // Takes what has arrived, and adds events to the log: the role's own, and that it runs or is
-  // gone. Never waits; takes a microsecond if nothing has arrived.
+  // Takes what has arrived, and adds events to the log: the role's own, and that it runs, was
+  // started again or is gone. Never waits; takes a microsecond if nothing has arrived.
   void update(Timestamp now);
 
   const std::string& role() const noexcept { return follower_.role(); }
@@ -41,7 +41,7 @@ class RoleWatch {
 
   EventLog& events_;
   status::RoleFollower<Reader> follower_;
-  bool told_ = false, was_running_ = false;
+  bool told_ = false;
   std::string status_, metrics_;
   Timestamp heard_{};
 };

@@ -246,13 +246,13 @@ def devices_are_killed(day):
 
 
 def role_is_killed(day, role):
-    """The supervisor starts it again when the page has noticed that it is gone."""
+    """The supervisor starts it again as soon as systemd does (RestartSec of the units)."""
     act, program = f"role {role} killed", day.wall.programs[role]
-    day.explains(act, "role", f"the role {role} runs", due=True)
-    day.explains(act, "role", f"the role {role} does not run")
+    day.explains(act, "role", f"^the role {role} (runs|was started again)", due=True)
+    day.explains(act, "role", f"^the role {role} does not run")
     program.process.send_signal(signal.SIGKILL)
     program.process.wait()
-    day.after(1.5, lambda: day.wall.restart(role))
+    day.after(0.1, lambda: day.wall.restart(role))
 
 
 def good_reload(day):

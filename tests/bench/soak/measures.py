@@ -8,6 +8,9 @@ import statistics
 
 LEAST = 60  # points of a slope
 Z = 1.96  # of a normal distribution, 95 % on both sides
+# Lists that are bounded, such as the page's last 500 events, take less than this when they are full,
+# and fill for hours.
+LISTS_MIB = 0.25
 
 
 class Sample:
@@ -65,6 +68,15 @@ def slope(points):
 def memory_slope(samples, warm_up_s):
     """(MiB/h, half width of the 95 % interval) of one role, or None."""
     return slope([(s.at_s / 3600, s.memory_mib) for s in longest_life(samples, warm_up_s)])
+
+
+def grew(samples, warm_up_s):
+    """By how many MiB one role has grown for certain; 0: by no more than chance and its lists."""
+    life, found = longest_life(samples, warm_up_s), memory_slope(samples, warm_up_s)
+    if found is None:
+        return 0
+    least = (found[0] - found[1]) * (life[-1].at_s - life[0].at_s) / 3600
+    return least if least > LISTS_MIB else 0
 
 
 def descriptors(samples, warm_up_s):

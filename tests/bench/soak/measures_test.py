@@ -3,7 +3,7 @@ import math
 import random
 import unittest
 
-from measures import Frames, Sample, descriptors, memory_slope
+from measures import Frames, Sample, descriptors, grew, memory_slope
 
 HOUR = 3600
 
@@ -35,6 +35,12 @@ class Memory(unittest.TestCase):
     def test_steps_up_and_down_are_within_chance_since_neighbours_are_alike(self):
         slope, half = memory_slope(series(lambda i: 200 + 20 * (i // 150 % 2)), 10)
         self.assertGreater(half, abs(slope))
+
+    def test_what_a_list_takes_until_it_is_full_is_no_growth(self):
+        self.assertEqual(grew(series(lambda i: 200 + 0.2 * i / 600), 10), 0)
+        self.assertAlmostEqual(grew(series(lambda i: 200 + 0.4 * i / 600), 10), 0.39, delta=0.01)
+        self.assertEqual(grew(series(lambda i: 200 - i), 10), 0)
+        self.assertEqual(grew([], 10), 0)
 
     def test_the_warm_up_does_not_count(self):
         slope, half = memory_slope(series(lambda i: 200 - 50 * math.exp(-i / 5)), 100)

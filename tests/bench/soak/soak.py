@@ -179,7 +179,8 @@ def report_memory(role, samples, warm_up_s, report):
     slope, half = found
     report.figure(f"{role}.memory_slope", Measured(slope, len(samples), "samples"), "MiB/h")
     report.figure(f"{role}.memory_slope_half_width", Measured(half, len(samples), "samples"), "MiB/h")
-    wrong = [f"{role}: memory grows by {slope:.2f} MiB/h, beyond chance"] if slope > half else []
+    grew = measures.grew(samples, warm_up_s)
+    wrong = [f"{role}: memory grew by {grew:.2f} MiB or more, by {slope:.2f} MiB/h"] if grew else []
     return f"{slope:+9.2f} [{slope - half:+.2f}, {slope + half:+.2f}]", wrong
 
 
