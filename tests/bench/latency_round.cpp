@@ -9,8 +9,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <pthread.h>
-#include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -25,6 +23,7 @@
 #include "drivers/io/fd_stream.h"
 #include "drivers/io/pty_master.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/latency_line.h"
 #include "tests/support/eventually.h"
 #include "tests/support/temp_dir.h"
 
@@ -57,11 +56,6 @@ namespace {
 using Segment = shm::DevicesSegment;
 
 std::int64_t now() { return toNanoseconds(SystemClock().now()); }
-
-bool askForRealTime() {
-  const sched_param priority{50};
-  return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) == 0;
-}
 
 // Waits for the channel's next sample and notes the time, again and again.
 template <typename Sample>
@@ -159,22 +153,6 @@ void bareLoop(int fd, std::size_t length, shm::Channel<Sample>& channel,
   }
 }
 
-// Lets the emulator answer the driver's dialogue until `done`.
-void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool()>& done) {
-  const SystemClock clock;
-  std::byte received[64];
-  std::string out;
-  while (!done()) {
-    pollfd item{fd, POLLIN, 0};
-    ::poll(&item, 1, 1);
-    const ssize_t n = ::read(fd, received, sizeof received);
-    if (n > 0) emulator.receive(std::span(received, static_cast<std::size_t>(n)), clock.now());
-    emulator.advance(clock.now(), out);
-    if (!out.empty()) (void)!::write(fd, out.data(), out.size());
-    out.clear();
-  }
-}
-
 // The reader's thread: opens the line as the driver does, sets `streaming`, reads until it is
 // stopped.
 struct ReaderThread {
@@ -213,21 +191,13 @@ struct ReaderThread {
   }
 };
 
-// Sends `samples` records at irregular intervals around the rate, so that no loop can synchronise
-// to it.
 void sendRecords(int fd, const RoundSize& size, const Kind& kind, std::uint32_t first,
                  Times& times) {
-  const SystemClock clock;
-  Timestamp due = clock.now();
-  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(size.samples); ++i) {
-    due += fromSeconds((0.5 + static_cast<double>(i * 7919 % 1000) / 1000) / size.rate_hz);
-    timespec at{due.time_since_epoch() / std::chrono::seconds(1),
-                (due.time_since_epoch() % std::chrono::seconds(1)).count()};
-    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr);
-    const std::string bytes = kind.record(first + i);
-    times.sent_ns[first + i] = now();
+  atIrregularTimes(static_cast<std::uint32_t>(size.samples), size.rate_hz, [&](std::uint32_t n) {
+    const std::string bytes = kind.record(first + n);
+    times.sent_ns[first + n] = now();
     (void)!::write(fd, bytes.data(), bytes.size());
-  }
+  });
 }
 
 // Latency of each record from the line to the client, in microseconds.

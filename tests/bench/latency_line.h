@@ -1,0 +1,24 @@
+// The device's end of a line in a latency benchmark: the dialogue that a driver begins with, and
+// records at times that no reader can foresee.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "drivers/emulate/emulator.h"
+
+namespace merlin::bench {
+
+// Gives this thread real-time priority. False if that is not allowed.
+bool askForRealTime();
+
+// Lets the emulator answer what is asked on the line until `done`. `fd`: the device's end,
+// non-blocking.
+void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool()>& done);
+
+// Calls `send` with 0, 1 ... `count` - 1, at irregular intervals around the rate, so that no loop
+// can synchronise to it.
+void atIrregularTimes(std::uint32_t count, double rate_hz,
+                      const std::function<void(std::uint32_t n)>& send);
+
+}  // namespace merlin::bench
