@@ -96,9 +96,10 @@ void describeRender(render::frame::RenderSettings& r, SettingsVisitor& v) {
            "merge (geomorphs), so that a change of detail is not visible as a jump. 0: vertices "
            "jump.");
   v.integer(
-      "picture_memory_mb", r.picture_memory_mb, {64, 65'536},
+      "picture_memory_mb", r.picture_memory_mb, {0, 65'536},
       "Most memory that the tiles of the shown picture take, in megabytes: in main memory and in "
-      "the textures of all drawing contexts together.");
+      "the textures of all drawing contexts together. 0: as much as full detail takes on this "
+      "wall, and at least 192. With less than full detail takes, pictures are shown coarser.");
   v.integer("fade_frames", r.fade_frames, {1, 30},
             "Number of frames over which a finer image of a still scene is faded in over the "
             "coarser one; 1: the finer image is shown at once.");

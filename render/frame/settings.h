@@ -14,8 +14,9 @@ struct RenderSettings {
   gl::GlSettings gl{};
   content::ModelSettings model{};
   CorrectionPlace correction = CorrectionPlace::kAuto;
-  int picture_memory_mb = 256;  // of pictures' tiles, in memory and in textures
-  int fade_frames = 3;          // duration of the fade to a finer frame of a still scene
+  int picture_memory_mb =
+      0;                // of pictures' tiles, in memory and in textures; 0: by the wall's size
+  int fade_frames = 3;  // duration of the fade to a finer frame of a still scene
 };
 
 }  // namespace merlin::render::frame

@@ -208,6 +208,36 @@ TEST(TileChoice, OfA100GigapixelPictureIsAsSmallAsTheView) {
   }
 }
 
+// Whatever the zoom, on a wall of four tiles that show different parts of the picture.
+TEST(PictureMemory, ByDefaultIsEnoughForFullDetailOfAnyWall) {
+  const std::vector<image::PyramidLevel> levels = [] {
+    std::vector<image::PyramidLevel> all;
+    for (std::int64_t side = 1 << 18; side >= 256; side /= 2)
+      all.push_back({side, side, side / 256, side / 256});
+    return all;
+  }();
+  const auto plane = makePlane(1 << 18, 1 << 18, 1);
+  for (const auto& [width, height] : {std::pair{640, 480}, {1920, 1080}, {3840, 2160}}) {
+    std::size_t most = 0;
+    for (double zoom = 8; zoom < 18; zoom *= 1.03) {
+      Eigen::Matrix4d clip = Eigen::Matrix4d::Identity();
+      clip(0, 0) = zoom;
+      clip(1, 1) = zoom * width / height;
+      clip(0, 3) = 0.011 * zoom;
+      std::vector<TilePlace> tiles;
+      const PictureView view{clip, static_cast<double>(width), static_cast<double>(height)};
+      EXPECT_TRUE(chooseTiles(levels, *plane, view, 1, 100'000, tiles));
+      most = std::max(most, tiles.size());
+    }
+    const auto wall_px = static_cast<std::size_t>(4 * width * height);
+    EXPECT_LE(static_cast<double>(4 * most),
+              0.7 * static_cast<double>(pictureSlots({0, 2}, wall_px)))
+        << width << " x " << height << ": " << most << " tiles a view";
+    EXPECT_GT(most, 20u);
+  }
+  EXPECT_LT(pictureSlots({std::size_t{64} << 20, 2}, 33'000'000), 200u) << "if it is set, it holds";
+}
+
 TEST(TileChoice, EveryPixelOfAPictureHasOneTileInEachLevel) {
   // 513 pixels: three tiles, of which the level below, rounded down, has one.
   const std::vector<image::PyramidLevel> levels = {{513, 300, 3, 2}, {256, 150, 1, 1}};

@@ -41,6 +41,19 @@ PictureView viewOf(const ContentView& view) {
 
 }  // namespace
 
+std::size_t pictureSlots(const PictureMemory& memory, std::size_t wall_px) noexcept {
+  constexpr std::size_t kLeast = std::size_t{192} << 20;  // [bytes]
+  // Texels are up to half as large as pixels, and tiles reach beyond the edges of the views.
+  constexpr double kTilesPerPixel = 4 * 1.6 / (image::kTileSide * image::kTileSide);
+  const std::size_t bytes = memory.bytes > 0 ? memory.bytes : kLeast;
+  const std::size_t slots =
+      TileCache::slotsWithin(bytes - std::min(bytes / 2, kOnTheirWay), memory.contexts);
+  if (memory.bytes > 0) return slots;
+  const double need = kTilesPerPixel * static_cast<double>(wall_px) / kFrameShare;
+  const auto textures = static_cast<std::size_t>(need) / kSlotsPerTexture + 1;
+  return std::max(slots, textures * kSlotsPerTexture);
+}
+
 PictureDetail::PictureDetail(std::size_t wall_px) noexcept
     : full_(std::max(kTexelsPerPixel * wall_px / 1024, std::size_t{1} << kSteps)) {}
 
@@ -59,8 +72,7 @@ PictureContent::PictureContent(std::shared_ptr<const Picture> picture, TileSourc
     : tiles_(tiles),
       radius_m_(radius_m),
       detail_(wall_px),
-      cache_(std::make_unique<TileCache>(TileCache::slotsWithin(
-          memory.bytes - std::min(memory.bytes / 2, kOnTheirWay), memory.contexts))) {
+      cache_(std::make_unique<TileCache>(pictureSlots(memory, wall_px))) {
   show(std::move(picture));
 }
 

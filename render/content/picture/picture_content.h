@@ -40,9 +40,14 @@ class PictureDetail final : public DetailAxis {
 };
 
 struct PictureMemory {
-  std::size_t bytes = std::size_t{256} << 20;  // of tiles, in memory and in textures, at most
-  std::size_t contexts = 1;                    // that draw
+  // Of tiles, in memory and in textures, at most; 0: as much as full detail of the wall takes, and
+  // at least 192 MiB, so that what was seen just now is still there.
+  std::size_t bytes = 0;
+  std::size_t contexts = 1;  // that draw
 };
+
+// How many tiles may be there at once, for a wall of so many pixels.
+std::size_t pictureSlots(const PictureMemory& memory, std::size_t wall_px) noexcept;
 
 // What the renderers draw: a part of the picture, from one slot of the textures.
 struct TilePiece {
