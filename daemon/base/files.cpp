@@ -102,6 +102,13 @@ std::optional<FileStamp> fileStamp(const std::string& path) {
   return stampOf(status);
 }
 
+std::optional<FileStamp> fileOrFolderStamp(const std::string& path) {
+  struct stat status {};
+  const bool there = ::stat(path.c_str(), &status) == 0;
+  if (!there || !(S_ISREG(status.st_mode) || S_ISDIR(status.st_mode))) return std::nullopt;
+  return stampOf(status);
+}
+
 Result<FileCopy> FileCopy::read(const std::string& path, std::size_t most) {
   const UniqueFd fd(::open(
       path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // O_NONBLOCK: opening a pipe would block

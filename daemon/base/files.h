@@ -28,6 +28,8 @@ struct FileStamp {
 };
 // The stamp of the file at `path` (links are followed); nothing if it is not a regular file.
 std::optional<FileStamp> fileStamp(const std::string& path);
+// The same, also of a folder, whose stamp changes when a file in it comes or goes.
+std::optional<FileStamp> fileOrFolderStamp(const std::string& path);
 
 // A whole file, copied into our own memory. Reentrant.
 class FileCopy {

@@ -4,6 +4,15 @@
 #include <utility>
 
 namespace merlin::wall {
+namespace {
+
+// Where `place` stands in the list; the last turn if it does not, so that the first one follows.
+std::size_t turnOf(std::size_t place, std::span<const std::size_t> places) {
+  const auto at = std::ranges::find(places, place);
+  return at == places.end() ? places.size() - 1 : static_cast<std::size_t>(at - places.begin());
+}
+
+}  // namespace
 
 ContentTurns::ContentTurns(std::vector<ShownContent> contents, render::governor::Governor& governor,
                            ContentSource* source, std::size_t listed)
@@ -11,7 +20,10 @@ ContentTurns::ContentTurns(std::vector<ShownContent> contents, render::governor:
       governor_(governor),
       initial_(contents_.size()),
       source_(source),
-      listed_(listed == 0 ? contents_.size() : listed) {}
+      listed_(listed == 0 ? contents_.size() : listed),
+      index_(firstThere()),
+      asked_(index_),
+      in_turn_(index_) {}
 
 render::frame::DrawTimes ContentTurns::draw(std::size_t step,
                                             const Eigen::Isometry3f& T_eye_content) const {
@@ -21,7 +33,9 @@ render::frame::DrawTimes ContentTurns::draw(std::size_t step,
 void ContentTurns::calibrate(const Eigen::Isometry3f& T_eye_content) {
   std::vector<render::governor::FrameCost> costs;
   const auto fits = [&] { return costs.empty() || costs.back().work <= governor_.period(); };
-  index_ = 0;
+  const std::size_t first = firstThere();
+  index_ = first;
+  if (source_) source_->prepare(first);
   std::size_t last = detail().steps();
   for (std::size_t cost = detail().leastUseful() * 10 / 3; fits(); cost *= 4) {
     const std::size_t step = detail().stepWithin(cost);
@@ -34,19 +48,26 @@ void ContentTurns::calibrate(const Eigen::Isometry3f& T_eye_content) {
   }
   governor_.calibrate(costs);
   const std::size_t cost = governor_.budget();
-  initial_[0] = {cost, governor_.predict(cost) - governor_.fixedSeconds()};
-  for (index_ = 1; index_ < listed_; ++index_) {
+  initial_[first] = {cost, governor_.predict(cost) - governor_.fixedSeconds()};
+  for (index_ = first + 1; index_ < listed_; ++index_) {
+    if (shown().missing) continue;
     if (source_) source_->prepare(index_);
-    measureInitialView(T_eye_content);
+    measureInitialView(T_eye_content, cost);
   }
-  index_ = 0;
-  if (source_ && listed_ > 1) source_->prepare(0);
+  index_ = first;
+  if (source_ && listed_ > 1) source_->prepare(first);
 }
 
-// Draws at a cost close to that of the first content's initial view. The fastest of three draws
-// counts, since the first one fills caches.
-void ContentTurns::measureInitialView(const Eigen::Isometry3f& T_eye_content) {
-  const std::size_t step = detail().stepWithin(initial_[0].cost);
+// If all are missing, the first place.
+std::size_t ContentTurns::firstThere() const noexcept {
+  const auto there = std::ranges::find(contents_, false, &ShownContent::missing);
+  return there == contents_.end() ? 0 : static_cast<std::size_t>(there - contents_.begin());
+}
+
+// Draws at a cost close to this one, that of the first content's initial view. The fastest of three
+// draws counts, since the first one fills caches.
+void ContentTurns::measureInitialView(const Eigen::Isometry3f& T_eye_content, std::size_t cost) {
+  const std::size_t step = detail().stepWithin(cost);
   InitialView& view = initial_[index_];
   view.cost = detail().costOf(step);
   for (int i = 0; i < 3; ++i) {
@@ -70,13 +91,13 @@ void ContentTurns::requestNext(std::uint32_t times) {
 }
 
 void ContentTurns::requestPlaceAfter(std::span<const std::size_t> places) {
-  if (places.empty()) {
-    in_turn_ = (in_turn_ + 1) % listed_;
-    asked_ = in_turn_;
-    return;
+  const std::size_t count = places.empty() ? listed_ : places.size();
+  std::size_t turn = places.empty() ? in_turn_ : turnOf(asked_, places);
+  for (std::size_t tried = 0; tried < count; ++tried) {
+    turn = (turn + 1) % count;
+    const std::size_t place = places.empty() ? turn : places[turn];
+    if (!contents_[place].missing) return request(place);
   }
-  const auto at = std::ranges::find(places, asked_);
-  request(at == places.end() || at + 1 == places.end() ? places.front() : *(at + 1));
 }
 
 bool ContentTurns::leave(std::size_t place, std::span<const std::size_t> places) {
@@ -98,7 +119,7 @@ void ContentTurns::requestNextOf(std::span<const std::size_t> places) {
 }
 
 void ContentTurns::request(std::size_t place) noexcept {
-  if (place >= contents_.size()) return;
+  if (place >= contents_.size() || contents_[place].missing) return;
   asked_ = place;
   if (place < listed_) in_turn_ = place;
 }

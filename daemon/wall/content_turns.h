@@ -31,6 +31,7 @@ struct ShownContent {
   std::string name{};          // for people, and for `merlin show`
   const char* kind = "model";  // "model", "picture", "panorama"
   std::string slide{};         // of slides: the name of the one that is shown
+  bool missing = false;        // there is nothing to show yet: its turn is passed over
 };
 
 // Port (an interface): supplies contents that replace others while the wall runs. Implemented by
@@ -83,7 +84,8 @@ class ContentTurns {
   // Tells the governor the cost of the initial view of the content shown, if it was measured.
   void expectInitialView() const;
 
-  // requestNext() requests the content that is `times` further in the list, cyclically.
+  // requestNext() requests the content that is `times` further in the list, cyclically. Those that
+  // are missing do not count, here and below.
   // showRequested() makes the change; it returns true if another content is shown now.
   void requestNext(std::uint32_t times);
   // The next of `places`, cyclically: after the one that was asked for last, or the first if that
@@ -111,8 +113,9 @@ class ContentTurns {
  private:
   const ShownContent& shown() const noexcept { return contents_[index_]; }
   void requestPlaceAfter(std::span<const std::size_t> places);
+  std::size_t firstThere() const noexcept;
   render::frame::DrawTimes draw(std::size_t step, const Eigen::Isometry3f& T_eye_content) const;
-  void measureInitialView(const Eigen::Isometry3f& T_eye_content);
+  void measureInitialView(const Eigen::Isometry3f& T_eye_content, std::size_t cost);
 
   // Measured: drawing detail of `cost` took drawing_s [s]; drawing_s is 0 if it was not measured.
   struct InitialView {
@@ -124,10 +127,10 @@ class ContentTurns {
   render::governor::Governor& governor_;
   std::vector<InitialView> initial_;  // by content
   ContentSource* source_;
-  std::size_t listed_;       // contents that come by turns
-  std::size_t index_ = 0;    // shown
-  std::size_t asked_ = 0;    // to be shown by showRequested()
-  std::size_t in_turn_ = 0;  // the one of the list that was asked for last
+  std::size_t listed_;   // contents that come by turns
+  std::size_t index_;    // shown
+  std::size_t asked_;    // to be shown by showRequested()
+  std::size_t in_turn_;  // the one of the list that was asked for last
   int size_divisor_ = 1;
 };
 

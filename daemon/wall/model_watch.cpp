@@ -28,7 +28,13 @@ bool ReplacedFile::look(const std::optional<FileStamp>& found, Timestamp now) {
 ModelWatch::ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch,
                        const Clock& clock)
     : files_(std::move(files)), make_(std::move(make)), clock_(clock) {
-  for (const Watched& file : files_) replaced_.emplace_back(file.shown);
+  for (const Watched& file : files_) {
+    replaced_.emplace_back(file.shown);
+    faults_.push_back(file.fault);
+    if (!file.fault.empty()) {
+      report(fmt::format("{} is left out until it can be read: {}", file.path, file.fault));
+    }
+  }
   gone_.resize(files_.size());
   thread_ = WatchedThread(watch, "contents",
                           [this](const std::stop_token& s, Progress& p) { run(s, p); });
@@ -66,6 +72,7 @@ void ModelWatch::offer(ReadyModel ready) {
                         Watched{ready.path, ready.stamp, ready.picture ? "picture" : "model"});
   // A content that is outdated before the wall took it is not shown.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == ready.place; });
+  if (ready.place < faults_.size()) faults_[ready.place].clear();
   ready_.push_back(std::move(ready));
 }
 
@@ -119,8 +126,9 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   const std::string& path = files_[place].path;
   if (path.empty()) return;
   const Progress::Pause pause(progress);  // a file server may be slow, and a model large
-  const auto found = fileStamp(path);
-  noteWhetherThere(place, found.has_value());
+  const bool missing = !files_[place].fault.empty();
+  const auto found = missing ? fileOrFolderStamp(path) : fileStamp(path);
+  if (!missing) noteWhetherThere(place, found.has_value());
   if (!replaced_[place].look(found, clock_.now())) return;
   Result<ReadyModel> ready = Error{Errc::kIo, path + ": not enough memory"};
   try {
@@ -128,12 +136,28 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   } catch (const std::exception& e) {
     ready = Error{Errc::kIo, fmt::format("{}: {}", path, e.what())};
   }
+  take(place, std::move(ready));
+}
+
+// What was read since the file of a place has changed.
+void ModelWatch::take(std::size_t place, Result<ReadyModel> ready) {
+  const Watched& file = files_[place];
+  const bool missing = !file.fault.empty();
+  if (missing && ready) {
+    report(fmt::format("{} can be read now, and is shown in its turn", file.path));
+    return offer(*std::move(ready));
+  }
+  if (missing) {
+    report(fmt::format("{} is still left out: {}", file.path, ready.error().what));
+    const std::lock_guard lock(mutex_);
+    faults_[place] = ready.error().what;
+    return;
+  }
   if (!ready) {
-    report(
+    return report(
         fmt::format("the {0}'s file was replaced by one that cannot be shown ({1}); the {0} "
                     "that was read before stays",
-                    files_[place].what, ready.error().what));
-    return;
+                    file.what, ready.error().what));
   }
   ready->was_replaced = true;
   const std::lock_guard lock(mutex_);
@@ -168,6 +192,11 @@ std::optional<ReadyModel> ModelWatch::take() {
 void ModelWatch::report(std::string sentence) {
   const std::lock_guard lock(mutex_);
   events_.push_back(std::move(sentence));
+}
+
+std::string ModelWatch::faultOf(std::size_t place) {
+  const std::lock_guard lock(mutex_);
+  return place < faults_.size() ? faults_[place] : "";
 }
 
 std::vector<std::string> ModelWatch::takeEvents() {

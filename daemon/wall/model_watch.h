@@ -57,13 +57,16 @@ struct ReadyModel {
   std::string refused{};
 };
 
-// take() is for the wall's thread; ask(), offer(), report() and takeEvents() are thread-safe.
+// take() is for the wall's thread; all others are thread-safe.
 class ModelWatch {
  public:
   struct Watched {
     std::string path;  // empty: none yet
     FileStamp shown;
     std::string what = "model";  // what the file holds, for messages
+    // Why nothing of it is shown yet; then `path` may be a folder, and `shown` is the stamp of what
+    // was tried. Empty: it is shown.
+    std::string fault{};
   };
   // Reads and prepares the file of a place again; called on the watch's own thread. Errors: why the
   // file cannot be shown.
@@ -89,10 +92,13 @@ class ModelWatch {
   void report(std::string sentence);
   // Returns the events since the last call, one sentence each.
   std::vector<std::string> takeEvents();
+  // Why nothing of a place can be shown yet; empty: it can.
+  std::string faultOf(std::size_t place);
 
  private:
   void run(const std::stop_token& stop, Progress& progress);
   void lookAt(std::size_t place, Progress& progress);
+  void take(std::size_t place, Result<ReadyModel> read);
   void readAsked(Progress& progress);
   void followOffered();
   void noteWhetherThere(std::size_t place, bool there);
@@ -114,6 +120,7 @@ class ModelWatch {
   std::condition_variable_any asked_changed_;
   std::vector<ReadyModel> ready_;
   std::vector<std::string> events_;
+  std::vector<std::string> faults_;  // by place; see faultOf()
   std::vector<Asked> asked_;
   std::vector<std::pair<std::size_t, Watched>> offered_;  // files to look at from now on, by place
   WatchedThread thread_;

@@ -42,10 +42,12 @@ Result<std::unique_ptr<ShownModels>> ShownModels::make(std::vector<WallContent> 
   if (const auto made = shown->makeViewer(T_eye_model); !made) return made.error();
   for (WallContent& content : contents) {
     ContentEntry entry = content.entry;
+    const bool missing = !content.fault.empty();
     auto ready = prepareContent(shown->shown_.size(), std::move(content), parts.settings);
     if (!ready) return ready.error();
     const auto added = shown->add(*std::move(ready), std::move(entry), T_eye_model);
     if (!added) return added.error();
+    shown->shown_.back().missing = missing;
   }
   shown->shown_.emplace_back().picture = render::content::noPicture();
   shown->prepare(0);
@@ -109,15 +111,15 @@ ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
       if (!there) return there.error();
       entry = *there;
     }
-    // The one slide that was replaced.
-    const bool slide = entry.kind == ContentKind::kSlides;
+    // The one slide that was replaced; or the folder, if none of it could be shown before.
+    const bool slide = entry.kind == ContentKind::kSlides && path != entry.path;
     if (slide) entry.kind = ContentKind::kPicture;
     entry.path = path;
     std::vector<std::string> skipped;
     auto read = readContent(entry, settings.render.model.show, "", skipped);
     if (!read) return read.error();
     auto ready = prepareContent(place, *std::move(read), settings);
-    if (ready) ready->is_slide = slide;
+    if (ready) ready->is_slide = ready->is_slide || slide;
     return ready;
   };
 }
@@ -160,7 +162,8 @@ ShownContent ShownModels::contentAt(std::size_t place) const {
           nearestOf(*shown.picture),
           shown.entry.name,
           panorama ? "panorama" : "picture",
-          slides ? std::filesystem::path(shown.file).stem().string() : std::string()};
+          slides && !shown.missing ? std::filesystem::path(shown.file).stem().string() : "",
+          shown.missing};
 }
 
 std::vector<ShownContent> ShownModels::contents() const {
@@ -229,6 +232,7 @@ ContentSource::Replacement ShownModels::refusal(const ReadyModel& ready, std::st
 // The last place has a name only once something is shown there.
 void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
   Shown& shown = shown_[ready.place];
+  shown.missing = false;
   shown.file = ready.path;
   shown.is_last_slide = ready.is_last_slide;
   if (ready.place < listed()) return;

@@ -65,6 +65,7 @@ class ShownModels final : public ContentSource {
     std::shared_ptr<const render::content::Picture> picture;  // instead of these two
     std::string file;
     bool is_last_slide = false;
+    bool missing = false;  // `picture` is empty
   };
   explicit ShownModels(const Parts& parts) : parts_(parts) {}
   Result<Ok> makeViewer(const Eigen::Isometry3f& T_eye_model);

@@ -23,6 +23,7 @@ constexpr const char* kCannot = "cannot be used: ";
 
 std::vector<WallContent> readContents(LoadedSettings& loaded) {
   std::vector<WallContent> contents;
+  bool any = false;
   for (const ContentEntry& entry : contentsOf(loaded.settings.wall)) {
     if (entry.path.empty()) {
       loaded.addFinding(entry.pointer,
@@ -33,10 +34,18 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
     auto content = readContent(entry, loaded.settings.wall.render.model.show, "", skipped);
     if (content) {
       contents.push_back(*std::move(content));
-      continue;
+      any = true;
+    } else if (content.error().code == Errc::kInvalidArgument) {
+      loaded.addFinding("/wall/render/show", kCannot + content.error().what);
+    } else {
+      contents.push_back(missingContent(entry, content.error().what));
     }
-    const bool shows = content.error().code == Errc::kInvalidArgument;
-    loaded.addFinding(shows ? "/wall/render/show" : entry.pointer, kCannot + content.error().what);
+  }
+  for (const WallContent& content : contents) {
+    if (content.fault.empty()) continue;
+    const char* const then = any ? "; the wall is shown without it until it can be read" : "";
+    loaded.add({any, loaded.lineOf(content.entry.pointer), content.entry.pointer,
+                kCannot + content.fault + then});
   }
   return contents;
 }

@@ -11,8 +11,10 @@
 namespace merlin::wall {
 
 // Reads the contents in the order in which they are shown: see contentsOf(). Adds a finding for
-// each that names no file, cannot be read, or lacks the feature that /wall/render/show names. The
-// result is complete only if no finding was added. O(size of the models' files).
+// each that names no file, cannot be read, or lacks the feature that /wall/render/show names. If
+// another can be read, one that cannot (its disk may not be there yet) is only an adjustment, and
+// in the result as missingContent(). Otherwise the result is complete only if no finding was added.
+// O(size of the models' files).
 std::vector<WallContent> readContents(LoadedSettings& loaded);
 
 // Adds a finding for each name in /wall/playlist/contents that is not that of a content, or is

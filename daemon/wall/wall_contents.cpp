@@ -202,6 +202,13 @@ Result<ContentEntry> contentBelow(const std::string& folder, const std::string& 
   return entry;
 }
 
+WallContent missingContent(const ContentEntry& entry, std::string fault) {
+  WallContent missing{entry, entry.path, {}, render::content::noPicture()};
+  missing.stamp = fileOrFolderStamp(entry.path).value_or(FileStamp{});
+  missing.fault = std::move(fault);
+  return missing;
+}
+
 Result<WallContent> readContent(const ContentEntry& entry,
                                 const render::content::ShownFeature& show, const std::string& after,
                                 std::vector<std::string>& skipped) {

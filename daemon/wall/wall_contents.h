@@ -50,9 +50,15 @@ struct WallContent {
   FileStamp stamp;   // of that file
   std::variant<render::lod::Dendrogram, std::shared_ptr<const render::content::Picture>> data;
   bool is_last_slide = false;
+  // Why there is nothing to show; then `data` is an empty picture, and `stamp` that of the file or
+  // folder that was tried, if there was one. Empty: it was read.
+  std::string fault{};
 
   bool isModel() const noexcept { return data.index() == 0; }
 };
+
+// A content that could not be read, and has its place until it can.
+WallContent missingContent(const ContentEntry& entry, std::string fault);
 
 // Reads a content: a model as a whole, of a picture its coarsest level. Of slides it reads the
 // first that can be shown after the slide `after` in the order of their names, cyclically, and

@@ -27,7 +27,8 @@ namespace {
 std::vector<ModelWatch::Watched> filesOf(const std::vector<WallContent>& contents) {
   std::vector<ModelWatch::Watched> files;
   for (const WallContent& content : contents)
-    files.push_back({content.file, content.stamp, content.isModel() ? "model" : "picture"});
+    files.push_back(
+        {content.file, content.stamp, content.isModel() ? "model" : "picture", content.fault});
   files.push_back({});
   return files;
 }
@@ -187,16 +188,21 @@ std::uint32_t WallRole::firstNumber() const noexcept {
   return entries_.front().pointer == "/wall/model" ? 0 : 1;
 }
 
-// Returns the index of the content that was shown last, if the configuration still has it, else 0.
-std::size_t WallRole::firstContent() {
+// Returns the place of the content that was shown last; nothing if the configuration lacks it.
+std::optional<std::size_t> WallRole::lastShown() const {
   const std::string path = keeper_.state().content;
   if (path.empty()) return 0;
   const auto found = std::ranges::find(entries_, path, &ContentEntry::path);
-  if (found != entries_.end()) return static_cast<std::size_t>(found - entries_.begin());
+  if (found == entries_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - entries_.begin());
+}
+
+std::size_t WallRole::firstContent() {
+  if (const auto place = lastShown()) return *place;
   keeper_.addNotice(fmt::format(
       "content {}, which was shown last, is not in the configuration any more: the first "
       "one is shown",
-      path));
+      keeper_.state().content));
   return 0;
 }
 
@@ -208,9 +214,11 @@ void WallRole::tend(Timestamp now) {
   if (aligner_->showsCard()) attendance_.attend();
   const auto shown = segment_->interaction.read();
   if (!shown || kept_content_ == shown->content) return;
-  kept_content_ = shown->content;
+  const bool first = !std::exchange(kept_content_, shown->content);
   const std::size_t index = shown->content - firstNumber();
   if (index >= entries_.size()) return;
+  // Another is shown since its file cannot be read yet; the next start is to show it.
+  if (first && !model_watch_.faultOf(lastShown().value_or(0)).empty()) return;
   const std::string path = index == 0 ? std::string() : entries_[index].path;
   if (keeper_.state().content != path) keeper_.change([&](state::State& s) { s.content = path; });
 }
@@ -382,8 +390,13 @@ Result<std::uint32_t> WallRole::show(const std::string& name) {
                                  : "; merlind opens no path that a client names: `merlin show "
                                    "FILE` puts the file into its content folder")};
   }
+  const auto place = static_cast<std::size_t>(named - entries_.begin());
+  if (const std::string fault = model_watch_.faultOf(place); !fault.empty()) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{} cannot be shown until its file can be read: {}", name, fault)};
+  }
   const std::uint32_t number = ++show_requests_;
-  loop->show(static_cast<std::size_t>(named - entries_.begin()));
+  loop->show(place);
   loop->finishRequest(number, {});
   return number;
 }

@@ -144,6 +144,7 @@ class WallRole {
   void makeSignals(std::uint64_t generation);
   std::uint32_t firstNumber() const noexcept;
   Result<Ok> showEntry(const ContentEntry& entry, std::uint32_t request);
+  std::optional<std::size_t> lastShown() const;
   std::size_t firstContent();
   void run(const std::stop_token& stop, Progress& progress);
   void addOwn(WallParts& parts);

@@ -73,5 +73,44 @@ TEST(ModelWatch, OffersTheNewestOfAPlaceAndSaysWhyOneIsRefused) {
   EXPECT_NE(events.front().find("is there again"), std::string::npos) << events.front();
 }
 
+TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {
+  const test::TempDir dir;
+  const std::string folder = dir / "slides", file = dir / "late";
+  ThreadWatch watch;
+  const SystemClock clock;
+  const auto make = [&](std::size_t place, const std::string& path) -> Result<ReadyModel> {
+    if (path == folder) return ReadyModel{place, folder + "/first", nullptr, nullptr};
+    if (test::readText(path) == "good") return ReadyModel{place, path, nullptr, nullptr};
+    return Error{Errc::kMalformed, path + ": is damaged"};
+  };
+  ModelWatch models({{file, {}, "picture", "there is no such file"},
+                     {folder, {}, "picture", "there is no such folder"}},
+                    make, watch, clock);
+  std::vector<std::string> events = models.takeEvents();
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events.front(), file + " is left out until it can be read: there is no such file");
+  EXPECT_EQ(models.faultOf(0), "there is no such file");
+  EXPECT_EQ(models.faultOf(7), "");
+  const auto told = [&] {
+    return test::eventually([&] { return !(events = models.takeEvents()).empty(); });
+  };
+  test::writeText(file, "bad");
+  ASSERT_TRUE(told());
+  EXPECT_EQ(events.front(), file + " is still left out: " + file + ": is damaged");
+  EXPECT_EQ(models.faultOf(0), file + ": is damaged");
+  EXPECT_FALSE(models.take());
+  test::writeText(file, "good");
+  ASSERT_TRUE(told());
+  EXPECT_EQ(events.front(), file + " can be read now, and is shown in its turn");
+  EXPECT_EQ(models.faultOf(0), "");
+  std::optional<ReadyModel> ready;
+  ASSERT_TRUE(test::eventually([&] { return (ready = models.take()).has_value(); }));
+  EXPECT_EQ(ready->place, 0u);
+  EXPECT_FALSE(ready->was_replaced || ready->asked_for);
+  std::filesystem::create_directory(folder);
+  ASSERT_TRUE(test::eventually([&] { return (ready = models.take()).has_value(); }));
+  EXPECT_EQ(ready->path, folder + "/first");
+}
+
 }  // namespace
 }  // namespace merlin::wall

@@ -21,6 +21,7 @@ class WallContentsTest : public FakeWall {
   shm::WallInteraction interaction() const { return *interaction_->read(); }
 
   FakePainter dear_{clock_, microseconds(40), 40};
+  FakePainter missing_{clock_, microseconds(10), 10};
 };
 
 TEST_F(WallContentsTest, TheNextOneIsInTimeFromItsFirstFrame) {
@@ -58,6 +59,21 @@ TEST_F(WallContentsTest, AStillWallShowsTheNextOneWhole) {
   EXPECT_EQ(interaction().content, 0u);
   EXPECT_TRUE(stats().full_detail);
   EXPECT_FALSE(dear_.drawn.empty());
+}
+
+TEST_F(WallContentsTest, OneThatIsMissingIsPassedOver) {
+  contents_[0].missing = true;
+  contents_.push_back({&detail_, &missing_});
+  contents_.back().missing = true;
+  run(4, [&](Timestamp now) {
+    pressTwice(now);
+    if (feed_.begins.size() > 2) {
+      EXPECT_EQ(interaction().content, 1u);
+    }
+  });
+  EXPECT_TRUE(painter_.drawn.empty());
+  EXPECT_TRUE(missing_.drawn.empty()) << "not even to be measured";
+  EXPECT_EQ(stats().late, 0u);
 }
 
 TEST_F(WallContentsTest, ACommandDoesTheSame) {

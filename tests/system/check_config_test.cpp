@@ -85,8 +85,15 @@ TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {
   ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
   // Must not block on opening the pipe.
   expectRefused(model("pipe"), "/wall/model", "is not a regular file");
-  expectRefused({{"wall", {{"contents", json::array({{{"model", "c.json"}}})}}}},
-                "/wall/contents/0/model", "c.json: is ");
+  const json damaged = json::array({{{"model", "c.json"}}});
+  expectRefused({{"wall", {{"model", ""}, {"contents", damaged}}}}, "/wall/contents/0/model",
+                "c.json: is ");
+  const Outcome beside =
+      run({kMerlind, "--check-config", file({{"wall", {{"contents", damaged}}}})});
+  EXPECT_EQ(beside.status, 1) << "beside a model that can be read; " << beside.output;
+  EXPECT_NE(beside.output.find("the wall is shown without it until it can be read"),
+            std::string::npos)
+      << beside.output;
 }
 
 TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {

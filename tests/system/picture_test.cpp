@@ -131,7 +131,9 @@ class PictureWall : public testing::Test {
   }
   static void TearDownTestSuite() { delete dir_; }
 
-  void SetUp() override {
+  void SetUp() override { start(); }
+  void start() {
+    m_.reset();
     nlohmann::json wall = {{"model", ""},
                            {"contents",
                             {{{"picture", *dir_ / "red.tif"}},
@@ -295,6 +297,41 @@ TEST_F(PictureWall, FilesThatChangeOrVanishAreSaidAndTheWallStaysUp) {
   EXPECT_TRUE(m_->process().saysEventually("going: No such file or directory"));
   EXPECT_FALSE(m_->process().ended());
   EXPECT_TRUE(isShown("the sky", "panorama")) << "no further slide: the next content";
+}
+
+// A file server that is mounted later than the wall starts.
+TEST_F(PictureWall, WhatIsNotThereAtTheStartIsLeftOutUntilItIs) {
+  const auto hide = [](const char* name) { fs::rename(*dir_ / name, *dir_ / name + ".away"); };
+  const auto bring = [](const char* name) { fs::rename(*dir_ / name + ".away", *dir_ / name); };
+  EXPECT_EQ(show("the sky").status, 0);
+  EXPECT_TRUE(isShown("the sky", "panorama"));
+  ASSERT_EQ(m_->process().kill(SIGTERM), 0) << "the state has it";
+  hide("sky.tif");
+  hide("slides");
+  start();
+  EXPECT_TRUE(isShown("red", "picture"));
+  EXPECT_TRUE(m_->process().saysEventually("sky.tif is left out until it can be read"));
+  const Outcome early = show("the sky");
+  EXPECT_EQ(early.status, 2) << early.output;
+  EXPECT_NE(early.output.find("the sky cannot be shown until its file can be read"),
+            std::string::npos)
+      << early.output;
+  next();
+  EXPECT_TRUE(isShown("red", "picture")) << "there is no other";
+  ASSERT_EQ(m_->process().kill(SIGTERM), 0);
+  start();  // and what was shown last is remembered all the same
+  bring("sky.tif");
+  bring("slides");
+  EXPECT_TRUE(m_->process().saysEventually("sky.tif can be read now"));
+  EXPECT_TRUE(m_->process().saysEventually("slides can be read now"));
+  next();
+  EXPECT_TRUE(isShown("the sky", "panorama"));
+  EXPECT_TRUE(isColoured({0, 0, 250}));
+  next();
+  EXPECT_TRUE(isShown("slides", "picture", "1-green"));
+  EXPECT_TRUE(isColoured({0, 250, 0}));
+  next();
+  EXPECT_TRUE(isShown("slides", "picture", "2-grey"));
 }
 
 }  // namespace
