@@ -122,7 +122,7 @@ Answer alignAction(const Parts& p, std::string_view name) {
   wall::AlignInput input;
   const auto action = std::ranges::find(wall::kAlignActions, name);
   if (action == std::end(wall::kAlignActions)) return lacks("does not know the command");
-  input.begun[static_cast<std::size_t>(action - std::begin(wall::kAlignActions))] = 1;
+  input.actions = {static_cast<std::uint8_t>(action - std::begin(wall::kAlignActions))};
   p.wall->aligner().ask(input);
   return done();
 }

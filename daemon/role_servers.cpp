@@ -181,10 +181,12 @@ Result<Ok> RoleServers::startWall() {
   const auto statusNow = [this, &segment, remote] {
     const auto renderer = rendererState(*parts_.wall);
     const wall::ShownFolder& folder = parts_.wall->shownFolder();
+    std::string document = status::wallStatus(segment, clock_.now(), servers_.health("wall"),
+                                              remote, renderer ? &*renderer : nullptr);
+    document =
+        status::addShownFolder(document, {folder.path(), folder.limitBytes(), folder.fault()});
     return parts_.services.addTo(
-        status::addShownFolder(status::wallStatus(segment, clock_.now(), servers_.health("wall"),
-                                                  remote, renderer ? &*renderer : nullptr),
-                               {folder.path(), folder.limitBytes(), folder.fault()}));
+        status::addMissingContents(document, parts_.wall->missingContents()));
   };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};

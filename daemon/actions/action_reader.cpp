@@ -16,6 +16,7 @@ Actions ActionReader::read(const shm::DeviceSlots& devices) {
   Actions actions;
   const std::size_t sources = devices.actions.size();
   actions.by_source.resize(sources);
+  actions.in_order_by_source.resize(sources);
   last_.resize(sources);
   for (std::size_t source = 0; source < sources; ++source) {
     const auto state = devices.actions[source].slot->read();
@@ -30,8 +31,10 @@ Actions ActionReader::read(const shm::DeviceSlots& devices) {
     actions.all.add(counts);
     constexpr auto kKept = static_cast<std::uint32_t>(sizeof(shm::ActionState::recent));
     const std::uint32_t fresh = same ? std::min(state->sequence - last->sequence, kKept) : 0;
+    std::vector<std::size_t>& in_order = actions.in_order_by_source[source];
     for (std::uint32_t n = state->sequence - fresh; n != state->sequence; ++n)
-      actions.in_order.push_back(state->recent[n % kKept]);
+      in_order.push_back(state->recent[n % kKept]);
+    actions.in_order.insert(actions.in_order.end(), in_order.begin(), in_order.end());
     last = *state;
   }
   return actions;

@@ -27,6 +27,8 @@ struct Actions {
   // The actions that have begun, device by device, in the order in which they began; at most the
   // last twelve of each device.
   std::vector<std::size_t> in_order;
+  // What in_order is joined from; by source.
+  std::vector<std::vector<std::size_t>> in_order_by_source;
 };
 
 // Thread-bound. Never waits.

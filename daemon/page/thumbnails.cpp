@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/base/files.h"
 #include "daemon/base/fixed_text.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
@@ -88,9 +89,13 @@ void Thumbnails::readOne(Timestamp now, Progress& progress) {
   }
   for (std::size_t i = 0; i < contents_.size(); ++i) {
     std::optional<Timestamp>& read_at = entries_[i].read_at;
-    if (!contents_[i].read || (read_at && (!looked_at || now - *read_at < kReadAgain))) continue;
+    if (read_at && (!looked_at || now - *read_at < kReadAgain)) continue;
     read_at = now;
     const Progress::Pause pause(progress);  // a disk may be slow
+    if (!contents_[i].read) {
+      note(i, fileStamp(contents_[i].path) ? "" : contents_[i].path + ": is not there");
+      continue;
+    }
     const auto picture = contents_[i].read();
     auto jpeg = picture ? thumbnailOf(picture->image) : picture.error();
     if (!jpeg) return note(i, jpeg.error().what);

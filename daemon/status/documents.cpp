@@ -286,6 +286,13 @@ std::string addShownFolder(const std::string& document, const ShownFolderState& 
       {{"path", folder.path}, {"limit_bytes", folder.limit_bytes}, {"fault", folder.fault}});
 }
 
+std::string addMissingContents(const std::string& document,
+                               const std::vector<std::pair<std::string, std::string>>& missing) {
+  OrderedJson reasons = OrderedJson::object();
+  for (const auto& [name, why] : missing) reasons[name] = why;
+  return addMember(document, "missing_contents", reasons);
+}
+
 std::string devicesMetrics(const shm::DeviceSlots& devices) {
   OrderedJson json = {{"role", "devices"}};
   for (const auto& [name, slot] : devices.health) {

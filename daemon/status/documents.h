@@ -41,6 +41,9 @@ struct ShownFolderState {
 // Returns `document`, a JSON object, with the member "shown_folder": {"path", "limit_bytes",
 // "fault"}.
 std::string addShownFolder(const std::string& document, const ShownFolderState& folder);
+// The same with "missing_contents": {NAME: why it cannot be shown}; without it if there is none.
+std::string addMissingContents(const std::string& document,
+                               const std::vector<std::pair<std::string, std::string>>& missing);
 
 // Topic "sample": the newest posture, glove, hand, tracker and ball, and the actions of their
 // inputs.

@@ -41,9 +41,7 @@ double outside(double place, double size) { return std::max({0.0, -place, place 
 
 }  // namespace
 
-bool AlignInput::isNothing() const {
-  return push == state::Offset{} && std::ranges::all_of(begun, [](auto n) { return n == 0; });
-}
+bool AlignInput::isNothing() const { return push == state::Offset{} && actions.empty(); }
 
 Aligner::Aligner(std::vector<AlignedOutput> outputs, std::vector<std::string> refused,
                  render::testcard::CardOverlay& cards, state::StateKeeper& keeper,
@@ -112,6 +110,7 @@ render::correct::CorrectionSettings Aligner::settingsOf(const Entry& entry,
 }
 
 Result<Ok> Aligner::check(const Entry& entry, const Alignment& a) const {
+  if (!entry.output.fixed.empty() && a.find(entry.output.name)) return refusal(entry.output.fixed);
   const double width = entry.output.width, height = entry.output.height;
   const render::correct::CorrectionSettings settings = settingsOf(entry, a);
   const auto faults = validate(settings, entry.output.width, entry.output.height);
@@ -285,7 +284,10 @@ bool Aligner::showsCard() const {
 
 void Aligner::ask(const AlignInput& input) {
   const std::lock_guard lock(asked_mutex_);
-  for (std::size_t i = 0; i < kAlignActionCount; ++i) asked_.begun[i] += input.begun[i];
+  const std::size_t room = kMostAsked - std::min(asked_.actions.size(), kMostAsked);
+  asked_.actions.insert(
+      asked_.actions.end(), input.actions.begin(),
+      input.actions.begin() + static_cast<std::ptrdiff_t>(std::min(room, input.actions.size())));
   asked_.push.x += input.push.x;
   asked_.push.y += input.push.y;
   work_ = true;
@@ -314,14 +316,11 @@ Result<Ok> Aligner::act(std::size_t action) {
 void Aligner::executeAsked(const AlignInput& input) {
   const std::lock_guard lock(mutex_);
   const auto keepRefusal = [&](const Result<Ok>& done) {
-    if (done || refusal_ == done.error().what) return;
-    refusal_ = done.error().what;
+    if (done) return refusal_.clear();
+    if (std::exchange(refusal_, done.error().what) == done.error().what) return;
     keeper_.addNotice(fmt::format("align: {}", refusal_));
   };
-  for (std::size_t action = 0; action < kAlignActionCount; ++action) {
-    for (std::uint32_t i = 0; i < std::min(input.begun[action], 100U); ++i)
-      keepRefusal(act(action));
-  }
+  for (const std::uint8_t action : input.actions) keepRefusal(act(action));
   if (input.push == state::Offset{} || entries_.empty()) return;
   const Timestamp now = SystemClock().now();
   const bool on = now - std::exchange(pushed_, now) < kSamePush;

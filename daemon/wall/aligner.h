@@ -35,6 +35,7 @@ struct AlignedOutput {
   render::frame::ReplaceableCorrection* correction = nullptr;  // must outlive the aligner
   // Marks of its corners on test cards, in the order of kCornerNames.
   std::array<std::optional<render::testcard::MarkedCorner>, 4> marks{};
+  std::string fixed{};  // why nothing of it may be moved, a sentence; empty: it may
 };
 
 // Actions that inputs may be bound to, in this order: align_output_next, align_corner_next,
@@ -46,8 +47,8 @@ inline constexpr std::size_t kAlignActionCount = std::size(kAlignActions);
 
 // Requests of bound inputs since they were last read.
 struct AlignInput {
-  std::array<std::uint32_t, kAlignActionCount> begun{};  // how often each action has begun
-  state::Offset push{};  // motion of the selected corner by the ball [px]
+  std::vector<std::uint8_t> actions;  // that have begun, in their order: indexes of kAlignActions
+  state::Offset push{};               // motion of the selected corner by the ball [px]
   bool isNothing() const;
 };
 
@@ -56,7 +57,7 @@ class Aligner {
  public:
   // On return, the correction of each output is built from its configuration and the offsets of the
   // keeper's state; offsets that no longer fit the configuration are dropped, with a notice.
-  // `refused`: names of outputs that cannot be aligned. `cards`, `keeper` and `watch` must outlive
+  // `refused`: names of outputs that are not corrected. `cards`, `keeper` and `watch` must outlive
   // this object.
   Aligner(std::vector<AlignedOutput> outputs, std::vector<std::string> refused,
           render::testcard::CardOverlay& cards, state::StateKeeper& keeper, ThreadWatch& watch);
@@ -77,9 +78,11 @@ class Aligner {
   // Whether a test card is shown.
   bool showsCard() const;
 
-  // Passes on requests of bound inputs; returns at once. To be called on the wall's thread. A move
+  // Passes on requests of bound inputs, which are executed in their order; returns at once. Those
+  // beyond the first kMostAsked that wait are dropped. To be called on the wall's thread. A move
   // that is refused is reported as a notice of the keeper.
   void ask(const AlignInput& input);
+  static constexpr std::size_t kMostAsked = 200;
 
   // The corner that the actions move.
   struct Selection {
@@ -126,7 +129,7 @@ class Aligner {
   std::optional<render::testcard::Card> card_;
   std::string done_;     // description of the last undo or redo
   Timestamp pushed_{};   // time of the last push by the ball
-  std::string refusal_;  // last refused request of a bound input; reported only once
+  std::string refusal_;  // of a bound input, if its last request was refused; reported only once
   std::mutex asked_mutex_;
   std::condition_variable_any wake_;  // with asked_mutex_
   AlignInput asked_;

@@ -19,7 +19,7 @@ bool isPushed(const BallSample& ball) {
 bool acts(const WallInput& input) {
   const render::scene::SceneInput& scene = input.scene;
   const bool stepped = !scene.step.way_m.isZero(0) || !scene.step.turn_rad.isZero(0);
-  const bool aligned = std::ranges::any_of(input.align.begun, [](auto n) { return n > 0; });
+  const bool aligned = !input.align.actions.empty();
   return stepped || aligned || scene.reset_view > 0 || scene.next_mode > 0 ||
          input.next_content > 0 || input.snapshot > 0 || input.operator_panel > 0;
 }
@@ -81,13 +81,14 @@ bool Attendance::handMoves(const render::scene::SceneInput& input) {
   return moves;
 }
 
-// Whether the ball is pushed, a finger touches, one of the ball's buttons is pressed now, or a hand
-// moves.
+// Whether the ball is pushed, a finger touches, a mouse's wheel turns, one of the ball's buttons is
+// pressed now, or a hand moves.
 bool Attendance::moves(const WallInput& input) {
   const auto& ball = input.scene.ball;
   const std::uint32_t buttons = ball ? ball->buttons : 0;
   const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
-  const bool pushed = (ball && isPushed(*ball)) || input.scene.touch.fingers > 0 ||
+  const auto& touch = input.scene.touch;  // a wheel moves it without a finger
+  const bool pushed = (ball && isPushed(*ball)) || touch.fingers > 0 || touch.moves() ||
                       input.panel_pushed || input.align.push != state::Offset{};
   return handMoves(input.scene) || pushed || pressed != 0;
 }

@@ -2,7 +2,8 @@
 // what the commands blank and freeze do, until the next touch.
 //
 // A touch is anything by which a visitor or an operator acts on the wall: a push of the ball, a
-// button, a hand that moves while it holds an action, a command that changes what is shown.
+// button, a finger on a touch surface, a turn of a mouse's wheel, a hand that moves while it holds
+// an action, a command that changes what is shown.
 #pragma once
 
 #include <array>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "daemon/base/commands.h"
@@ -41,10 +42,28 @@ bool points(const shm::DeviceSlots& devices, const actions::Actions& actions,
   return false;
 }
 
-// Whether an action is held by which a hand acts on the model.
-bool holdsModel(const actions::ActionCounts& counts) {
-  constexpr std::array kOfHand = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
-  return std::any_of(kOfHand.begin(), kOfHand.end(), [&](std::size_t i) { return counts.held[i]; });
+// The actions by which a hand acts on the model; while it only points, another one may move it.
+constexpr std::array kMoving = {actionIndex("grab"), actionIndex("fly")};
+constexpr std::array kOfHand = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
+
+bool holdsOneOf(const actions::ActionCounts& counts, std::span<const std::size_t> actions) {
+  return std::any_of(actions.begin(), actions.end(), [&](std::size_t i) { return counts.held[i]; });
+}
+
+std::uint8_t alignActionOf(std::size_t action) {
+  constexpr std::array kAlign = {actionIndex("align_output_next"), actionIndex("align_corner_next"),
+                                 actionIndex("align_left"),        actionIndex("align_right"),
+                                 actionIndex("align_up"),          actionIndex("align_down"),
+                                 actionIndex("align_undo"),        actionIndex("align_redo"),
+                                 actionIndex("next_testcard")};
+  static_assert(kAlign.size() == kAlignActionCount);
+  return static_cast<std::uint8_t>(std::find(kAlign.begin(), kAlign.end(), action) -
+                                   kAlign.begin());
+}
+
+bool isGlove(const shm::DeviceSlots& devices, const std::string& name) {
+  return std::any_of(devices.gloves.begin(), devices.gloves.end(),
+                     [&](const auto& glove) { return glove.name == name; });
 }
 
 bool acts(const actions::ActionCounts& counts) {
@@ -153,13 +172,13 @@ void DeviceFeed::takeTurns(const shm::DeviceSlots& devices, const Acts& now_acts
 }
 
 // The hand that acted last keeps on while it holds an action, so that a second one does not take
-// over the model.
+// over the model; but one that moves it does so from one that points.
 std::size_t DeviceFeed::handThatActs(const shm::DeviceSlots& devices,
                                      const actions::Actions& actions) {
-  const auto holds = [&](std::size_t hand) {
+  const auto holds = [&](std::size_t hand, std::span<const std::size_t> of) {
     const auto* const glove = devices.glove(settings_.hands[hand].glove);
     for (std::size_t i = 0; glove && i < devices.actions.size(); ++i) {
-      if (devices.actions[i].source == glove->name) return holdsModel(actions.by_source[i]);
+      if (devices.actions[i].source == glove->name) return holdsOneOf(actions.by_source[i], of);
     }
     return false;
   };
@@ -167,9 +186,12 @@ std::size_t DeviceFeed::handThatActs(const shm::DeviceSlots& devices,
     return !holder_ || settings_.hands[hand].person == *holder_;
   };
   const std::size_t count = settings_.hands.size();
-  if (hand_ < count && mayAct(hand_) && holds(hand_)) return hand_;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (mayAct(i) && holds(i)) return i;
+  using Held = std::span<const std::size_t>;
+  for (const Held of : {Held(kMoving), Held(kOfHand)}) {
+    if (hand_ < count && mayAct(hand_) && holds(hand_, of)) return hand_;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (mayAct(i) && holds(i, of)) return i;
+    }
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (mayAct(i)) return i;
@@ -186,7 +208,7 @@ void DeviceFeed::readHand(const shm::DeviceSlots& devices, const actions::Action
       input.scene.other_pointers.push_back(*other);
   }
   if (acting >= settings_.hands.size()) return;
-  hand_ = acting;
+  other_hand_ = std::exchange(hand_, acting) != acting;
   input.scene.hand = predicted(devices, settings_.hands[hand_], now);
   readPosture(devices, settings_.hands[hand_].glove, now, input);
 }
@@ -211,6 +233,13 @@ void DeviceFeed::readPosture(const shm::DeviceSlots& devices, const std::string&
   if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
 }
 
+// Whether it is the glove of a hand that does not act now: its fist grabs nothing.
+bool DeviceFeed::isOfAnotherHand(const shm::DeviceSlots& devices, const std::string& source) const {
+  if (hand_ >= settings_.hands.size() || !isGlove(devices, source)) return false;
+  const auto* const acting = devices.glove(settings_.hands[hand_].glove);
+  return acting && acting->name != source;
+}
+
 // Returns whether a ball moves a corner.
 bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,
                             WallInput& input) const {
@@ -221,8 +250,20 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
     if (!panel && !counts(source)) continue;
     actions::ActionCounts counts = actions.by_source[i];
     input.operator_panel += counts.begun[actionIndex("operator_panel")];
-    if (leaves_out_ball_ && devices.ball(source)) counts.begun = {};
+    if (isOfAnotherHand(devices, source)) {
+      for (const std::size_t action : kOfHand) counts.held[action] = false;
+    }
+    const bool left_out = leaves_out_ball_ && devices.ball(source);
+    if (left_out) counts.begun = {};
     used.add(counts);
+    for (const std::size_t action : actions.in_order_by_source[i]) {
+      const std::uint8_t align = alignActionOf(action);
+      if (align < kAlignActionCount && !left_out) input.align.actions.push_back(align);
+    }
+  }
+  // What one hand has grabbed is let go before another one carries it, from where that is.
+  if (other_hand_) {
+    for (const std::size_t action : kMoving) used.held[action] = false;
   }
   const auto begun = [&](std::size_t action) { return used.begun[action]; };
   input.scene.grab = used.held[actionIndex("grab")];
@@ -234,13 +275,6 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
   input.snapshot = begun(actionIndex("snapshot"));
   input.blank = begun(actionIndex("blank"));
   input.freeze = begun(actionIndex("freeze"));
-  constexpr std::array kAlign = {actionIndex("align_output_next"), actionIndex("align_corner_next"),
-                                 actionIndex("align_left"),        actionIndex("align_right"),
-                                 actionIndex("align_up"),          actionIndex("align_down"),
-                                 actionIndex("align_undo"),        actionIndex("align_redo"),
-                                 actionIndex("next_testcard")};
-  static_assert(kAlign.size() == kAlignActionCount);
-  for (std::size_t i = 0; i < kAlign.size(); ++i) input.align.begun[i] = begun(kAlign[i]);
   return used.held[actionIndex("align_push")];
 }
 
@@ -263,6 +297,7 @@ WallInput DeviceFeed::read(Timestamp now) {
   WallInput input;
   const Duration since_last = now - std::exchange(last_read_, now).value_or(now);
   age_.reset();
+  other_hand_ = false;
   const shm::DeviceSlots* d = devices_.get(now);
   if (!d) return input;
   const Acts acts = readActs(*d, now);

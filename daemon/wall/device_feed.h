@@ -19,8 +19,9 @@ namespace merlin::wall {
 //
 // Of several balls the one that is pushed counts, of several hands the one that holds an action,
 // otherwise the first of each; of several touch surfaces the one that is touched; the actions of
-// all count. Of several people only the input of the one who has the wall counts (Turns); the hands
-// of the others may still point.
+// all count, but only the hand that acts grabs, flies and points by its glove. Of several people
+// only the input of the one who has the wall counts (Turns); the hands of the others may still
+// point.
 class DeviceFeed final : public InputFeed {
  public:
   DeviceFeed(std::string segment_name, FeedSettings settings)
@@ -59,6 +60,7 @@ class DeviceFeed final : public InputFeed {
   void readPosture(const shm::DeviceSlots& devices, const std::string& glove, Timestamp now,
                    WallInput& input);
   void moveCorner(Duration since_last, bool held, WallInput& input) const;
+  bool isOfAnotherHand(const shm::DeviceSlots& devices, const std::string& source) const;
   bool useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,
                   WallInput& input) const;
 
@@ -67,6 +69,7 @@ class DeviceFeed final : public InputFeed {
   Turns turns_;
   std::optional<std::string> holder_;  // who has the wall
   std::size_t hand_ = 0;               // the hand that acted last: index of settings_.hands
+  bool other_hand_ = false;            // it is another one than at the read before
   bool leaves_out_ball_ = false;
   std::optional<Duration> age_;
   std::optional<Timestamp> last_read_;

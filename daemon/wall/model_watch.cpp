@@ -25,17 +25,21 @@ bool ReplacedFile::look(const std::optional<FileStamp>& found, Timestamp now) {
   return true;
 }
 
-ModelWatch::ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch,
-                       const Clock& clock)
-    : files_(std::move(files)), make_(std::move(make)), clock_(clock) {
+ModelWatch::ModelWatch(std::vector<Watched> files, Make make, MissingContents& missing,
+                       ThreadWatch& watch, const Clock& clock, Duration try_again)
+    : files_(std::move(files)),
+      make_(std::move(make)),
+      missing_(missing),
+      clock_(clock),
+      try_again_(try_again) {
   for (const Watched& file : files_) {
     replaced_.emplace_back(file.shown);
-    faults_.push_back(file.fault);
     if (!file.fault.empty()) {
       report(fmt::format("{} is left out until it can be read: {}", file.path, file.fault));
     }
   }
   gone_.resize(files_.size());
+  tried_.resize(files_.size(), clock_.now());
   thread_ = WatchedThread(watch, "contents",
                           [this](const std::stop_token& s, Progress& p) { run(s, p); });
 }
@@ -72,7 +76,6 @@ void ModelWatch::offer(ReadyModel ready) {
                         Watched{ready.path, ready.stamp, ready.picture ? "picture" : "model"});
   // A content that is outdated before the wall took it is not shown.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == ready.place; });
-  if (ready.place < faults_.size()) faults_[ready.place].clear();
   ready_.push_back(std::move(ready));
 }
 
@@ -129,7 +132,10 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   const bool missing = !files_[place].fault.empty();
   const auto found = missing ? fileOrFolderStamp(path) : fileStamp(path);
   if (!missing) noteWhetherThere(place, found.has_value());
-  if (!replaced_[place].look(found, clock_.now())) return;
+  const Timestamp now = clock_.now();
+  const bool due = missing && found && now - tried_[place] >= try_again_;
+  if (!replaced_[place].look(found, now) && !due) return;
+  tried_[place] = now;
   Result<ReadyModel> ready = Error{Errc::kIo, path + ": not enough memory"};
   try {
     ready = make_(place, path);
@@ -148,10 +154,9 @@ void ModelWatch::take(std::size_t place, Result<ReadyModel> ready) {
     return offer(*std::move(ready));
   }
   if (missing) {
-    report(fmt::format("{} is still left out: {}", file.path, ready.error().what));
-    const std::lock_guard lock(mutex_);
-    faults_[place] = ready.error().what;
-    return;
+    if (missing_.faultOf(place) != ready.error().what)
+      report(fmt::format("{} is still left out: {}", file.path, ready.error().what));
+    return missing_.set(place, ready.error().what);
   }
   if (!ready) {
     return report(
@@ -176,7 +181,7 @@ void ModelWatch::noteWhetherThere(std::size_t place, bool there) {
   const std::string& path = files_[place].path;
   const std::string& what = files_[place].what;
   report(is_gone ? fmt::format("the {0}'s file {1} is gone or is no longer a regular file; the {0} "
-                               "read from it is still shown, and a restart would fail",
+                               "read from it is still shown, and a restart would not find it",
                                what, path)
                  : fmt::format("the {}'s file {} is there again", what, path));
 }
@@ -192,11 +197,6 @@ std::optional<ReadyModel> ModelWatch::take() {
 void ModelWatch::report(std::string sentence) {
   const std::lock_guard lock(mutex_);
   events_.push_back(std::move(sentence));
-}
-
-std::string ModelWatch::faultOf(std::size_t place) {
-  const std::lock_guard lock(mutex_);
-  return place < faults_.size() ? faults_[place] : "";
 }
 
 std::vector<std::string> ModelWatch::takeEvents() {

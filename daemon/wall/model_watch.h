@@ -15,6 +15,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/base/watched_thread.h"
+#include "daemon/wall/missing_contents.h"
 #include "render/content/model_content.h"
 #include "render/content/picture/picture.h"
 
@@ -74,8 +75,11 @@ class ModelWatch {
   // The same for what was asked for.
   using Read = std::function<Result<ReadyModel>()>;
 
-  // `files`: by place, i.e. the content's index. `watch` and `clock` must outlive this object.
-  ModelWatch(std::vector<Watched> files, Make make, ThreadWatch& watch, const Clock& clock);
+  // `files`: by place, i.e. the content's index. Those that have a fault are tried again when they
+  // have changed, and every `try_again`, since the stamp of a folder tells nothing of a file that
+  // is still being written there. `missing`, `watch` and `clock` must outlive this object.
+  ModelWatch(std::vector<Watched> files, Make make, MissingContents& missing, ThreadWatch& watch,
+             const Clock& clock, Duration try_again = std::chrono::seconds(10));
   ~ModelWatch() { thread_.stop(); }
   ModelWatch(const ModelWatch&) = delete;
   ModelWatch& operator=(const ModelWatch&) = delete;
@@ -92,8 +96,6 @@ class ModelWatch {
   void report(std::string sentence);
   // Returns the events since the last call, one sentence each.
   std::vector<std::string> takeEvents();
-  // Why nothing of a place can be shown yet; empty: it can.
-  std::string faultOf(std::size_t place);
 
  private:
   void run(const std::stop_token& stop, Progress& progress);
@@ -105,9 +107,12 @@ class ModelWatch {
 
   std::vector<Watched> files_;
   std::vector<ReplacedFile> replaced_;
-  std::vector<int> gone_;  // number of checks in a row that found no file, by place
+  std::vector<int> gone_;         // number of checks in a row that found no file, by place
+  std::vector<Timestamp> tried_;  // when a missing one was read last, by place
   Make make_;
+  MissingContents& missing_;
   const Clock& clock_;
+  const Duration try_again_;
   // For what is not the content of a place, so that it is not taken for one that is outdated.
   static constexpr std::size_t kNoPlace = ~std::size_t{0};
   struct Asked {
@@ -120,7 +125,6 @@ class ModelWatch {
   std::condition_variable_any asked_changed_;
   std::vector<ReadyModel> ready_;
   std::vector<std::string> events_;
-  std::vector<std::string> faults_;  // by place; see faultOf()
   std::vector<Asked> asked_;
   std::vector<std::pair<std::size_t, Watched>> offered_;  // files to look at from now on, by place
   WatchedThread thread_;

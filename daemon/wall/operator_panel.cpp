@@ -153,6 +153,10 @@ void OperatorPanel::readFacts(Timestamp now) {
     facts.slide = panelText(content->slide);
     facts.kind = shownKind(textIn(content->kind));
   }
+  const std::vector<std::string> faults = parts_.missing.faults();
+  for (std::size_t i = 0; i < std::min(faults.size(), options_.contents.size()); ++i) {
+    if (!faults[i].empty()) facts.missing.push_back(options_.contents[i].name);
+  }
   facts.blank = shown_ == Attendance::Shown::kBlank;
   facts.frozen = shown_ == Attendance::Shown::kFrozen;
   readDevices(now, facts);

@@ -13,6 +13,7 @@
 #include "daemon/shm/segment.h"
 #include "daemon/wall/attendance.h"
 #include "daemon/wall/input_feed.h"
+#include "daemon/wall/missing_contents.h"
 #include "daemon/wall/wall_contents.h"
 #include "render/panel/panel_overlay.h"
 
@@ -45,6 +46,7 @@ class OperatorPanel final : public render::panel::PanelSource {
     double rate_hz = 0;                  // of the configuration
     float radius_m = 1;                  // of the content
     Attendance& attendance;              // a press is a touch
+    const MissingContents& missing;      // of the options' contents
     const Clock& clock;
   };
   // All of `parts` must outlive this object.

@@ -17,7 +17,7 @@ OperatorTile::OperatorTile(const Parts& parts) : parts_(parts) {
                                       shm::segmentName(settings.instance, "devices"),
                                       settings.wall.governor.rate_hz,
                                       static_cast<float>(settings.wall.scene.model_radius_m),
-                                      parts_.attendance, parts_.clock});
+                                      parts_.attendance, parts_.missing, parts_.clock});
 }
 
 std::optional<PanelPointer::Place> OperatorTile::panelInFrame() const {

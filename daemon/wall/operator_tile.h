@@ -8,6 +8,7 @@
 
 #include "daemon/base/panel_pointer.h"
 #include "daemon/wall/message_board.h"
+#include "daemon/wall/missing_contents.h"
 #include "daemon/wall/operator_facts_reader.h"
 #include "daemon/wall/operator_panel.h"
 #include "render/text/operator_overlay.h"
@@ -22,6 +23,7 @@ class OperatorTile {
     const render::tiles::TilePlan& plan;
     const Settings& settings;
     const std::vector<ContentEntry>& contents;
+    const MissingContents& missing;  // of contents
     shm::WallSegment& segment;
     const MessageBoard& board;
     Attendance& attendance;

@@ -91,6 +91,18 @@ std::vector<std::string> leftOversOf(std::span<const FolderFile> files) {
   return left;
 }
 
+ShownFolder::ShownFolder(const ShownSettings& settings, const std::vector<std::string>& configured)
+    : settings_(settings) {
+  if (settings_.folder.empty()) return;
+  std::error_code error;
+  const fs::path folder = fs::weakly_canonical(settings_.folder, error);
+  for (const std::string& path : configured) {
+    const fs::path below = fs::weakly_canonical(path, error).lexically_relative(folder);
+    if (!below.empty() && *below.begin() != ".." && *below.begin() != ".")
+      configured_.push_back(below.begin()->string());
+  }
+}
+
 Result<Ok> ShownFolder::make() {
   const auto cannot = [this](Errc code, const std::string& why) {
     fault_ = fmt::format("merlin show cannot show files: {} (/wall/shown/folder)", why);
@@ -130,7 +142,8 @@ Result<ContentEntry> ShownFolder::entryOf(const std::string& name) const {
 std::vector<std::string> ShownFolder::tidy(const std::string& shown) {
   const std::lock_guard lock(mutex_);
   if (shown != shown_) shown_before_ = std::exchange(shown_, shown);
-  const std::string kept[] = {shown_, shown_before_};
+  std::vector<std::string> kept = configured_;
+  kept.insert(kept.end(), {shown_, shown_before_});
   return remove(surplusOf(files(), kept, limitBytes()));
 }
 

@@ -34,7 +34,9 @@ std::vector<std::string> leftOversOf(std::span<const FolderFile> files);
 // Thread-safe.
 class ShownFolder {
  public:
-  explicit ShownFolder(const ShownSettings& settings) : settings_(settings) {}
+  // `configured`: files that the configuration names; those in the folder are never removed.
+  explicit ShownFolder(const ShownSettings& settings,
+                       const std::vector<std::string>& configured = {});
 
   // Makes the folder if it is missing, for the group of this process, and such that files in it
   // get that group; removes what clients that were killed have left. Errors: kUnsupported (no
@@ -52,8 +54,8 @@ class ShownFolder {
   // folder cannot be used), kInvalidArgument (it is larger than limitBytes()).
   Result<ContentEntry> entryOf(const std::string& name) const;
 
-  // Removes surplusOf() the folder; `shown` and the one of the call before stay. Returns a sentence
-  // about each that cannot be removed.
+  // Removes surplusOf() the folder; `shown`, the one of the call before and those that the
+  // configuration names stay. Returns a sentence about each that cannot be removed.
   std::vector<std::string> tidy(const std::string& shown);
 
  private:
@@ -61,6 +63,7 @@ class ShownFolder {
   std::vector<std::string> remove(const std::vector<std::string>& names) const;
 
   ShownSettings settings_;
+  std::vector<std::string> configured_;  // names in the folder
   std::string fault_;
   std::mutex mutex_;
   std::string shown_, shown_before_;  // guarded by mutex_

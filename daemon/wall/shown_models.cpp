@@ -232,7 +232,7 @@ ContentSource::Replacement ShownModels::refusal(const ReadyModel& ready, std::st
 // The last place has a name only once something is shown there.
 void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
   Shown& shown = shown_[ready.place];
-  shown.missing = false;
+  if (std::exchange(shown.missing, false)) parts_.missing.nowShown(ready.place);
   shown.file = ready.path;
   shown.is_last_slide = ready.is_last_slide;
   if (ready.place < listed()) return;

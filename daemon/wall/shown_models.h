@@ -30,6 +30,7 @@ class ShownModels final : public ContentSource {
     const render::tiles::TilePlan& plan;
     const WallSettings& settings;
     ModelWatch& watch;
+    MissingContents& missing;
     render::content::TileSource& tiles;
     const Clock& clock;
   };

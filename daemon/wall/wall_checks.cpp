@@ -19,6 +19,18 @@ namespace {
 
 constexpr const char* kCannot = "cannot be used: ";
 
+// The JSON pointer of the content itself, not of its file.
+std::string placeOf(const ContentEntry& entry) {
+  if (!entry.pointer.starts_with("/wall/contents/")) return entry.pointer;
+  return entry.pointer.substr(0, entry.pointer.rfind('/'));
+}
+
+// Whether the configuration gives content `i` of contentsOf() its name, which is else its file's.
+bool isNamed(const WallSettings& wall, std::size_t i, std::size_t count) {
+  const std::size_t before = count - wall.contents.size();  // 1 for /wall/model
+  return i >= before && !wall.contents[i - before].name.empty();
+}
+
 }  // namespace
 
 std::vector<WallContent> readContents(LoadedSettings& loaded) {
@@ -30,6 +42,7 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
                         "names no .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
       continue;
     }
+    const auto stamp = fileOrFolderStamp(entry.path);
     std::vector<std::string> skipped;
     auto content = readContent(entry, loaded.settings.wall.render.model.show, "", skipped);
     if (content) {
@@ -38,7 +51,7 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
     } else if (content.error().code == Errc::kInvalidArgument) {
       loaded.addFinding("/wall/render/show", kCannot + content.error().what);
     } else {
-      contents.push_back(missingContent(entry, content.error().what));
+      contents.push_back(missingContent(entry, content.error().what, stamp));
     }
   }
   for (const WallContent& content : contents) {
@@ -50,7 +63,24 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
   return contents;
 }
 
+void checkNames(LoadedSettings& loaded) {
+  const WallSettings& wall = loaded.settings.wall;
+  const std::vector<ContentEntry> contents = contentsOf(wall);
+  const std::size_t count = contents.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContentEntry& entry = contents[i];
+    const auto same = std::ranges::find(contents, entry.name, &ContentEntry::name);
+    const auto first = static_cast<std::size_t>(same - contents.begin());
+    if (first == i || entry.path.empty()) continue;
+    if (isNamed(wall, first, count) && isNamed(wall, i, count)) continue;
+    loaded.addFinding(placeOf(entry),
+                      fmt::format("has the name \"{}\", as {} has; give one of them another name",
+                                  excerpt(entry.name), placeOf(*same)));
+  }
+}
+
 void checkPlaylist(LoadedSettings& loaded) {
+  checkNames(loaded);
   const std::vector<std::string>& names = loaded.settings.wall.playlist.contents;
   const std::vector<ContentEntry> known = contentsOf(loaded.settings.wall);
   for (auto name = names.begin(); name != names.end(); ++name) {

@@ -17,8 +17,13 @@ namespace merlin::wall {
 // O(size of the models' files).
 std::vector<WallContent> readContents(LoadedSettings& loaded);
 
-// Adds a finding for each name in /wall/playlist/contents that is not that of a content, or is
-// there twice. Reads no file.
+// Adds a finding for each content that has the name of one before it, which commands would find in
+// its place: see contentsOf(). Two names that the configuration itself gives are the loader's to
+// compare. Reads no file.
+void checkNames(LoadedSettings& loaded);
+
+// Calls checkNames(). Then adds a finding for each name in /wall/playlist/contents that is not that
+// of a content, or is there twice. Reads no file.
 void checkPlaylist(LoadedSettings& loaded);
 
 // Adds a finding for each image file or snapshot folder that cannot be written, for each MPCDI file

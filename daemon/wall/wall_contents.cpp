@@ -202,9 +202,10 @@ Result<ContentEntry> contentBelow(const std::string& folder, const std::string& 
   return entry;
 }
 
-WallContent missingContent(const ContentEntry& entry, std::string fault) {
+WallContent missingContent(const ContentEntry& entry, std::string fault,
+                           const std::optional<FileStamp>& tried) {
   WallContent missing{entry, entry.path, {}, render::content::noPicture()};
-  missing.stamp = fileOrFolderStamp(entry.path).value_or(FileStamp{});
+  missing.stamp = tried.value_or(FileStamp{});
   missing.fault = std::move(fault);
   return missing;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -57,8 +58,10 @@ struct WallContent {
   bool isModel() const noexcept { return data.index() == 0; }
 };
 
-// A content that could not be read, and has its place until it can.
-WallContent missingContent(const ContentEntry& entry, std::string fault);
+// A content that could not be read, and has its place until it can. `tried`: fileOrFolderStamp() of
+// before.
+WallContent missingContent(const ContentEntry& entry, std::string fault,
+                           const std::optional<FileStamp>& tried);
 
 // Reads a content: a model as a whole, of a picture its coarsest level. Of slides it reads the
 // first that can be shown after the slide `after` in the order of their names, cyclically, and

@@ -17,6 +17,7 @@
 #include "render/frame/tile_arrangement.h"
 #include "render/out/output_kinds.h"
 #include "render/room/presets.h"
+#include "render/stereo/eye_tiles.h"
 #include "render/testcard/card_tiles.h"
 
 namespace merlin::wall {
@@ -37,6 +38,18 @@ std::vector<ContentEntry> entriesOf(const std::vector<WallContent>& contents) {
   std::vector<ContentEntry> entries;
   for (const WallContent& content : contents) entries.push_back(content.entry);
   return entries;
+}
+
+std::vector<std::string> faultsOf(const std::vector<WallContent>& contents) {
+  std::vector<std::string> faults;
+  for (const WallContent& content : contents) faults.push_back(content.fault);
+  return faults;
+}
+
+std::vector<std::string> pathsOf(const std::vector<ContentEntry>& entries) {
+  std::vector<std::string> paths;
+  for (const ContentEntry& entry : entries) paths.push_back(entry.path);
+  return paths;
 }
 
 // Maps the names of a room's tiles to the names of their panels.
@@ -113,7 +126,8 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
     : settings_(settings),
       contents_(std::move(contents)),
       entries_(entriesOf(contents_)),
-      shown_folder_(settings_.wall.shown),
+      missing_(faultsOf(contents_)),
+      shown_folder_(settings_.wall.shown, pathsOf(entries_)),
       plan_(std::move(plan)),
       scene_(std::move(scene)),
       governor_(settings.wall.governor),
@@ -125,10 +139,11 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       cards_(plan_.frame_width, plan_.frame_height,
              render::testcard::cardTiles(plan_, settings.wall.outputs, panelsOf(settings.wall))),
       attendance_(settings.wall.playlist),
-      operator_tile_({plan_, settings_, entries_, *segment_, board_, attendance_, clock_}),
+      operator_tile_(
+          {plan_, settings_, entries_, missing_, *segment_, board_, attendance_, clock_}),
       notice_(plan_, segment_->notice, clock_),
-      model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), watch_,
-                   clock_),
+      model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), missing_,
+                   watch_, clock_),
       tiles_(watch_) {}
 
 void WallRole::makeChecks() {
@@ -163,6 +178,11 @@ Result<Ok> WallRole::makeCorrections() {
     for (std::size_t corner = 0; corner < made->marks.size(); ++corner)
       made->marks[corner] = render::testcard::cornerOf(plan_, output, corner);
     links.push_back(std::move(correction));
+    if (render::stereo::showsBothEyes(output, settings_.wall.tiles)) {
+      made->fixed =
+          "it shows a picture of each eye, which would be moved as one; use stereo mode "
+          "two_outputs or anaglyph";
+    }
     aligned.push_back(*std::move(made));
     corrections_.push_back(
         links.size() == 1 ? std::move(links.front())
@@ -218,7 +238,7 @@ void WallRole::tend(Timestamp now) {
   const std::size_t index = shown->content - firstNumber();
   if (index >= entries_.size()) return;
   // Another is shown since its file cannot be read yet; the next start is to show it.
-  if (first && !model_watch_.faultOf(lastShown().value_or(0)).empty()) return;
+  if (first && !missing_.faultOf(lastShown().value_or(0)).empty()) return;
   const std::string path = index == 0 ? std::string() : entries_[index].path;
   if (keeper_.state().content != path) keeper_.change([&](state::State& s) { s.content = path; });
 }
@@ -239,9 +259,9 @@ std::future<Result<std::string>> WallRole::start() {
 }
 
 void WallRole::run(const std::stop_token& stop, Progress& progress) {
-  auto made =
-      ShownModels::make(std::move(contents_), {plan_, settings_.wall, model_watch_, tiles_, clock_},
-                        scene_.view().T_eye_model);
+  auto made = ShownModels::make(std::move(contents_),
+                                {plan_, settings_.wall, model_watch_, missing_, tiles_, clock_},
+                                scene_.view().T_eye_model);
   if (!made) {
     ready_.set_value(made.error());
     return;
@@ -391,7 +411,7 @@ Result<std::uint32_t> WallRole::show(const std::string& name) {
                                    "FILE` puts the file into its content folder")};
   }
   const auto place = static_cast<std::size_t>(named - entries_.begin());
-  if (const std::string fault = model_watch_.faultOf(place); !fault.empty()) {
+  if (const std::string fault = missing_.faultOf(place); !fault.empty()) {
     return Error{Errc::kInvalidArgument,
                  fmt::format("{} cannot be shown until its file can be read: {}", name, fault)};
   }
@@ -399,6 +419,15 @@ Result<std::uint32_t> WallRole::show(const std::string& name) {
   loop->show(place);
   loop->finishRequest(number, {});
   return number;
+}
+
+std::vector<std::pair<std::string, std::string>> WallRole::missingContents() const {
+  std::vector<std::pair<std::string, std::string>> missing;
+  const std::vector<std::string> faults = missing_.faults();
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    if (!faults[i].empty()) missing.emplace_back(entries_[i].name, faults[i]);
+  }
+  return missing;
 }
 
 Result<std::uint32_t> WallRole::showFile(const std::string& name) {

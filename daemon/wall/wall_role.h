@@ -116,6 +116,8 @@ class WallRole {
   // level, a few milliseconds. Thread-safe.
   Result<std::uint32_t> showFile(const std::string& name);
   const ShownFolder& shownFolder() const noexcept { return shown_folder_; }
+  // Names of contents that cannot be shown yet, each with the reason. Thread-safe.
+  std::vector<std::pair<std::string, std::string>> missingContents() const;
 
   // Shows a sentence over the picture for a few seconds. Errors: those of Notice::show().
   // Thread-safe.
@@ -156,6 +158,7 @@ class WallRole {
   Settings settings_;  // `wall` is drawnWall() of the configured one
   std::vector<WallContent> contents_;
   const std::vector<ContentEntry> entries_;  // of contents_
+  MissingContents missing_;                  // of entries_
   ShownFolder shown_folder_;
   render::tiles::TilePlan plan_;
   render::scene::Scene scene_;

@@ -96,6 +96,10 @@ std::string detailTimes(const PanelFacts& facts, double factor) {
   return next == now ? "" : fmt::format("{:.0f}", next);
 }
 
+bool isMissing(const PanelContent& content, const PanelFacts& facts) {
+  return std::ranges::find(facts.missing, content.name) != facts.missing.end();
+}
+
 // The name of the first content of this kind after the one that is shown.
 std::string nextOfKind(bool is_model, const PanelFacts& facts, const PanelOptions& options) {
   if ((facts.kind == ShownKind::kModel) == is_model) return "";
@@ -104,7 +108,7 @@ std::string nextOfKind(bool is_model, const PanelFacts& facts, const PanelOption
   const auto from = shown == all.end() ? 0 : static_cast<std::size_t>(shown - all.begin());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const PanelContent& content = all[(from + i) % all.size()];
-    if (content.is_model == is_model) return content.name;
+    if (content.is_model == is_model && !isMissing(content, facts)) return content.name;
   }
   return "";
 }
@@ -114,7 +118,11 @@ std::string previousName(const PanelFacts& facts, const PanelOptions& options) {
   const auto shown = std::ranges::find(all, facts.content, &PanelContent::name);
   if (all.empty() || (all.size() == 1 && shown != all.end())) return "";
   const auto at = shown == all.end() ? 0 : static_cast<std::size_t>(shown - all.begin());
-  return all[(at + all.size() - 1) % all.size()].name;
+  for (std::size_t back = 1; back <= all.size(); ++back) {
+    const PanelContent& content = all[(at + all.size() - back) % all.size()];
+    if (!isMissing(content, facts)) return content.name == facts.content ? "" : content.name;
+  }
+  return "";
 }
 
 // The argument of a command that has one; empty: there is nothing to do.

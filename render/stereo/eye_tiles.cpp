@@ -177,6 +177,18 @@ EyeTiles eyeTiles(const StereoSettings& stereo, const tiles::TilesSettings& tile
   return eyes;
 }
 
+bool showsBothEyes(const out::OutputSettings& output, const tiles::TilesSettings& tiles) {
+  if (output.kind == out::OutputKind::kSharedMemory) return false;  // it is not corrected
+  const auto shows = [&](tiles::Eye eye) {
+    return std::ranges::any_of(tiles.tiles, [&](const tiles::TileSettings& t) {
+      return t.eye == eye && (output.tiles.empty() ||
+                              std::ranges::find(output.tiles, t.name, &out::PlacedTile::tile) !=
+                                  output.tiles.end());
+    });
+  };
+  return shows(tiles::Eye::kLeft) && shows(tiles::Eye::kRight);
+}
+
 std::string pointerInSettings(const EyeTiles& eyes, const std::string& pointer) {
   // "/OUTPUT/tiles/PLACED..."
   std::size_t output = 0, placed = 0;

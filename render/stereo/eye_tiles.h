@@ -34,6 +34,10 @@ struct EyeTiles {
 EyeTiles eyeTiles(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
                   const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
 
+// Whether the output's signal has a picture of each eye in it, each in a place of its own: then a
+// correction of the signal fits neither. Both as in EyeTiles.
+bool showsBothEyes(const out::OutputSettings& output, const tiles::TilesSettings& tiles);
+
 // Pointer of a fault of EyeTiles::outputs, as their validate() gives it, in the settings that the
 // outputs were made from.
 std::string pointerInSettings(const EyeTiles& eyes, const std::string& pointer);

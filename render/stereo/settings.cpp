@@ -181,6 +181,28 @@ SettingFaults faultsOfPlaced(const StereoSettings& s,
   return faults;
 }
 
+// Whether it moves or covers parts of the picture, so that it has to know what is where.
+bool dependsOnPlace(const correct::CorrectionSettings& c) {
+  return c.corners != decltype(c.corners){} || !c.mesh.isOff() || !c.mpcdi.empty() ||
+         c.blend.hasRamp() || !c.black.isOff();
+}
+
+// A correction is of the whole signal, in which each eye's picture is only a part.
+SettingFaults faultsOfCorrections(const StereoSettings& s, const EyeTiles& eyes) {
+  SettingFaults faults;
+  for (std::size_t i = 0; i < eyes.outputs.size(); ++i) {
+    const out::OutputSettings& output = eyes.outputs[i];
+    if (!showsBothEyes(output, eyes.tiles) || !dependsOnPlace(output.correction)) continue;
+    faults.push_back(
+        {fmt::format("/outputs/{}/correction", i),
+         fmt::format("has corners, a mesh, ramps or a black level, which would apply to the whole "
+                     "signal, and in stereo mode {} that has a picture of each eye in it; use "
+                     "mode two_outputs or anaglyph, or only colour",
+                     nameOf(s.mode))});
+  }
+  return faults;
+}
+
 // Numbers of the outputs that show a tile by name.
 std::vector<std::size_t> outputsOf(const std::string& tile,
                                    const std::vector<out::OutputSettings>& outputs) {
@@ -217,6 +239,7 @@ SettingFaults validate(const StereoSettings& stereo, const tiles::TilesSettings&
   const EyeTiles eyes = eyeTiles(stereo, tiles, outputs, wall_distance_m);
   faults = faultsOfTiles(stereo, tiles, eyes);
   if (faults.empty()) faults = faultsOfPlaced(stereo, outputs, eyes);
+  if (faults.empty()) faults = faultsOfCorrections(stereo, eyes);
   if (faults.empty() && stereo.mode == StereoMode::kTwoOutputs)
     faults = faultsOfTwoOutputs(tiles, outputs);
   return faults;

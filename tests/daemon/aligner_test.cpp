@@ -46,7 +46,9 @@ class AlignerTest : public testing::Test {
       }
       return std::unique_ptr<render::frame::Correction>(std::make_unique<FakeCorrection>(s));
     };
-    return {name, width, 480, base, make, correction.get()};
+    AlignedOutput made{name, width, 480, base, make, correction.get()};
+    made.fixed = fixed_;
+    return made;
   }
   static render::correct::CorrectionSettings meshed() {
     render::correct::CorrectionSettings s;
@@ -76,6 +78,7 @@ class AlignerTest : public testing::Test {
   std::mutex mutex_;
   std::vector<render::correct::CorrectionSettings> built_;
   std::unique_ptr<render::frame::ReplaceableCorrection> left_, right_;
+  std::string fixed_;
   std::unique_ptr<Aligner> aligner_;
 };
 
@@ -160,15 +163,15 @@ TEST_F(AlignerTest, WhatCannotBeShownIsRefusedAndNothingChanges) {
 
 TEST_F(AlignerTest, BoundInputsMoveWhatIsChosen) {
   AlignInput input;
-  input.begun = {0, 0, 0, 2, 0, 1, 0, 0};  // right twice, down
+  input.actions = {3, 3, 5};  // right twice, down
   aligner_->ask(input);
   EXPECT_TRUE(test::eventually([&] { return moved("top_left") == json({2, 1}); }));
-  input.begun = {1, 3, 1, 0, 0, 0, 0, 0};  // next output, three corners on, left
+  input.actions = {0, 1, 1, 1, 2};  // next output, three corners on, left
   aligner_->ask(input);
   EXPECT_TRUE(test::eventually([&] { return moved("bottom_right", 1) == json({-1, 0}); }));
   EXPECT_EQ(aligner_->selection(), (Aligner::Selection{"right", state::cornerAt(3)}));
   ask("select top_left left");
-  input.begun = {};
+  input.actions = {};
   input.push = {0.5, 0.25};
   aligner_->ask(input);
   EXPECT_TRUE(test::eventually([&] { return moved("top_left") == json({2.5, 1.25}); }));
@@ -176,6 +179,27 @@ TEST_F(AlignerTest, BoundInputsMoveWhatIsChosen) {
   EXPECT_TRUE(test::eventually([&] { return moved("top_left") == json({3, 1.5}); }));
   ask("undo");
   EXPECT_EQ(moved("top_left"), json({2, 1})) << "a push is one step";
+}
+
+TEST_F(AlignerTest, BoundInputsAreExecutedInTheirOrder) {
+  AlignInput input;
+  input.actions = {3, 3, 1, 5, 5, 6};  // right twice, the next corner, down twice, undo
+  aligner_->ask(input);
+  EXPECT_TRUE(test::eventually([&] { return moved("top_right") == json({0, 1}); }));
+  EXPECT_EQ(moved("top_left"), json({2, 0}));
+}
+
+TEST_F(AlignerTest, AnOutputWithBothEyesPicturesIsNotMoved) {
+  ask("move top_left 3 2 left");
+  keeper_.takeNotices();
+  fixed_ = "it shows a picture of each eye";
+  start();
+  EXPECT_EQ(moved("top_left"), json({0, 0})) << "what was moved before is dropped";
+  EXPECT_NE(keeper_.takeNotices().at(0).find("is dropped: it shows a picture of each eye"),
+            std::string::npos);
+  const json answer = ask("move top_left 3 2 left");
+  ASSERT_TRUE(answer.is_string()) << answer;
+  EXPECT_NE(answer.get<std::string>().find("it shows a picture of each eye"), std::string::npos);
 }
 
 TEST_F(AlignerTest, ARefusedActionIsANoticeOnce) {

@@ -19,7 +19,7 @@ class AttendanceTest : public testing::Test {
     input_.blank = input_.freeze = input_.next_content = input_.snapshot = 0;
     input_.scene.reset_view = input_.scene.next_mode = 0;
     input_.scene.step = {};
-    input_.align.begun = {};
+    input_.align.actions = {};
     return attendance_.shown();
   }
   Shown pass(Duration time) {
@@ -60,8 +60,10 @@ TEST_F(AttendanceTest, EveryTouchShowsThePictureAgain) {
       [&] { input_.scene.next_mode = 1; },
       [&] { input_.next_content = 1; },
       [&] { input_.snapshot = 1; },
-      [&] { input_.align.begun[2] = 1; },
+      [&] { input_.align.actions = {2}; },
       [&] { input_.align.push.x = 0.5; },
+      [&] { input_.scene.touch.fingers = 1; },
+      [&] { input_.scene.touch.spread = -0.1F; },
       [&] { input_.scene.grab = true; },
       [&] { input_.scene.fly = true; },
       [&] { input_.scene.point_at = true; },

@@ -260,14 +260,17 @@ TEST_F(DeviceFeedTest, AlignActionsArriveInTheirOrder) {
   shm::ActionState begun{};
   for (std::size_t i = 0; i < kAlignActionCount; ++i) {
     const auto* const action = std::ranges::find(kActions, std::string_view(kAlignActions[i]));
-    begun.begun[action - kActions.begin()] = static_cast<std::uint32_t>(i + 1);
+    begun.begun[action - kActions.begin()] = 1;
+    begun.recent[i] = static_cast<std::uint8_t>(action - kActions.begin());
   }
+  begun.sequence = kAlignActionCount;
   shm::ActionState none{};
   (*segment_)->actions[test::kBall].publish(none);
   read();
   (*segment_)->actions[test::kBall].publish(begun);
   const WallInput input = read();
-  for (std::size_t i = 0; i < kAlignActionCount; ++i) EXPECT_EQ(input.align.begun[i], i + 1);
+  ASSERT_EQ(input.align.actions.size(), kAlignActionCount);
+  for (std::size_t i = 0; i < kAlignActionCount; ++i) EXPECT_EQ(input.align.actions[i], i);
 }
 
 // The ball works the operator's panel: what its buttons are bound to does not happen meanwhile.

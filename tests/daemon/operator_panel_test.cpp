@@ -68,11 +68,12 @@ class OperatorPanelTest : public testing::Test {
   test::FakeClock clock_;
   std::unique_ptr<shm::WallSegment> wall_ = std::make_unique<shm::WallSegment>();
   Attendance attendance_{{}};
+  MissingContents missing_{{}};
   WallInput input_;
   OperatorPanel panel_{
       place(),
       options(),
-      {*wall_, wall_->panel, "/merlin-test-no-such-devices", 30, 2, attendance_, clock_}};
+      {*wall_, wall_->panel, "/merlin-test-no-such-devices", 30, 2, attendance_, missing_, clock_}};
 };
 
 using Requests = std::vector<Request>;

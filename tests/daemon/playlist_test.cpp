@@ -215,6 +215,38 @@ TEST(PlaylistCheck, NamesAreThoseOfContentsOnceEach) {
             "f.json:2: /wall/playlist/contents/1 is the number 7; allowed is a string\n");
 }
 
+std::string nameFindings(const std::string& wall) {
+  LoadedSettings loaded = loadSettings("{\"wall\": {" + wall + "}}", "");
+  checkPlaylist(loaded);
+  std::string text;
+  for (const Finding& finding : loaded.findings) text += toText("f.json", finding) + "\n";
+  return text;
+}
+
+// Of two with one name, commands and playlists would only find the first.
+TEST(ContentNames, ThoseOfFilesAreComparedToo) {
+  EXPECT_EQ(
+      nameFindings(R"("contents": [{"model": "bust.mrm"}, {"picture": "bust.tif"}])"),
+      "f.json:1: /wall/contents/1 has the name \"bust\", as /wall/contents/0 has; give one of "
+      "them another name\n");
+  EXPECT_EQ(
+      nameFindings(R"("contents": [{"picture": "a/hall.tif"}, {"slides": "b/hall/"}])"),
+      "f.json:1: /wall/contents/1 has the name \"hall\", as /wall/contents/0 has; give one of "
+      "them another name\n");
+  EXPECT_EQ(
+      nameFindings(R"("model": "bust.mrm", "contents": [{"model": "x.mrm", "name": "bust"}])"),
+      "f.json:1: /wall/contents/0 has the name \"bust\", as /wall/model has; give one of them "
+      "another name\n");
+  EXPECT_EQ(
+      nameFindings(R"("model": "bust.mrm", "contents": [{"model": "bust.mrm", "name": "again"},
+                           {"picture": "again.tif", "name": "bust.tif"}])"),
+      "");
+  EXPECT_EQ(nameFindings(R"("contents": [{"model": "a.mrm", "name": "x"},
+                           {"model": "b.mrm", "name": "x"}])"),
+            "f.json:2: /wall/contents/1/name is \"x\", the name of another content\n")
+      << "said once";
+}
+
 TEST_F(Day, ThePictureGetsDarkerGradually) {
   Playlist playlist(settings());
   EXPECT_EQ(playlist.update(seconds(14'400), false).light, 1);

@@ -97,6 +97,19 @@ TEST_F(Folder, OneThatCannotBeMadeIsSaidAndNothingIsShown) {
   EXPECT_EQ(unset.entryOf("a.tif").error().code, Errc::kUnsupported);
 }
 
+TEST_F(Folder, WhatTheConfigurationNamesIsNeverRemoved) {
+  fs::create_directory(in("talk"));
+  put("talk/1.tif");
+  put("kept.tif");
+  put("old.tif");
+  const ShownSettings settings{folder_.path(), 0};
+  ShownFolder folder(settings,
+                     {in("kept.tif"), folder_.path() + "/../b.shown/talk", dir_ / "else"});
+  EXPECT_TRUE(folder.tidy("new.tif").empty());
+  EXPECT_TRUE(fs::exists(in("kept.tif")) && fs::exists(in("talk/1.tif")));
+  EXPECT_FALSE(fs::exists(in("old.tif")));
+}
+
 TEST_F(Folder, AFileIsAContentByItsNameAndItsEnding) {
   put("photo 1.tif");
   const auto picture = folder_.entryOf("photo 1.tif");

@@ -134,6 +134,9 @@ TEST_F(DocumentsTest, TheWallSaysWhatAClientHasItSayAndWhereFilesGo) {
   EXPECT_EQ(s["shown_folder"].dump(),
             R"({"fault":"","limit_bytes":4096,"path":"/var/lib/merlin/merlin.shown"})");
   EXPECT_EQ(s["notice"], "Reading scan.pgm: 45 %");
+  const std::string missing = addMissingContents(status, {{"dome", "dome.tif: is cut"}});
+  EXPECT_EQ(json::parse(missing)["missing_contents"].dump(), R"({"dome":"dome.tif: is cut"})");
+  EXPECT_FALSE(json::parse(addMissingContents(status, {})).contains("missing_contents"));
 }
 
 TEST_F(DocumentsTest, TheWallSaysWhatItShowsWhileNobodyTouchesIt) {

@@ -1,6 +1,8 @@
 // Whose input counts when several people act on the wall, and which of several devices acts.
 #include "daemon/wall/turns.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "daemon/base/commands.h"
@@ -84,9 +86,19 @@ class SeveralDevicesTest : public testing::Test {
     sample.translation[0] = share;
     (*segment_)->ball[ball].publish(sample);
   }
-  void hold(std::size_t device, bool held) {
+  static std::size_t indexOf(std::string_view action) {
+    return static_cast<std::size_t>(std::ranges::find(kActions, action) - kActions.begin());
+  }
+  void begin(std::size_t device, std::string_view action) {
     shm::ActionState& state = states_[device];
-    constexpr std::size_t index = actionIndex("grab");
+    const std::size_t index = indexOf(action);
+    ++state.begun[index];
+    state.recent[state.sequence++ % std::size(state.recent)] = static_cast<std::uint8_t>(index);
+    (*segment_)->actions[device].publish(state);
+  }
+  void hold(std::size_t device, bool held, std::string_view action = "grab") {
+    shm::ActionState& state = states_[device];
+    const std::size_t index = indexOf(action);
     state.held[index] = held ? 1 : 0;
     if (held) ++state.begun[index];
     (*segment_)->actions[device].publish(state);
@@ -121,7 +133,33 @@ TEST_F(SeveralDevicesTest, TheHandThatHoldsActsAndKeepsOn) {
   hold(kRight, false);
   input = read(feed);
   EXPECT_EQ(input.scene.hand->station, 1u);
+  EXPECT_FALSE(input.scene.grab) << "let go, so that nothing jumps from one hand to the other";
+  EXPECT_TRUE(read(feed).scene.grab) << "and grabbed anew";
+}
+
+TEST_F(SeveralDevicesTest, AHandThatGrabsMovesWhatAnotherPointsAt) {
+  DeviceFeed feed(name_, settings(""));
+  hold(kLeft, true, "point_at");
+  WallInput input = read(feed);
+  EXPECT_EQ(input.scene.hand->station, 1u);
+  EXPECT_TRUE(input.scene.point_at);
+  hold(kRight, true);
+  read(feed);
+  input = read(feed);
+  EXPECT_EQ(input.scene.hand->station, 2u);
   EXPECT_TRUE(input.scene.grab);
+  EXPECT_FALSE(input.scene.point_at) << "of the hand that grabs";
+  ASSERT_EQ(input.scene.other_pointers.size(), 1u);
+  EXPECT_EQ(input.scene.other_pointers[0].station, 1u);
+}
+
+TEST_F(SeveralDevicesTest, AlignmentsComeInTheirOrder) {
+  DeviceFeed feed(name_, settings(""));
+  read(feed);
+  for (const char* name : {"align_left", "align_left", "align_corner_next", "align_undo"})
+    begin(kDesk, name);
+  EXPECT_EQ(read(feed).align.actions, (std::vector<std::uint8_t>{2, 2, 1, 6}));
+  EXPECT_TRUE(read(feed).align.actions.empty());
 }
 
 TEST_F(SeveralDevicesTest, AnotherPersonsInputWaitsForItsTurn) {

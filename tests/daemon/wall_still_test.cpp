@@ -155,10 +155,10 @@ TEST_F(WallStillTest, WhatBoundInputsMoveIsPassedOn) {
   std::vector<AlignInput> asked;
   on_align_ = [&](const AlignInput& input) { asked.push_back(input); };
   run(1, [&](Timestamp) {
-    if (feed_.begins.size() == 10) feed_.actions.align.begun[3] = 2;
+    if (feed_.begins.size() == 10) feed_.actions.align.actions = {3, 3};
   });
   ASSERT_EQ(asked.size(), 1u);
-  EXPECT_EQ(asked[0].begun[3], 2u);
+  EXPECT_EQ(asked[0].actions, (std::vector<std::uint8_t>{3, 3}));
 }
 
 }  // namespace

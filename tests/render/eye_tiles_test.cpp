@@ -396,6 +396,24 @@ const Fault kFaults[] = {
      "/outputs/0/tiles/0/turn_deg",
      "is 90: stereo mode side_by_side packs both eyes' pictures of tile wall for an output that is "
      "not on its side; place wall.L and wall.R each on its own"},
+    {"ARampOverBothEyes",
+     [](Wall& w) {
+       w.outputs = {picture("a", {{"wall"}})};
+       w.outputs[0].correction.blend.right = 40;
+     },
+     "/outputs/0/correction",
+     "has corners, a mesh, ramps or a black level, which would apply to the whole signal, and in "
+     "stereo mode side_by_side that has a picture of each eye in it; use mode two_outputs or "
+     "anaglyph, or only colour"},
+    {"ACornerOfTheWholeFrame",
+     [](Wall& w) {
+       w.outputs = {picture("a", {})};
+       w.outputs[0].correction.corners[0] = 1;
+     },
+     "/outputs/0/correction",
+     "has corners, a mesh, ramps or a black level, which would apply to the whole signal, and in "
+     "stereo mode side_by_side that has a picture of each eye in it; use mode two_outputs or "
+     "anaglyph, or only colour"},
     {"TwoOutputsThatShowBothEyes",
      [](Wall& w) {
        w.stereo.mode = stereo::StereoMode::kTwoOutputs;

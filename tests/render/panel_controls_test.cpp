@@ -85,6 +85,14 @@ TEST(PanelControls, ContentsGoRoundInBothDirections) {
   one.contents = {{"scan", true}};
   EXPECT_EQ(requestOf(C::kPrevious, someFacts(), one), std::nullopt);
   EXPECT_EQ(requestOf(C::kNext, someFacts(), one), std::nullopt);
+  PanelFacts missing = someFacts();
+  missing.missing = {"dome", "mug"};
+  EXPECT_EQ(request(C::kPrevious, missing), (Request{"show", "map"})) << "dome is missing";
+  missing.missing = {"map", "dome", "mug"};
+  EXPECT_EQ(request(C::kPrevious, missing), std::nullopt);
+  EXPECT_EQ(request(C::kPicture, missing), std::nullopt);
+  missing.missing = {"map"};
+  EXPECT_EQ(request(C::kPicture, missing), (Request{"show", "dome"}));
   PanelFacts slides = someFacts();
   slides.slide = "03.tif";
   EXPECT_EQ(requestOf(C::kNext, slides, one), (Request{"next_content"}));

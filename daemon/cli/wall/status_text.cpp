@@ -173,6 +173,13 @@ std::string serverLines(const Json& s) {
 }
 
 // A line for each hand whose gestures are recognised: its last one.
+std::string missingLines(const Json& s) {
+  std::string text;
+  for (const auto& [name, why] : s.value("missing_contents", Json::object()).items())
+    text += fmt::format("left out {}: {}\n", name, why.get<std::string>());
+  return text;
+}
+
 std::string gestureLines(const Json& s) {
   std::string text;
   if (!s.contains("gestures")) return text;
@@ -222,7 +229,7 @@ std::string statusTable(const Json& s) {
         "room {:.0f} %\n",
         s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
         100 * s.value("head_room", 0.0));
-    text += paceLines(s) + rendererLine(s) + outputLines(s);
+    text += paceLines(s) + rendererLine(s) + outputLines(s) + missingLines(s);
   }
   if (!s.contains("devices")) return text + serverLines(s);
   const std::string posture = s.value("posture", "");

@@ -117,6 +117,9 @@ std::vector<Row> wallRows(const Json& s) {
                                     figure(used ? std::optional(100 * *used) : std::nullopt, 0))));
   rows.push_back(detailRow(s));
   rows.push_back(contentRow(s));
+  for (const auto& [name, why] : object(s, "missing_contents").items()) {
+    if (why.is_string()) rows.push_back(labelled("left out", name + ": " + why.get<std::string>()));
+  }
   return rows;
 }
 
