@@ -4,6 +4,7 @@
 #include <cctype>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -105,18 +106,27 @@ void checkNames(const DevicesSettings& d, LoadedSettings& loaded) {
   }
 }
 
-// Two drivers on one serial line would each read only a part of the device's bytes.
+// Two drivers on one serial line would each read only a part of the device's bytes. Two paths of
+// one device are found where files may be read: daemon/devices/device_checks.
 void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
-  std::map<std::string, std::size_t> taken;
+  std::vector<std::pair<PortAddress, std::size_t>> taken;
   for (std::size_t i = 0; i < d.list.size(); ++i) {
-    const std::string& port = d.list[i].line.port;
-    if (port.empty() || port.starts_with("replay:")) continue;
-    const auto [first, fresh] = taken.emplace(port, i);
-    if (fresh) continue;
-    loaded.addFinding(deviceAt(i) + "/port",
-                      fmt::format("is \"{}\", which is the port of the device \"{}\" at {}; each "
-                                  "device needs its own",
-                                  port, d.list[first->second].name, deviceAt(first->second)));
+    auto port = parsePort(d.list[i].line.port);
+    if (!port) continue;
+    const auto same = std::ranges::find_if(
+        taken, [&](const auto& other) { return sameLine(other.first, *port); });
+    if (same == taken.end()) {
+      taken.emplace_back(*std::move(port), i);
+      continue;
+    }
+    const DeviceSettings& first = d.list[same->second];
+    const bool alike = first.line.port == d.list[i].line.port;
+    loaded.addFinding(
+        deviceAt(i) + "/port",
+        fmt::format("is \"{}\", which is the port of the device \"{}\" at {}{}; each device needs "
+                    "its own",
+                    d.list[i].line.port, first.name, deviceAt(same->second),
+                    alike ? "" : fmt::format(", \"{}\"", first.line.port)));
   }
 }
 

@@ -74,17 +74,13 @@ constexpr DriverEntry kDrivers[] = {
        return spacenav::makeDevice(s.spacenav, c, k);
      },
      describeOwn<&DriverSettings::spacenav>,
-     [](const DriverSettings& s, const LineSettings&) {
-       return within("spacenav", validate(s.spacenav));
-     }},
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.spacenav, line); }},
     {"evdev", SampleKind::kBall, 0, "gamepad, joystick, space mouse or clicker, through the kernel",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return evdev::makeDevice(s.evdev, c, k);
      },
      describeOwn<&DriverSettings::evdev>,
-     [](const DriverSettings& s, const LineSettings&) {
-       return within("evdev", validate(s.evdev));
-     },
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.evdev, line); },
      true},
     {"touch", SampleKind::kTouch, 0, "touch frame, touch screen or mouse, through the kernel",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {

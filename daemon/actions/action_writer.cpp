@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "daemon/base/clock.h"
@@ -37,7 +39,25 @@ ActionWriter::ParsedBindings ActionWriter::parse(const std::vector<Binding>& bin
     p.after_ns = fromSeconds(binding.after_s).count();
     p.repeat_ns = fromSeconds(binding.repeat_s).count();
   }
+  findChords(parsed);
   return parsed;
+}
+
+// All inputs are of one source, so their parts tell whether they are the same.
+void ActionWriter::findChords(ParsedBindings& bindings) {
+  std::map<std::tuple<Input::Kind, std::uint32_t, std::string>, std::size_t> alone;
+  const auto partOf = [](const Input& i) { return std::tuple(i.kind, i.button, i.name); };
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    if (!bindings[i].with) alone.emplace(partOf(bindings[i].input), i);
+  }
+  const auto indexOf = [&](const Input& input) {
+    const auto found = alone.find(partOf(input));
+    return found == alone.end() ? kNone : found->second;
+  };
+  for (ParsedBinding& binding : bindings) {
+    binding.alone = indexOf(binding.input);
+    if (binding.with) binding.with_alone = indexOf(*binding.with);
+  }
 }
 
 void ActionWriter::setNumber(Input& input) const {
@@ -67,6 +87,7 @@ void ActionWriter::takeBindings(std::int64_t now_ns) noexcept {
       binding.since_ns = same->since_ns;
       binding.was_held = same->was_held;
       binding.again_ns = same->again_ns;
+      binding.chorded = same->chorded;
     }
   };
   if (!rebound_->take(bindings_, carryOver)) return;
@@ -93,15 +114,34 @@ bool ActionWriter::longerOneHeld(const ParsedBinding& binding) const noexcept {
   });
 }
 
-// Returns whether the state changed.
+// Finds the bindings to one input whose press is now part of a chord's: only the chord acts. Cost:
+// linear.
+void ActionWriter::markChords() noexcept {
+  for (ParsedBinding& binding : bindings_) binding.in_chord = false;
+  for (const ParsedBinding& chord : bindings_) {
+    if (!chord.with || !chord.pressed) continue;
+    for (const std::size_t alone : {chord.alone, chord.with_alone}) {
+      if (alone != kNone) bindings_[alone].in_chord = true;
+    }
+  }
+  for (ParsedBinding& binding : bindings_) {
+    if (!binding.with && binding.pressed && bindings_[binding.alone].in_chord)
+      binding.chorded = true;
+  }
+}
+
+// Returns whether the state changed. What lasts already goes on when its input becomes part of a
+// chord.
 bool ActionWriter::step(ParsedBinding& binding, std::int64_t now_ns) noexcept {
-  const bool held = binding.pressed && now_ns - binding.since_ns >= binding.after_ns;
+  const bool held = binding.pressed && now_ns - binding.since_ns >= binding.after_ns &&
+                    (binding.was_held || !binding.chorded);
   if (held == binding.was_held) {
-    if (!held || binding.repeat_ns == 0 || now_ns < binding.again_ns) return false;
+    if (!held || binding.repeat_ns == 0 || now_ns < binding.again_ns || binding.chorded)
+      return false;
     binding.again_ns = now_ns + binding.repeat_ns;
     return begin(binding);
   }
-  const bool cancelled = binding.on_leave && longerOneHeld(binding);
+  const bool cancelled = binding.on_leave && (longerOneHeld(binding) || binding.chorded);
   binding.was_held = held;
   if (binding.lasts && !held) return true;
   if ((!binding.lasts && held == binding.on_leave) || cancelled) return false;
@@ -139,9 +179,13 @@ void ActionWriter::apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept {
       binding.waits = pressed;
       continue;
     }
-    if (pressed && !binding.pressed) binding.since_ns = now_ns;
+    if (pressed && !binding.pressed) {
+      binding.since_ns = now_ns;
+      binding.chorded = false;
+    }
     binding.pressed = pressed;
   }
+  markChords();
   stepAll(now_ns);
 }
 

@@ -2,6 +2,7 @@
 // shared memory.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -45,6 +46,7 @@ class ActionWriter {
   void adopt(std::int64_t now_ns) noexcept;
 
  private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   struct ParsedBinding {
     Input input;
     std::optional<Input> with;
@@ -56,10 +58,16 @@ class ActionWriter {
     bool was_held = false;      // pressed for long enough
     std::int64_t again_ns = 0;  // when the action repeats
     bool waits = false;         // until the input has been seen released
+    // Index of the first binding to this input alone, which is not a chord, and to `with` alone.
+    std::size_t alone = kNone, with_alone = kNone;
+    bool in_chord = false;  // of the first binding to an input alone: a chord with it is pressed
+    bool chorded = false;   // one was at some time of this press, so that nothing begins any more
   };
   using ParsedBindings = std::vector<ParsedBinding>;
   ParsedBindings parse(const std::vector<Binding>& bindings) const;
   void setNumber(Input& input) const;
+  static void findChords(ParsedBindings& bindings);
+  void markChords() noexcept;
   template <typename IsHeld>
   void apply(std::int64_t now_ns, const IsHeld& isHeld) noexcept;
   template <typename Happens>

@@ -91,7 +91,8 @@ std::string partOf(const actions::Input& input) {
 }  // namespace
 
 // Linear in the number of bindings: for each moment of an input at most one binding of each action
-// is kept, and each input has few moments.
+// is kept, and each input has few moments. A binding to an input alone and a chord with that input
+// happen at different moments: as the chord begins, only the chord acts (ActionWriter).
 SettingFaults validate(const std::vector<Binding>& bindings) {
   SettingFaults faults;
   std::map<std::pair<std::string, bool>, std::vector<std::size_t>> before;

@@ -1,5 +1,6 @@
 #include "daemon/devices/device_checks.h"
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -90,6 +91,38 @@ std::string nearestKey(const std::string& name) {
   return (isButton(name) ? "button." : "key.") + near;
 }
 
+// The address with the path of the file that its links lead to. A device that is not there keeps
+// its path: it is compared when it is opened.
+PortAddress withoutLinks(PortAddress address) {
+  if (!address.service.empty()) return address;
+  std::error_code unreadable;
+  const auto path = std::filesystem::weakly_canonical(address.path, unreadable);
+  if (!unreadable) address.path = path.string();
+  return address;
+}
+
+// Two names of one device, such as its link in by-id and its number; the loader finds ports that
+// are the same as they stand.
+void checkLinks(LoadedSettings& loaded) {
+  const auto& list = loaded.settings.devices.list;
+  if (list.size() > kMostDevices) return;  // the loader refuses them
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto port = parsePort(list[i].line.port);
+    for (std::size_t j = 0; port && j < i; ++j) {
+      const auto other = parsePort(list[j].line.port);
+      if (!other || sameLine(*port, *other)) continue;
+      const PortAddress real = withoutLinks(*port);
+      if (!sameLine(real, withoutLinks(*other))) continue;
+      loaded.addFinding(
+          fmt::format("/devices/{}/port", i),
+          fmt::format("is \"{}\", which is {}, the port of the device \"{}\" at /devices/{}, "
+                      "\"{}\"; each device needs its own",
+                      list[i].line.port, real.path, list[j].name, j, list[j].line.port));
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 void checkPostures(LoadedSettings& loaded) {
@@ -139,6 +172,7 @@ void checkPorts(LoadedSettings& loaded) {
       if (!transcript) loaded.addFinding(at, "cannot be used: " + transcript.error().what);
     }
   }
+  checkLinks(loaded);
 }
 
 void checkPasswords(LoadedSettings& loaded) {

@@ -19,7 +19,8 @@ void checkGestures(LoadedSettings& loaded);
 void checkKeys(LoadedSettings& loaded);
 
 // Adds a finding for each port whose text is invalid, and for each transcript ("replay:FILE") that
-// cannot be played. A missing device is not a fault: it may be connected later.
+// cannot be played, and for each that is another name of a port before it, by a link. A missing
+// device is not a fault: it may be connected later.
 void checkPorts(LoadedSettings& loaded);
 
 // Adds a finding for each projector whose password cannot be read from its file.

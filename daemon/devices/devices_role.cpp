@@ -296,7 +296,7 @@ void DevicesRole::start() {
     if (auto limit = io::limitCpuLatency(cpu_latency_us_))
       cpu_latency_ = *std::move(limit);
     else
-      logWarning("/devices/cpu_latency_us: {}", limit.error().what);
+      logWarning("/cpu_latency_us: {}", limit.error().what);
   }
   if (panel_) {
     threads_.emplace_back(watch_, "panel", [this](const std::stop_token& stop, Progress& progress) {

@@ -229,11 +229,13 @@ struct WallOutputs {
 // The content that is shown, and what became of the last request for one. Written once a period.
 struct WallContent {
   std::int64_t updated_ns;
-  char name[64];           // of the configuration, or of a file that is not in it
-  char kind[16];           // "model", "picture", "panorama"
-  char slide[64];          // of slides: the name of the one that is shown
-  std::uint32_t finished;  // number of the last request (`merlin show`) that was shown or refused
-  char refused[260];       // why that one cannot be shown; empty if it is shown
+  char name[64];   // of the configuration, or of a file that is not in it
+  char kind[16];   // "model", "picture", "panorama"
+  char slide[64];  // of slides: the name of the one that is shown
+  // Number of a request (`merlin show`) that was shown or refused: of the last one, but each stays
+  // for a tenth of a second at least. They may end in another order than they were asked for.
+  std::uint32_t finished;
+  char refused[260];  // why that one cannot be shown; empty if it is shown
 };
 static_assert(sizeof(WallContent) == 416 && offsetof(WallContent, finished) == 152);
 

@@ -25,6 +25,7 @@
 #include "daemon/wall/input_feed.h"
 #include "daemon/wall/operator_panel.h"
 #include "daemon/wall/pace.h"
+#include "daemon/wall/show_results.h"
 #include "daemon/wall/still_frame.h"
 #include "daemon/wall/viewer_place.h"
 #include "daemon/wall/wall_publisher.h"
@@ -161,7 +162,7 @@ class WallLoop {
   std::mutex step_mutex_;
   // Guarded by step_mutex_: by move() since the last frame; the last request that is done.
   render::scene::Push step_asked_;
-  shm::WallContent done_{};
+  ShowResults results_;
   std::vector<WallTuning> tunings_;  // guarded by step_mutex_: since the last frame
 };
 

@@ -92,13 +92,16 @@ void WallPublisher::interaction(shm::WallInteraction out, const render::scene::S
   slots_.interaction->publish(out);
 }
 
-void WallPublisher::content(const ShownContent& shown, shm::WallContent done, Timestamp now) {
+void WallPublisher::content(const ShownContent& shown, const ShowResult& result, Timestamp now) {
   if (!slots_.content) return;
-  done.updated_ns = toNanoseconds(now);
-  copyText(shown.name, done.name);
-  copyText(shown.kind, done.kind);
-  copyText(shown.slide, done.slide);
-  slots_.content->publish(done);
+  shm::WallContent content{};
+  content.updated_ns = toNanoseconds(now);
+  copyText(shown.name, content.name);
+  copyText(shown.kind, content.kind);
+  copyText(shown.slide, content.slide);
+  content.finished = result.number;
+  copyText(result.refused, content.refused);
+  slots_.content->publish(content);
 }
 
 void WallPublisher::idle(const Playlist::Due& due, bool testcard, Timestamp now) {

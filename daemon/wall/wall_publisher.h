@@ -11,6 +11,7 @@
 #include "daemon/wall/frame_tracer.h"
 #include "daemon/wall/pace.h"
 #include "daemon/wall/playlist.h"
+#include "daemon/wall/show_results.h"
 #include "render/frame/pointer_marker.h"
 #include "render/governor/governor.h"
 #include "render/out/output_set.h"
@@ -52,7 +53,7 @@ class WallPublisher {
                    const render::frame::PointerMarker* marker, Timestamp now);
   void outputs(const render::out::OutputSet& outputs, Timestamp now);
   // `done`: what became of the last request for a content; the rest of it is set.
-  void content(const ShownContent& shown, shm::WallContent done, Timestamp now);
+  void content(const ShownContent& shown, const ShowResult& result, Timestamp now);
   // `testcard`: one covers the picture.
   void idle(const Playlist::Due& due, bool testcard, Timestamp now);
 

@@ -7,7 +7,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A relative axis tells every 8 to 16 ms while it is pushed, and nothing when it is let go.
+// A relative axis tells every 8 to 16 ms while it is pushed, and nothing when it is let go, also
+// while another one goes on: the kernel reports no motion by 0.
 constexpr Duration kRelativeLasts = milliseconds(60);
 
 }  // namespace
@@ -29,20 +30,16 @@ Result<std::string> EvdevDevice::open(ByteStream& stream) {
 
 Result<Ok> EvdevDevice::poll(ByteStream& stream) {
   const auto polled = reader_.poll(
-      stream, ball_.wait(), [&](const EvdevRecord& record) { input_.take(record); },
+      stream, ball_.wait(), [&](const EvdevRecord& record) { input_.take(record, clock_.now()); },
       [&](Timestamp at) { report(at); });
   if (!polled) return polled.error();
   const Timestamp now = *polled;
-  if (input_.relativeMoves() && now - reported_ >= kRelativeLasts) {
-    input_.restRelative();
-    report(now);
-  }
+  if (input_.restRelative(now - kRelativeLasts)) report(now);
   ball_.hold(now);
   return Ok{};
 }
 
 void EvdevDevice::report(Timestamp first_byte) noexcept {
-  reported_ = first_byte;
   input_.fill(ball_.sample());
   ball_.publish(first_byte);
 }

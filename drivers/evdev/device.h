@@ -19,7 +19,7 @@ namespace merlin::evdev {
 class EvdevDevice final : public Device {
  public:
   EvdevDevice(const EvdevSettings& settings, const Clock& clock, SampleSink& sink)
-      : settings_(settings), reader_(clock), ball_(sink) {}
+      : settings_(settings), clock_(clock), reader_(clock), ball_(sink) {}
 
   Result<std::string> open(ByteStream& stream) override;
   Result<Ok> poll(ByteStream& stream) override;
@@ -33,11 +33,11 @@ class EvdevDevice final : public Device {
   void report(Timestamp first_byte) noexcept;
 
   EvdevSettings settings_;
+  const Clock& clock_;
   EvdevReader reader_;
   HeldBall ball_;
   InputDevice input_;
   std::string complaint_;
-  Timestamp reported_{};
 };
 
 std::unique_ptr<Device> makeDevice(const EvdevSettings& settings, const Clock& clock,

@@ -79,29 +79,30 @@ void InputDevice::describe(const EvdevRecord& r) {
       if (name_.size() < kLongestName) name_ += r.text.data();
       break;
     case EvdevRecord::kAxis:
-      if (at && r.low < r.high) *at = {true, false, r.value, r.low, r.high};
+      if (at && r.low < r.high) *at = {true, false, r.value, r.low, r.high, {}};
       break;
     case EvdevRecord::kRelative:
       if (at && r.code <= REL_RZ && !at->there)
-        *at = {true, true, 0, -kRelativeScale, kRelativeScale};
+        *at = {true, true, 0, -kRelativeScale, kRelativeScale, {}};
       break;
     case EvdevRecord::kKey:
       if (!known && keys_.size() < kMostKeys)
         keys_.insert(key, {r.code, lowered(r.text.data()), false});
       break;
-    default: take(r);
+    default: take(r, {});
   }
 }
 
-void InputDevice::take(const EvdevRecord& r) noexcept {
+void InputDevice::take(const EvdevRecord& r, Timestamp arrived) noexcept {
   if (r.kind == EvdevRecord::kPressed) {
     const auto key = std::ranges::lower_bound(keys_, r.code, {}, &Key::code);
     if (key != keys_.end() && key->code == r.code) key->pressed = r.value != 0;
   }
   Axis* const at = axis(r.code);
   const bool moves = r.kind == EvdevRecord::kMoved || r.kind == EvdevRecord::kShifted;
-  if (at && at->there && moves && at->relative == (r.kind == EvdevRecord::kShifted))
-    at->value = r.value;
+  if (!at || !at->there || !moves || at->relative != (r.kind == EvdevRecord::kShifted)) return;
+  at->value = r.value;
+  at->told = arrived;
 }
 
 std::string InputDevice::choose(const EvdevSettings& settings) {
@@ -214,14 +215,14 @@ void InputDevice::fill(BallSample& sample) const noexcept {
   std::fill(sample.keys + pressed, std::end(sample.keys), std::uint16_t{0});
 }
 
-void InputDevice::restRelative() noexcept {
+bool InputDevice::restRelative(Timestamp since) noexcept {
+  bool moved = false;
   for (Axis& axis : axes_) {
-    if (axis.relative) axis.value = 0;
+    if (!axis.relative || axis.value == 0 || axis.told > since) continue;
+    axis.value = 0;
+    moved = true;
   }
-}
-
-bool InputDevice::relativeMoves() const noexcept {
-  return std::ranges::any_of(axes_, [](const Axis& a) { return a.relative && a.value != 0; });
+  return moved;
 }
 
 std::string InputDevice::chosen() const {

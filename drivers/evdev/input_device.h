@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/clock.h"
 #include "drivers/evdev/axis_source.h"
 #include "drivers/evdev/settings.h"
 #include "drivers/port/evdev_line.h"
@@ -18,9 +19,9 @@ class InputDevice {
  public:
   // Takes one record of the description, or of the state that follows it.
   void describe(const EvdevRecord& record);
-  // Takes one record of the events; one about an axis or key that was not described is ignored.
-  // Allocates nothing.
-  void take(const EvdevRecord& record) noexcept;
+  // Takes one record of the events, which arrived at `at`; one about an axis or key that was not
+  // described is ignored. Allocates nothing.
+  void take(const EvdevRecord& record, Timestamp at) noexcept;
 
   // Chooses axes and buttons by the settings, or by the kind of device; to be called once the
   // description is complete. Returns a sentence about what the settings name and the device lacks;
@@ -31,9 +32,9 @@ class InputDevice {
   // thousandths, before dead zone and curve, about a Spaceball's axes, whose z points away from the
   // person: so clients of the space-mouse socket get what they expect. Allocates nothing.
   void fill(BallSample& sample) const noexcept;
-  // Relative axes, which only tell that they move, are at rest from now on.
-  void restRelative() noexcept;
-  bool relativeMoves() const noexcept;  // one of them is not at rest
+  // Puts each relative axis, which only tells that it moves, to rest if it has told nothing since
+  // `since`. Returns whether one was not at rest before.
+  bool restRelative(Timestamp since) noexcept;
 
   const std::string& name() const noexcept { return name_; }
   std::size_t axes() const noexcept;
@@ -51,6 +52,7 @@ class InputDevice {
   struct Axis {
     bool there = false, relative = false;
     std::int32_t value = 0, low = 0, high = 0;
+    Timestamp told{};  // when its last event arrived
   };
   struct Key {
     std::uint16_t code = 0;

@@ -11,32 +11,52 @@ namespace {
 
 constexpr std::size_t kAxes = 6, kButtons = 12;
 
-}  // namespace
+void checkPort(const LineSettings& line, SettingFaults& faults) {
+  const auto port = parsePort(line.port);
+  const bool fits = !port || port->kind == PortKind::kEvdev || port->kind == PortKind::kPty ||
+                    port->kind == PortKind::kReplay;
+  if (line.driver != "evdev" || fits) return;
+  faults.push_back({"/port", fmt::format("is \"{}\", which is no input device; the driver "
+                                         "\"evdev\" needs evdev:/dev/input/..., which `merlin "
+                                         "devices` prints",
+                                         line.port)});
+}
 
-SettingFaults validate(const EvdevSettings& settings) {
-  SettingFaults faults;
+void checkAxes(const EvdevSettings& settings, SettingFaults& faults) {
   if (!settings.axes.empty() && settings.axes.size() != kAxes) {
     faults.push_back(
-        {"/axes", fmt::format("has {} texts; it needs {}, for x, y, z and the rotations "
-                              "about them, or none",
-                              settings.axes.size(), kAxes)});
+        {"/evdev/axes", fmt::format("has {} texts; it needs {}, for x, y, z and the rotations "
+                                    "about them, or none",
+                                    settings.axes.size(), kAxes)});
   }
   for (std::size_t i = 0; i < settings.axes.size(); ++i) {
     if (evdev::parseAxisSource(settings.axes[i])) continue;
-    faults.push_back({fmt::format("/axes/{}", i),
+    faults.push_back({fmt::format("/evdev/axes/{}", i),
                       fmt::format("is \"{}\"; allowed are {}", settings.axes[i], kAxisForms)});
   }
+}
+
+void checkButtons(const EvdevSettings& settings, SettingFaults& faults) {
   if (settings.buttons.size() > kButtons) {
-    faults.push_back({"/buttons", fmt::format("has {} names; a ball has at most {} buttons",
-                                              settings.buttons.size(), kButtons)});
+    faults.push_back({"/evdev/buttons", fmt::format("has {} names; a ball has at most {} buttons",
+                                                    settings.buttons.size(), kButtons)});
   }
   std::set<std::string> seen;
   for (std::size_t i = 0; i < settings.buttons.size(); ++i) {
     if (seen.insert(settings.buttons[i]).second) continue;
     faults.push_back(
-        {fmt::format("/buttons/{}", i),
+        {fmt::format("/evdev/buttons/{}", i),
          fmt::format("is \"{}\" once more; each key can be one button", settings.buttons[i])});
   }
+}
+
+}  // namespace
+
+SettingFaults validate(const EvdevSettings& settings, const LineSettings& line) {
+  SettingFaults faults;
+  checkPort(line, faults);
+  checkAxes(settings, faults);
+  checkButtons(settings, faults);
   return faults;
 }
 

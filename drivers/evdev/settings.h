@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/base/setting_fault.h"
+#include "drivers/port/port_address.h"
 
 namespace merlin {
 
@@ -27,8 +28,9 @@ inline constexpr const char* kAxisForms =
     "wheel, gas, brake, hat0x ... hat3y), with - before it if it is reversed; two names with - "
     "between them, for a pair of triggers; and none";
 
-// Finds axes and buttons that cannot be. Pointers: "/axes", "/axes/INDEX", "/buttons".
-SettingFaults validate(const EvdevSettings& settings);
+// Finds axes and buttons that cannot be, and a port at which no input device can be. Pointers:
+// "/evdev/axes", "/evdev/axes/INDEX", "/evdev/buttons", "/evdev/buttons/INDEX", "/port".
+SettingFaults validate(const EvdevSettings& settings, const LineSettings& line);
 
 // Calls `visitor` for every setting, in the order of written files.
 void describe(EvdevSettings& settings, SettingsVisitor& visitor);

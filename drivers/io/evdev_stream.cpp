@@ -184,7 +184,11 @@ Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path) {
     return Error{Errc::kIo, path + ": is not an input device of the kernel"};
   Handle device(made, libevdev_free);
   if (libevdev_grab(device.get(), LIBEVDEV_GRAB) < 0)
-    return Error{Errc::kBusy, path + ": another program has grabbed this input device"};
+    return Error{Errc::kBusy,
+                 path +
+                     ": another device of this configuration, or a program such as spacenavd, "
+                     "has grabbed this input device; name it once, and read what spacenavd "
+                     "holds with the driver spacenav"};
   return std::unique_ptr<ByteStream>(
       std::make_unique<EvdevStream>(std::move(fd), std::move(device)));
 }

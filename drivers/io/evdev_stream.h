@@ -15,7 +15,7 @@
 namespace merlin::io {
 
 // Opens the device and grabs it, so that nobody else gets its events; its description is read
-// first. Errors: kNotFound, kBusy (another program has grabbed it), kIo (without permission, the
+// first. Errors: kNotFound, kBusy (something else has grabbed it), kIo (without permission, the
 // message names the group to join; not an input device). write() of the stream always fails with
 // kIo.
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path);

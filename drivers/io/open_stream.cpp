@@ -24,7 +24,10 @@ namespace {
 
 Result<Ok> lockPort(int fd, const std::string& path) {
   if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return Ok{};
-  return Error{Errc::kBusy, path + ": another program holds this port"};
+  return Error{Errc::kBusy,
+               path +
+                   ": another device of this configuration, or another program, holds this "
+                   "port; name it once, and end that program"};
 }
 
 speed_t toSpeed(int baud) {

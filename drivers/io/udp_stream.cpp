@@ -82,7 +82,10 @@ class UdpStream final : public ByteStream {
 
 Error bindError(const std::string& name, int error) {
   if (error == EADDRINUSE)
-    return {Errc::kBusy, fmt::format("{}: another program receives at this port", name)};
+    return {Errc::kBusy,
+            fmt::format("{}: another device of this configuration, or another program, "
+                        "receives at this port; give each its own",
+                        name)};
   if (error == EADDRNOTAVAIL)
     return {Errc::kNotFound, fmt::format("{}: this machine does not have this address", name)};
   const bool forbidden = error == EAFNOSUPPORT || error == EPERM;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -46,6 +47,49 @@ std::optional<PortAddress> parseUdp(std::string_view text) {
   return PortAddress{PortKind::kUdp, address->host, address->port};
 }
 
+// An address of the network as 16 bytes, that of IPv4 as ::ffff:a.b.c.d; nothing for a name.
+using NetworkAddress = std::array<unsigned char, 16>;
+constexpr NetworkAddress kAnyIpv4{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF}, kAny{};
+
+std::optional<NetworkAddress> networkAddress(const std::string& host) {
+  NetworkAddress bytes = kAnyIpv4;
+  if (::inet_pton(AF_INET, host.c_str(), &bytes[12]) == 1) return bytes;
+  if (::inet_pton(AF_INET6, host.c_str(), bytes.data()) == 1) return bytes;
+  return std::nullopt;
+}
+
+bool isIpv4(const NetworkAddress& address) {
+  return std::equal(kAnyIpv4.begin(), kAnyIpv4.begin() + 12, address.begin());
+}
+
+// Whether a datagram to one of these addresses of this machine may arrive at the other one: :: is
+// also all of IPv4.
+bool overlap(const NetworkAddress& a, const NetworkAddress& b) {
+  const auto within = [](const NetworkAddress& all, const NetworkAddress& one) {
+    return all == kAny || (all == kAnyIpv4 && isIpv4(one));
+  };
+  return a == b || within(a, b) || within(b, a);
+}
+
+bool sameName(std::string_view a, std::string_view b) {
+  return std::ranges::equal(
+      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+bool sameHost(const PortAddress& a, const PortAddress& b) {
+  const auto numeric = [](const std::string& host) {
+    return networkAddress(sameName(host, "localhost") ? "127.0.0.1" : host);
+  };
+  const auto first = numeric(a.path), second = numeric(b.path);
+  if (!first || !second) return !first && !second && sameName(a.path, b.path);
+  return a.kind == PortKind::kUdp ? overlap(*first, *second) : *first == *second;
+}
+
+// The number of a port without the zeros before it.
+std::string_view plainNumber(std::string_view port) {
+  return port.substr(std::min(port.size(), port.find_first_not_of('0')));
+}
+
 }  // namespace
 
 std::span<const int> lineSpeeds() { return kSpeeds; }
@@ -65,6 +109,13 @@ Result<PortAddress> parsePort(std::string_view text) {
   if (auto udp = parseUdp(text)) return *std::move(udp);
   return Error{Errc::kInvalidArgument,
                fmt::format("\"{}\" is not a valid port; ports are {}", text, kForms)};
+}
+
+bool sameLine(const PortAddress& a, const PortAddress& b) {
+  if (a.kind == PortKind::kReplay) return false;
+  if (a.kind != b.kind && !(a.hasSpeed() && b.hasSpeed())) return false;
+  if (a.service.empty()) return a.path == b.path;
+  return plainNumber(a.service) == plainNumber(b.service) && sameHost(a, b);
 }
 
 SettingFaults validate(const LineSettings& line) {

@@ -30,6 +30,11 @@ struct PortAddress {
 // Errors: kInvalidArgument, with the allowed forms.
 Result<PortAddress> parsePort(std::string_view text);
 
+// Whether both are one line, however the addresses and the numbers of their ports are spelt, or
+// receive the same datagrams, as 0.0.0.0 does those of 127.0.0.1. Of a path, serial: and pty: are
+// one; what links make of it is for the caller to find. Two transcripts are two lines.
+bool sameLine(const PortAddress& a, const PortAddress& b);
+
 // Speeds of a serial line that the drivers support, ascending [baud].
 std::span<const int> lineSpeeds();
 

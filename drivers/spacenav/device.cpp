@@ -85,8 +85,11 @@ Result<Ok> SpacenavDevice::poll(ByteStream& stream) {
 
 void SpacenavDevice::handle(const Frame& frame, Timestamp first_byte) noexcept {
   switch (frame[0]) {
-    case kMotion: move(frame); break;
-    case kPress:
+    case kMotion:
+      mouse_lost_ = false;  // the one that went was not the last: spacenavd reads several
+      move(frame);
+      break;
+    case kPress: mouse_lost_ = false; [[fallthrough]];
     case kRelease: {
       const auto number = static_cast<std::uint32_t>(frame[1]);
       if (number >= kButtons) return;

@@ -3,6 +3,7 @@
 
 #include "daemon/base/setting_fault.h"
 #include "drivers/port/axes.h"
+#include "drivers/port/port_address.h"
 
 namespace merlin {
 
@@ -16,8 +17,9 @@ struct SpacenavSettings {
   AxisMap axis_map = {1, 2, -3, 4, 5, -6};
 };
 
-// Finds an axis map in which an axis is missing or repeated. Pointer: "/axis_map".
-SettingFaults validate(const SpacenavSettings& settings);
+// Finds an axis map in which an axis is missing or repeated, and a port at which no spacenavd can
+// be. Pointers: "/spacenav/axis_map", "/port".
+SettingFaults validate(const SpacenavSettings& settings, const LineSettings& line);
 
 // Calls `visitor` for every setting, in the order of written files.
 void describe(SpacenavSettings& settings, SettingsVisitor& visitor);

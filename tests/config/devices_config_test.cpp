@@ -150,9 +150,33 @@ TEST(DevicesConfig, EachDeviceHasItsOwnPort) {
   const std::string ball = R"({"name": "a", "driver": "spaceball", "port": "serial:/dev/a"},)";
   EXPECT_EQ(devicesAre(ball + R"({"name": "b", "driver": "spaceball", "port": "serial:/dev/b"})"),
             "");
-  EXPECT_EQ(devicesAre(ball + R"({"name": "b", "driver": "evdev", "port": "serial:/dev/a"})"),
+  EXPECT_EQ(devicesAre(ball + R"({"name": "b", "driver": "sample", "port": "serial:/dev/a"})"),
             "f.json:1: /devices/1/port is \"serial:/dev/a\", which is the port of the device \"a\" "
             "at /devices/0; each device needs its own\n");
+}
+
+TEST(DevicesConfig, APortIsTheSameHoweverItIsSpelt) {
+  const auto both = [](const char* driver, const char* a, const char* b) {
+    return devicesAre(fmt::format(R"({{"name": "a", "driver": "{0}", "port": "{1}"}},
+                                     {{"name": "b", "driver": "{0}", "port": "{2}"}})",
+                                  driver, a, b));
+  };
+  EXPECT_EQ(
+      both("tuio", "udp:3333", "udp://127.0.0.1:3333"),
+      "f.json:2: /devices/1/port is \"udp://127.0.0.1:3333\", which is the port of the device "
+      "\"a\" at /devices/0, \"udp:3333\"; each device needs its own\n");
+  for (const char* same : {"udp:03333", "udp://0.0.0.0:3333", "udp://[::]:3333",
+                           "udp://[::ffff:127.0.0.1]:3333", "udp://[::ffff:7f00:1]:3333"})
+    EXPECT_NE(both("tuio", "udp:3333", same), "") << same;
+  for (const char* other : {"udp:3334", "udp://127.0.0.2:3333", "udp://[::1]:3333"})
+    EXPECT_EQ(both("tuio", "udp:3333", other), "") << other;
+  EXPECT_NE(both("tuio", "udp://[::1]:3333", "udp://[0:0::1]:3333"), "");
+  EXPECT_EQ(both("tuio", "udp://[::1]:3333", "udp://0.0.0.0:3333"), "");
+  EXPECT_NE(both("vrpn", "tcp://Lab:3883", "tcp://lab:3883"), "");
+  EXPECT_NE(both("vrpn", "tcp://localhost:4001", "tcp://127.0.0.1:4001"), "");
+  EXPECT_EQ(both("vrpn", "tcp://lab:3883", "tcp://lab2:3883"), "");
+  EXPECT_NE(both("sample", "serial:/dev/ttyS0", "pty:/dev/ttyS0"), "");
+  EXPECT_EQ(both("sample", "replay:a", "replay:a"), "");
 }
 
 constexpr const char* kOneOfEach = R"({"name": "left", "driver": "cyberglove"},
@@ -363,6 +387,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadDevice{
             R"("driver": "evdev", "evdev": {"axes": ["x", "up", "none", "none", "none", "none"]})",
             "/devices/0/evdev/axes/1 is \"up\"; allowed are the kernel's name of an axis"},
+        BadDevice{R"("driver": "evdev", "port": "serial:/dev/input/event5")",
+                  "/devices/0/port is \"serial:/dev/input/event5\", which is no input device; the "
+                  "driver \"evdev\" needs evdev:/dev/input/..."},
+        BadDevice{R"("driver": "spacenav", "port": "serial:/dev/ttyUSB0")",
+                  "/devices/0/port is \"serial:/dev/ttyUSB0\", at which no spacenavd can be; the "
+                  "driver \"spacenav\" needs unix:PATH"},
         BadDevice{R"("driver": "spacenav", "port": "unix:/run/a")",
                   "/devices/0/port is \"unix:/run/a\", the socket that merlind serves"},
         BadDevice{R"("driver": "cyberglove", "port": "/dev/ttyS0")",

@@ -263,6 +263,62 @@ BallSample at(BallSample ball, int ms) {
   return ball;
 }
 
+Binding chordOf(const char* input, const char* with, const char* action) {
+  Binding chord{input, action};
+  chord.with = with;
+  return chord;
+}
+
+TEST_F(ActionsTest, WhileAChordIsHeldItsInputsAloneDoNothing) {
+  ActionWriter w = writer({{"ball.button.1", "lamp_on"},
+                           {"button.2", "next_mode"},
+                           chordOf("ball.button.1", "ball.button.2", "lamp_off")},
+                          test::kBall);
+  (void)read();
+  w.update(ball(2));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kNextMode}) << "no chord yet";
+  w.update(ball(1 | 2));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff});
+  w.update(ball(1));
+  w.update(ball(0));
+  EXPECT_TRUE(read().in_order.empty()) << "what is left of a chord begins nothing";
+  w.update(ball(1 | 2));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff}) << "both at once";
+  w.update(ball(0));
+  w.update(ball(1));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOn}) << "alone again";
+  w.update(ball(1 | 2));
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff}) << "the second one only in it";
+}
+
+TEST_F(ActionsTest, APressThatBecomesAChordIsNoShortAndNoLongOne) {
+  Binding late{"ball.button.1", "blank"}, again{"ball.button.1", "next_content"};
+  late.after_s = 1;
+  again.repeat_s = 0.5;
+  ActionWriter w = writer({{"ball.button.1", "next_mode", When::kLeave},
+                           late,
+                           again,
+                           {"ball.button.1", "grab"},
+                           chordOf("ball.button.2", "ball.button.1", "lamp_off")},
+                          test::kBall);
+  (void)read();
+  w.update(at(ball(1), 0));
+  EXPECT_EQ(read().all.begun[actionIndex("next_content")], 1u);
+  w.update(at(ball(1 | 2), 100));
+  w.update(at(ball(1), 200));
+  w.update(at(ball(1), 2000));
+  const Actions during = read();
+  EXPECT_EQ(during.in_order, std::vector<std::size_t>{kLampOff});
+  EXPECT_TRUE(during.all.held[kGrab]) << "it had begun before";
+  w.update(at(ball(0), 2100));
+  const Actions after = read();
+  EXPECT_TRUE(after.in_order.empty());
+  EXPECT_FALSE(after.all.held[kGrab]);
+  w.update(at(ball(1), 3000));
+  w.update(at(ball(0), 3100));
+  EXPECT_EQ(read().all.begun[kNextMode], 1u) << "the next press is one of its own";
+}
+
 TEST_F(ActionsTest, ALongPressIsNotAShortOneToo) {
   Binding brief{"ball.button.1", "next_mode", When::kLeave};
   Binding longer{"ball.button.1", "reset_view"};

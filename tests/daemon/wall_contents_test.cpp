@@ -1,6 +1,11 @@
 // Several models on a wall, on a virtual clock: the next one is shown at once, and in time.
+#include <map>
+#include <string>
+
 #include <gtest/gtest.h>
 
+#include "daemon/base/fixed_text.h"
+#include "daemon/wall/show_results.h"
 #include "tests/support/fake_wall.h"
 
 namespace merlin::wall {
@@ -74,6 +79,37 @@ TEST_F(WallContentsTest, OneThatIsMissingIsPassedOver) {
   EXPECT_TRUE(painter_.drawn.empty());
   EXPECT_TRUE(missing_.drawn.empty()) << "not even to be measured";
   EXPECT_EQ(stats().late, 0u);
+}
+
+// Two who ask at the same time: neither takes the other's answer for its own.
+TEST_F(WallContentsTest, WhatBecameOfEachRequestIsPublishedForAWhile) {
+  std::map<std::uint32_t, std::string> seen;
+  run(2, [&](Timestamp) {
+    if (feed_.begins.size() == 10) {
+      loop_->finishRequest(2, "");
+      loop_->finishRequest(1, "it is cut");
+    }
+    if (const auto content = content_->read(); content && content->finished > 0)
+      seen[content->finished] = textIn(content->refused);
+  });
+  EXPECT_EQ(seen, (std::map<std::uint32_t, std::string>{{2, ""}, {1, "it is cut"}}));
+}
+
+TEST(ShowResults, EachStaysForATenthOfASecondAndTheLastOneForGood) {
+  ShowResults results;
+  Timestamp now{};
+  EXPECT_EQ(results.current(now).number, 0u);
+  results.add({7, "no"});
+  EXPECT_EQ(results.current(now).number, 7u) << "at once";
+  results.add({8, ""});
+  now += milliseconds(99);
+  EXPECT_EQ(results.current(now).refused, "no");
+  now += milliseconds(1);
+  EXPECT_EQ(results.current(now).number, 8u);
+  now += std::chrono::hours(1);
+  EXPECT_EQ(results.current(now).number, 8u);
+  for (std::uint32_t n = 100; n < 200; ++n) results.add({n, ""});
+  EXPECT_EQ(results.current(now).number, 160u) << "of a flood the oldest are dropped";
 }
 
 TEST_F(WallContentsTest, ACommandDoesTheSame) {

@@ -132,8 +132,9 @@ TEST(UdpPort, PassesOnWholeDatagramsInPiecesAndIsTakenByOneProgramOnly) {
   const auto second = io::openPort(*address, 0);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::kBusy);
-  EXPECT_EQ(second.error().what,
-            "udp://127.0.0.1:" + port + ": another program receives at this port");
+  EXPECT_EQ(second.error().what, "udp://127.0.0.1:" + port +
+                                     ": another device of this configuration, or another program, "
+                                     "receives at this port; give each its own");
   send(port, "first");
   send(port, "");
   send(port, std::string(3000, 'y'));

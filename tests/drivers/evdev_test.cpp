@@ -174,6 +174,20 @@ TEST_F(EvdevTest, ARelativeAxisThatSaysNothingMoreIsAtRest) {
   EXPECT_GE(clock_.now() - pushed, std::chrono::milliseconds(60));
 }
 
+// The kernel tells of no motion by no event, so only the axis that goes on is told of.
+TEST_F(EvdevTest, ARelativeAxisRestsWhileAnotherOneMoves) {
+  connect(record(EvdevRecord::kRelative, REL_X) + record(EvdevRecord::kRelative, REL_Y) +
+          record(EvdevRecord::kReady));
+  EXPECT_FLOAT_EQ(after(record(EvdevRecord::kShifted, REL_X, 350)).translation[0], 1);
+  const std::string up = record(EvdevRecord::kShifted, REL_Y, -350);
+  clock_.advance(std::chrono::milliseconds(50));
+  EXPECT_FLOAT_EQ(after(up).translation[0], 1);
+  EXPECT_FLOAT_EQ(after(up).translation[2], -1);
+  clock_.advance(std::chrono::milliseconds(10));
+  EXPECT_FLOAT_EQ(after(up).translation[0], 0);
+  EXPECT_FLOAT_EQ(sink_.ball.back().translation[2], -1);
+}
+
 TEST_F(EvdevTest, AClickersKeysAreTheButtonsThatTheConfigurationNames) {
   EvdevSettings settings;
   settings.buttons = {"pagedown", "pageup"};
@@ -284,19 +298,20 @@ TEST_F(EvdevTest, RandomBytesGiveNoSampleThatIsNotPlausible) {
 
 TEST(EvdevSettings, AxesAndButtonsThatCannotBeAreNamed) {
   EvdevSettings settings;
-  EXPECT_TRUE(validate(settings).empty());
+  EXPECT_TRUE(validate(settings, {}).empty());
   settings.axes = {"x", "-rz", "gas-brake", "none", "y", "hat0x"};
-  EXPECT_TRUE(validate(settings).empty());
+  EXPECT_TRUE(validate(settings, {}).empty());
   settings.axes = {"x", "up", "gas-gas", "-gas-brake", "", "y-"};
   std::vector<std::string> at;
-  for (const SettingFault& fault : validate(settings)) at.push_back(fault.pointer);
-  EXPECT_EQ(at, (std::vector<std::string>{"/axes/1", "/axes/2", "/axes/3", "/axes/4", "/axes/5"}));
+  for (const SettingFault& fault : validate(settings, {})) at.push_back(fault.pointer);
+  EXPECT_EQ(at, (std::vector<std::string>{"/evdev/axes/1", "/evdev/axes/2", "/evdev/axes/3",
+                                          "/evdev/axes/4", "/evdev/axes/5"}));
   settings = {};
   settings.axes = {"x"};
   settings.buttons = {"a", "b", "a"};
   at.clear();
-  for (const SettingFault& fault : validate(settings)) at.push_back(fault.pointer);
-  EXPECT_EQ(at, (std::vector<std::string>{"/axes", "/buttons/2"}));
+  for (const SettingFault& fault : validate(settings, {})) at.push_back(fault.pointer);
+  EXPECT_EQ(at, (std::vector<std::string>{"/evdev/axes", "/evdev/buttons/2"}));
 }
 
 }  // namespace

@@ -147,6 +147,20 @@ TEST_F(SpacenavTest, AnUnpluggedMouseIsAComplaintAndNothingIsPressedAnyMore) {
   EXPECT_STREQ(device_.complaint(), "");
 }
 
+// spacenavd tells that a mouse went, not whether another one is left.
+TEST_F(SpacenavTest, OfTwoMiceTheOneThatIsLeftIsTheSpaceMouse) {
+  connect();
+  feed({kDevice, 1});
+  feed({kRelease, 0, 0});
+  EXPECT_STREQ(device_.complaint(), "spacenavd has no space mouse");
+  feed(kPush);
+  EXPECT_STREQ(device_.complaint(), "");
+  feed({kDevice, 1});
+  EXPECT_STREQ(device_.complaint(), "spacenavd has no space mouse");
+  feed({kPress, 2, 1});
+  EXPECT_STREQ(device_.complaint(), "");
+}
+
 TEST_F(SpacenavTest, OneWithoutAMouseIsSaidToHaveNone) {
   stream_.feed(encodeWord(kHello));
   stream_.feed(nameAnswer("", kFailed));
@@ -180,10 +194,10 @@ TEST_F(SpacenavTest, RandomBytesGiveNoSampleThatIsNotPlausible) {
 
 TEST(SpacenavSettings, AnAxisMapHasEachAxisOnce) {
   SpacenavSettings settings;
-  EXPECT_TRUE(validate(settings).empty());
+  EXPECT_TRUE(validate(settings, {}).empty());
   settings.axis_map = {1, 1, 3, 4, 5, 6};
-  ASSERT_EQ(validate(settings).size(), 1u);
-  EXPECT_EQ(validate(settings)[0].pointer, "/axis_map");
+  ASSERT_EQ(validate(settings, {}).size(), 1u);
+  EXPECT_EQ(validate(settings, {})[0].pointer, "/spacenav/axis_map");
 }
 
 }  // namespace

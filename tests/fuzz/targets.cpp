@@ -135,7 +135,7 @@ void evdevBytes(Bytes bytes) {
   for (const std::uint8_t byte : bytes) {
     const auto record = parser.feed(std::byte{byte});
     if (!record) continue;
-    described ? device.take(*record) : device.describe(*record);
+    described ? device.take(*record, {}) : device.describe(*record);
     if (record->kind == EvdevRecord::kReady) {
       described = true;
       (void)device.choose({});

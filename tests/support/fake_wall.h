@@ -167,26 +167,27 @@ class FakeWall : public testing::Test {
     delivery_ = std::make_unique<render::frame::Delivery>(plan_, outputs_, std::move(overlays),
                                                           std::move(corrections_));
     attendance_ = std::make_unique<Attendance>(playlist_);
-    return {.contents = contents_,
-            .scene = scene_,
-            .governor = governor_,
-            .feed = feed_,
-            .delivery = *delivery_,
-            .slots = {*stats_, trace_.get(), interaction_.get(), output_stats_.get()},
-            .clock = clock_,
-            .frame_clock = frame_clock_,
-            .attendance = *attendance_,
-            .curtain = &curtain_,
-            .marker = marker_,
-            .fade_frames = fade_frames_,
-            .return_after_s = return_after_s_,
-            .replacements = replacements_,
-            .viewer = viewer_,
-            .on_snapshot = on_snapshot_,
-            .on_align = on_align_,
-            .first_content = first_content_,
-            .listed = listed_,
-            .playlist = playlist_places_};
+    return {
+        .contents = contents_,
+        .scene = scene_,
+        .governor = governor_,
+        .feed = feed_,
+        .delivery = *delivery_,
+        .slots = {*stats_, trace_.get(), interaction_.get(), output_stats_.get(), content_.get()},
+        .clock = clock_,
+        .frame_clock = frame_clock_,
+        .attendance = *attendance_,
+        .curtain = &curtain_,
+        .marker = marker_,
+        .fade_frames = fade_frames_,
+        .return_after_s = return_after_s_,
+        .replacements = replacements_,
+        .viewer = viewer_,
+        .on_snapshot = on_snapshot_,
+        .on_align = on_align_,
+        .first_content = first_content_,
+        .listed = listed_,
+        .playlist = playlist_places_};
   }
   shm::WallStats stats() const { return *stats_->read(); }
   render::out::OutputSet recordingOutputs() {
@@ -226,6 +227,8 @@ class FakeWall : public testing::Test {
       std::make_unique<shm::SeqSlot<shm::WallInteraction>>();
   std::unique_ptr<shm::SeqSlot<shm::WallOutputs>> output_stats_ =
       std::make_unique<shm::SeqSlot<shm::WallOutputs>>();
+  std::unique_ptr<shm::SeqSlot<shm::WallContent>> content_ =
+      std::make_unique<shm::SeqSlot<shm::WallContent>>();
   std::stop_source stop_;
   WallLoop* loop_ = nullptr;  // while it runs
   bool calibrated_ = false;

@@ -154,6 +154,21 @@ TEST_F(CheckConfig, RefusesPortsThatCannotBePlayed) {
   expectRefused(ball("tcp://256.1.1.1:99999"), "/devices/0/port", "allowed are serial:");
 }
 
+TEST_F(CheckConfig, RefusesTwoNamesOfOneDevice) {
+  writeText(dir_ / "event5", "");
+  std::filesystem::create_symlink("event5", dir_ / "by-id");
+  const auto second = [&](const std::string& port) {
+    return json{{"devices", json::array({deviceEntry("a", "evdev", "evdev:" + dir_ / "event5"),
+                                         deviceEntry("b", "touch", "evdev:" + port)})}};
+  };
+  const std::string of_a = "event5, the port of the device \"a\" at /devices/0, \"evdev:";
+  expectRefused(second(dir_ / "by-id"), "/devices/1/port", of_a, "devices");
+  expectRefused(second(dir_ / "x/../event5"), "/devices/1/port", of_a, "devices");
+  const Outcome other =
+      run({kMerlind, "--check-config", file(second(dir_ / "event6")), "--role", "devices"});
+  EXPECT_EQ(other.status, 0) << other.output;
+}
+
 TEST_F(CheckConfig, LooksAtWhatTheRoleNeeds) {
   const std::string config = file({{"wall", {{"model", "none.mrm"}}}});
   EXPECT_EQ(run({kMerlind, "--check-config", config, "--role", "devices"}).status, 0);

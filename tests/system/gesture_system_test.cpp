@@ -36,6 +36,64 @@ TEST(GestureRecord, TakesPosesOfALiveHandAndAppendsThem) {
       << name.output;
 }
 
+// Neither the hands nor their tracker have the names of the default configuration.
+TEST(GestureRecord, TakesTheFirstHandOrTheNamedOneWhateverTheyAreCalled) {
+  using nlohmann::json;
+  const TempDir dir;
+  const json hands = {{{"name", "right"}, {"station", 1}}, {{"name", "left"}, {"station", 2}}};
+  Merlind merlind(
+      dir, "", "gestures",
+      {.script = "still",
+       .role = "devices",
+       .also = {{"devices", json::array({deviceEntry("eyes", "fastrak")})}, {"hands", hands}}});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs("eyes", HealthState::kOk));
+  const auto record = [&](const std::string& hand) {
+    std::vector<std::string> words = {kMerlin,      "gesture",
+                                      "record",     "wave",
+                                      "-o",         dir / ("takes" + hand + ".csv"),
+                                      "--times",    "1",
+                                      "--seconds",  "0.5",
+                                      "--pause",    "0.6",
+                                      "--instance", merlind.instance()};
+    if (!hand.empty()) words.insert(words.end(), {"--hand", hand});
+    return run(words);
+  };
+  for (const char* hand : {"", "left"}) {
+    const Outcome taken = record(hand);
+    EXPECT_EQ(taken.status, 0) << taken.output;
+    EXPECT_TRUE(nn::loadPaths(dir / (std::string("takes") + hand + ".csv"))) << hand;
+  }
+  const Outcome none = record("hand");
+  EXPECT_EQ(none.status, 2) << none.output;
+  EXPECT_NE(none.output.find("has no hand named \"hand\"; its hands are right, left"),
+            std::string::npos)
+      << none.output;
+}
+
+TEST(GestureRecord, SaysWhereTheStationOfASilentHandStands) {
+  using nlohmann::json;
+  const TempDir dir;
+  const json hands = {{{"name", "right"}, {"station", 1}}, {{"name", "left"}, {"station", 2}}};
+  Merlind merlind(
+      dir, "", "silent",
+      {.role = "devices",
+       .emulate = false,
+       .also = {{"devices", json::array({deviceEntry("eyes", "fastrak")})}, {"hands", hands}}});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  const Outcome silent = run({kMerlin, "gesture", "record", "wave", "-o", dir / "takes.csv",
+                              "--pause", "4", "--hand", "left", "--instance", merlind.instance()});
+  EXPECT_EQ(silent.status, 1) << silent.output;
+  EXPECT_NE(silent.output.find("the hand \"left\" has sent nothing for 3 s"), std::string::npos)
+      << silent.output;
+  EXPECT_NE(silent.output.find("/hands/1/station"), std::string::npos) << silent.output;
+  const Outcome nobody = run({kMerlin, "gesture", "record", "wave", "-o", dir / "takes.csv",
+                              "--instance", privateName("nobody")});
+  EXPECT_EQ(nobody.status, 2) << nobody.output;
+  EXPECT_NE(nobody.output.find("no merlind with devices runs as"), std::string::npos)
+      << nobody.output;
+}
+
 TEST(GestureTrain, LearnsFromTakesAndIsTestedOnOthers) {
   const TempDir dir;
   const auto synthesize = [&](const char* file, const char* first) {

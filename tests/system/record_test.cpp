@@ -1,6 +1,7 @@
 // merlin record, replay, flight and calibrate, run as a person runs them.
 #include <gtest/gtest.h>
 
+#include "drivers/io/pty_master.h"
 #include "drivers/io/transcript.h"
 #include "tests/system/merlind.h"
 
@@ -100,6 +101,51 @@ TEST(Calibrate, WritesIntoAConfigurationThatTheDaemonAccepts) {
   EXPECT_EQ(flipped.status, 2);
   EXPECT_NE(flipped.output.find("are they swapped?"), std::string::npos) << flipped.output;
   EXPECT_EQ(readText(config), before);
+}
+
+// A glove that never answers, on whose line it is seen what it was asked, and how fast.
+TEST(CalibrateGlove, SpeaksToTheGloveAsTheConfigurationsEntrySays) {
+  const TempDir dir;
+  const std::string config = dir / "merlin.json";
+  const auto entry = [&](const char* dialogue, int baud) {
+    writeText(config,
+              fmt::format(R"({{"wall": {{"model": 7}}, "devices": [{{"driver": "spaceball"}},
+        {{"name": "right", "driver": "cyberglove", "baud": {},
+          "cyberglove": {{"dialogue": "{}", "rate_hz": 50}}}}]}})",
+                          baud, dialogue));
+  };
+  const auto calibrate = [&](std::vector<std::string> also = {}) {
+    std::vector<std::string> words = {kMerlin, "calibrate", "glove", "pty:" + dir / "glove",
+                                      "-o",    config};
+    words.insert(words.end(), also.begin(), also.end());
+    return run(words);
+  };
+  const auto line = io::PtyMaster::open(dir / "glove");
+  ASSERT_TRUE(line) << line.error().what;
+  const auto asked = [&] {
+    std::array<char, 256> bytes{};
+    const ssize_t n = ::read(line->fd(), bytes.data(), bytes.size());
+    return std::string(bytes.data(), n > 0 ? static_cast<std::size_t>(n) : 0);
+  };
+  entry("text", 115200);
+  const Outcome text = calibrate();
+  EXPECT_EQ(text.status, 1) << text.output;
+  EXPECT_NE(asked().find("?i\r"), std::string::npos);
+  EXPECT_EQ(line->baud(), 115200);
+  EXPECT_EQ(calibrate({"--baud", "57600"}).status, 1);
+  EXPECT_EQ(line->baud(), 57600);
+  (void)asked();
+  entry("binary", 0);
+  EXPECT_EQ(calibrate().status, 1);
+  EXPECT_EQ(asked().find('\r'), std::string::npos);
+  EXPECT_EQ(line->baud(), 38400) << "the driver's usual one";
+  entry("text", 9600);
+  const Outcome slow = calibrate();
+  EXPECT_EQ(slow.status, 2) << slow.output;
+  EXPECT_NE(slow.output.find("merlin.json: /devices/1/cyberglove/rate_hz is 50, but a line of 9600 "
+                             "baud carries 10 records"),
+            std::string::npos)
+      << slow.output;
 }
 
 }  // namespace

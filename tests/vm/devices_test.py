@@ -116,7 +116,8 @@ class Devices(unittest.TestCase):
         pid = start(entry("tracker", "serial:/dev/ttyS2"))
         vm.until(lambda: health()["tracker"] == "ok", "the tracker streams")
         said = MACHINE.run("merlin record serial:/dev/ttyS2 --seconds 1 -o /run/x.bytes", succeeds=False)
-        self.assertIn("/dev/ttyS2: another program holds this port", said)
+        self.assertIn("/dev/ttyS2: another device of this configuration, or another program, "
+                      "holds this port", said)
         stop(pid)
 
     def plug(self, kind):
@@ -148,7 +149,8 @@ class Devices(unittest.TestCase):
         samples = configured()["ball"]["samples"]
         vm.until(lambda: configured()["ball"]["samples"] > samples + 20, "the held stick is published again")
         said = MACHINE.run(f"merlin record evdev:{path} --device evdev --seconds 1 -o /run/x.bytes", succeeds=False)
-        self.assertIn(f"{path}: another program has grabbed this input device", said)
+        self.assertIn(f"{path}: another device of this configuration, or a program such as "
+                      "spacenavd, has grabbed this input device", said)
 
         MACHINE.run(f"kill {pad}; wait {pad}", succeeds=False)
         vm.until(lambda: health()["ball"] == "absent", "the gamepad is seen to be gone")

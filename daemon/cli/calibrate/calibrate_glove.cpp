@@ -22,15 +22,15 @@ using cyberglove::GuidedCalibration;
 
 struct GloveOptions {
   std::string port, output, device;
-  int baud = kCybergloveBaud;
+  int baud = 0;  // 0: that of the entry
   GuideTiming timing;
 };
 
 // Measures the glove directly on its serial line.
 class GuidedGlove final : public Guided, private SampleSink {
  public:
-  GuidedGlove(ByteStream& line, const Clock& clock)
-      : line_(line), device_(cyberglove::makeDevice({}, clock, *this)) {}
+  GuidedGlove(const CybergloveSettings& settings, ByteStream& line, const Clock& clock)
+      : settings_(settings), line_(line), device_(cyberglove::makeDevice(settings, clock, *this)) {}
 
   Result<std::string> open() { return device_->open(line_); }
   Result<Ok> listen(bool measuring) override {
@@ -39,7 +39,7 @@ class GuidedGlove final : public Guided, private SampleSink {
   }
   void begin(std::size_t pose) override { calibration_.begin(pose); }
   Result<std::string> end() override { return spans(); }
-  Result<CybergloveSettings> solve() const { return calibration_.solve({}); }
+  Result<CybergloveSettings> solve() const { return calibration_.solve(settings_); }
 
  private:
   void publish(const GloveSample& sample) noexcept override {
@@ -50,6 +50,7 @@ class GuidedGlove final : public Guided, private SampleSink {
   void publish(const TouchSample&) noexcept override {}
   std::string spans() const;
 
+  CybergloveSettings settings_;
   ByteStream& line_;
   std::unique_ptr<Device> device_;
   GuidedCalibration calibration_;
@@ -79,10 +80,12 @@ int calibrateGlove(const GloveOptions& o) {
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
   const auto device = findDevice(o.output, SampleKind::kGlove, o.device);
   if (!device) return fail(device.error());
-  auto line = io::openPort(*address, o.baud);
+  const auto settings = settingsOf(*device, o.port, o.baud);
+  if (!settings) return fail(settings.error());
+  auto line = io::openPort(*address, settings->line.baud);
   if (!line) return fail(line.error());
   const SystemClock clock;
-  GuidedGlove guided(**line, clock);
+  GuidedGlove guided(settings->own.cyberglove, **line, clock);
   const auto identity = guided.open();
   if (!identity) return fail(identity.error());
   printOut("{}: {}\n", device->name, *identity);
@@ -109,7 +112,11 @@ void addCalibrateGlove(Command calibrate, Run& run) {
   command.option("port", o->port, "Port of the glove: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
       .required();
   command.option("-o,--output", o->output, "The configuration file to write into").required();
-  command.option("--baud", o->baud, "Speed of the line in bits per second").baud().showDefault();
+  command
+      .option("--baud", o->baud,
+              "Speed of the line in bits per second; the default is that of the glove in the "
+              "configuration file")
+      .baud();
   addDeviceOption(command, o->device, "glove");
   addGuideTiming(command, o->timing);
   command.callback([o, &run] { run = [o] { return calibrateGlove(*o); }; });

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/settings.h"
+#include "config/loader.h"
 #include "daemon/base/files.h"
 #include "drivers/registry.h"
 
@@ -94,8 +94,9 @@ Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKin
 
 Result<CalibratedDevice> deviceAt(const Json& list, std::size_t index, const std::string& path) {
   const Json& entry = list[index];
-  CalibratedDevice device{path, fmt::format("/devices/{}", index), nameOf(entry),
-                          textOf(entry, "driver"), Json::object()};
+  CalibratedDevice device{path,           fmt::format("/devices/{}", index),
+                          nameOf(entry),  textOf(entry, "driver"),
+                          Json::object(), entry.value("baud", Json(0))};
   const auto own = entry.find(device.driver);
   if (own == entry.end()) return device;
   if (!own->is_object())
@@ -115,6 +116,28 @@ Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
   const auto index = indexOf(list, file, kind, name);
   if (!index) return index.error();
   return deviceAt(list, *index, file);
+}
+
+// The loader reads the entry alone, so that what is wrong elsewhere in the file stops nothing.
+Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::string& port,
+                                  int baud) {
+  constexpr std::string_view kAlone = "/devices/0";
+  const Json entry = {{"name", device.name},
+                      {"driver", device.driver},
+                      {"port", port},
+                      {"baud", baud > 0 ? Json(baud) : device.baud},
+                      {device.driver, device.own}};
+  const LoadedSettings loaded = loadSettings(
+      Json{{"devices", Json::array({entry})}}.dump(-1, ' ', true, Json::error_handler_t::replace),
+      "");
+  for (const Finding& finding : loaded.findings) {
+    if (finding.adjusted) continue;
+    const bool inside = finding.pointer.starts_with(kAlone);
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: {}{} {}", device.file, device.pointer,
+                             inside ? finding.pointer.substr(kAlone.size()) : "", finding.what)};
+  }
+  return loaded.settings.devices.list.at(0);
 }
 
 Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind, const Json& values) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "config/settings.h"
 #include "daemon/base/result.h"
 #include "daemon/cli/arguments.h"
 #include "drivers/port/samples.h"
@@ -19,6 +20,7 @@ struct CalibratedDevice {
   std::string pointer;         // "/devices/2"
   std::string name, driver;    // those in effect: an entry without a name has its kind's
   nlohmann::ordered_json own;  // the entry's settings of its driver: an object, which may be empty
+  nlohmann::ordered_json baud = 0;  // the entry's speed of the line; 0: the driver's usual one
 };
 
 // Finds the device named `name`, or the first device of this kind if `name` is empty. A file that
@@ -27,6 +29,11 @@ struct CalibratedDevice {
 // no such device, or it is of another kind), kIo.
 Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
                                     const std::string& name);
+
+// The device as merlind would open it at `port`: with the entry's settings of its driver, and its
+// speed unless `baud` is another one than 0. Errors: kInvalidArgument (one of them is not allowed).
+Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::string& port,
+                                  int baud);
 
 // Copies the members of `values` into the device's settings of its driver, and keeps all else in
 // the file and the order; creates the file if it does not exist. Errors: those of findDevice() and

@@ -22,20 +22,63 @@ constexpr Duration kHandPatience = std::chrono::seconds(3);  // longest time wit
 constexpr double kBetweenFiles_s = 10;  // from the last take in the file to the first new one
 
 struct RecordOptions {
-  std::string label, output = "gestures.csv", instance = "merlin";
+  std::string label, hand, output = "gestures.csv", instance = "merlin";
   std::vector<int> axes = {-2, -3, 1};
   std::size_t times = 5;
   double seconds = 2, pause = 1.5;
 };
 
+// A hand of a running merlind.
+struct LiveHand {
+  std::string name;
+  std::size_t index = 0;  // in /hands
+  LiveSamples<HandSample> samples;
+};
+
+// The hands of the devices, as part of a sentence.
+std::string handsOf(const shm::DeviceSlots& devices) {
+  std::string names;
+  for (const auto& hand : devices.hands) names += (names.empty() ? "" : ", ") + hand.name;
+  return names.empty() ? "it has no hand: add one to /hands"
+                       : fmt::format("its hands are {}", names);
+}
+
+// The hand that the options name. Errors: kInvalidArgument (there is no such hand, or nothing that
+// could track it), those of LiveSamples::open().
+Result<LiveHand> openHand(const RecordOptions& options) {
+  const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
+  const auto* const hand = devices ? (*devices)->hand(options.hand) : nullptr;
+  if (devices && !hand)
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format(
+            "--hand: the merlind that runs as \"{}\" has no hand{}; {}", options.instance,
+            options.hand.empty() ? "" : fmt::format(" named \"{}\"", printable(options.hand)),
+            handsOf(**devices))};
+  // Which tracker a hand follows is not in shared memory, and nothing here asks for its health: a
+  // hand whose tracker sends nothing sends nothing itself.
+  const auto* const tracker = devices ? (*devices)->tracker() : nullptr;
+  if (devices && !tracker)
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("the merlind that runs as \"{}\" has no tracker that a hand could "
+                             "follow: add one to /devices",
+                             options.instance)};
+  // Without devices, this says why there are none.
+  auto samples = LiveSamples<HandSample>::open(options.instance, hand ? hand->name : "",
+                                               tracker ? tracker->name : "");
+  if (!samples) return samples.error();
+  return LiveHand{hand->name, static_cast<std::size_t>(hand - (*devices)->hands.data()),
+                  *std::move(samples)};
+}
+
 // Records the hand for `seconds`, or passes over what it does in that time.
-Result<Ok> listen(LiveSamples<HandSample>& hand, double seconds, const nn::WallAxes& axes,
-                  std::uint32_t label, std::vector<nn::LabelledPose>* poses) {
+Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std::uint32_t label,
+                  std::vector<nn::LabelledPose>* poses) {
   const SystemClock clock;
   const Timestamp began = clock.now();
   Timestamp heard = began;
   while (clock.now() - began < fromSeconds(seconds)) {
-    const auto taken = hand.listen([&](const HandSample& s) {
+    const auto taken = hand.samples.listen([&](const HandSample& s) {
       heard = clock.now();
       if (poses)
         poses->push_back({label, axes.turned(s.received_ns, s.position_m, s.orientation_wxyz)});
@@ -43,14 +86,16 @@ Result<Ok> listen(LiveSamples<HandSample>& hand, double seconds, const nn::WallA
     if (!taken) return taken.error();
     if (clock.now() - heard >= kHandPatience)
       return Error{Errc::kTimeout,
-                   "the hand has sent nothing for 3 s: see merlin status, and /devices/hand for "
-                   "the tracker's station that is on it"};
+                   fmt::format("the hand \"{0}\" has sent nothing for 3 s: see `merlin status` for "
+                               "its tracker; /hands/{1}/tracker and /hands/{1}/station say which "
+                               "station is worn on it",
+                               hand.name, hand.index)};
   }
   return Ok{};
 }
 
 Result<nn::PathRecording> takes(const RecordOptions& options, const nn::WallAxes& axes) {
-  auto hand = LiveSamples<HandSample>::open(options.instance, "hand", "tracker");
+  auto hand = openHand(options);
   if (!hand) return hand.error();
   nn::PathRecording recording;
   const std::uint32_t label = recording.labelled(options.label);
@@ -120,6 +165,10 @@ void addGestureRecord(Command gesture, Run& run) {
   command.option("label", options->label, "The gesture's name, or none")
       .required()
       .typeName("LABEL");
+  command
+      .option("--hand", options->hand,
+              "Name of the hand in the configuration of merlind; the default is its first hand")
+      .typeName("NAME");
   command.option("-o", options->output, "The CSV file").showDefault().typeName("FILE.csv");
   command.option("--times", options->times, "Number of takes")
       .range(std::size_t{1}, std::size_t{1000})
