@@ -52,9 +52,9 @@ void describeRate(render::governor::GovernorSettings& governor, SettingsVisitor&
       "The frame rate, and limits of the number of triangles, which is adapted to keep the rate.",
       [&] {
         v.number("rate_hz", governor.rate_hz, {1, 240}, "Frames per second while anything moves.");
-        v.integer(
-            "min_triangles", governor.min_triangles, {4, 1e6},
-            "Minimum number of triangles per frame while anything moves, even if frames are late.");
+        v.integer("min_triangles", governor.min_triangles, {4, 1e6},
+                  "Minimum number of triangles of a model per frame while anything moves, even if "
+                  "frames are late.");
         v.integer("max_triangles", governor.max_triangles, {4, 1e9},
                   "Maximum number of triangles per frame while anything moves.");
         v.integer("first_triangles", governor.first_triangles, {4, 1e9},

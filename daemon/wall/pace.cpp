@@ -1,6 +1,13 @@
 #include "daemon/wall/pace.h"
 
+#include <string_view>
+
 namespace merlin::wall {
+namespace {
+
+constexpr std::string_view kTriangles = "triangles";  // of models; min_triangles is in it
+
+}  // namespace
 
 Pace::Pace(render::governor::Governor& governor)
     : governor_(governor),
@@ -14,6 +21,16 @@ void Pace::hold(std::optional<std::size_t> cost) noexcept {
 
 void Pace::setRate(std::optional<double> rate_hz) noexcept {
   set_rate_hz_.store(rate_hz.value_or(0));
+}
+
+void Pace::show(const render::content::DetailAxis& detail) {
+  const std::string_view unit = detail.unit();
+  governor_.setLeastUseful(unit == kTriangles ? std::nullopt : std::optional(detail.leastUseful()));
+  if (!unit_.empty() && unit != unit_) {
+    hold(std::nullopt);  // 20,000 triangles are not 20,000 kilotexels
+    governor_.hold(std::nullopt);
+  }
+  unit_ = unit;
 }
 
 bool Pace::update() {

@@ -9,8 +9,10 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "daemon/base/clock.h"
+#include "render/content/content.h"
 #include "render/governor/degradation_ladder.h"
 #include "render/governor/governor.h"
 
@@ -27,6 +29,11 @@ class Pace {
   // nullopt: the configured one. REQUIRES: rate_hz > 0.
   void hold(std::optional<std::size_t> cost) noexcept;
   void setRate(std::optional<double> rate_hz) noexcept;
+
+  // To be called when another content is shown, and for the first one: sets the governor's lower
+  // limit by it. If its detail has another unit than the one before, a cost that hold() has fixed
+  // is dropped.
+  void show(const render::content::DetailAxis& detail);
 
   // Replaces the configured rate, with the next update(). REQUIRES: rate_hz > 0.
   void configure(double rate_hz) noexcept { configured_hz_ = rate_hz; }
@@ -55,6 +62,7 @@ class Pace {
   bool betterFits() const;
 
   render::governor::Governor& governor_;
+  std::string unit_;  // of the content's detail; empty: none was shown
   double configured_hz_;
   double asked_hz_;
   Duration period_;

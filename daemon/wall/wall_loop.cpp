@@ -32,6 +32,7 @@ WallLoop::WallLoop(WallParts parts)
       view_(parts_.scene.view()),
       lost_(parts_.return_after_s) {
   useNavigation();
+  pace_.show(detail());
   turns_.request(parts_.first_content);
 }
 
@@ -108,9 +109,7 @@ void WallLoop::useNavigation() {
 
 void WallLoop::finishRequest(std::uint32_t number, const std::string& refused) {
   const std::lock_guard lock(step_mutex_);
-  done_.finished = number;
-  std::fill(std::begin(done_.refused), std::end(done_.refused), '\0');
-  refused.copy(done_.refused, sizeof done_.refused - 1);
+  results_.add({number, refused});
 }
 
 void WallLoop::move(const render::scene::Push& step) {
@@ -130,6 +129,7 @@ void WallLoop::returnToInitialView() {
 }
 
 void WallLoop::showContent() {
+  pace_.show(detail());
   step_ = detail().steps() - 1;
   moving_step_.reset();
   full_detail_ = false;
@@ -378,7 +378,7 @@ void WallLoop::publish() {
   publisher_.idle(attendance.due(), parts_.shows_testcard(), now);
   {
     const std::lock_guard lock(step_mutex_);
-    publisher_.content(turns_.content(), done_, now);
+    publisher_.content(turns_.content(), results_.current(now), now);
   }
   publisher_.outputs(parts_.delivery.outputs(), now);
 }

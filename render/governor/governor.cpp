@@ -234,6 +234,15 @@ void Governor::setLimits(const GovernorSettings& settings) noexcept {
   triangles_ = clamped(triangles_);
 }
 
+void Governor::setLeastUseful(std::optional<std::size_t> least_useful) noexcept {
+  assert(least_useful.value_or(1) > 0);
+  const std::size_t before = least();
+  least_useful_ = least_useful;
+  if (least() == before) return;
+  if (per_ > 0) startOver();
+  triangles_ = clamped(triangles_);
+}
+
 void Governor::setRate(double rate_hz) noexcept {
   assert(rate_hz > 0);
   period_ = fromSeconds(1 / rate_hz);
@@ -249,7 +258,7 @@ void Governor::startOver() noexcept {
 }
 
 double Governor::clamped(double triangles) const noexcept {
-  return std::clamp(triangles, static_cast<double>(settings_.min_triangles),
+  return std::clamp(triangles, static_cast<double>(least()),
                     static_cast<double>(settings_.max_triangles));
 }
 
@@ -269,7 +278,7 @@ std::size_t Governor::costWithin(Duration work) const noexcept {
 std::size_t Governor::budgetFor(Duration available) const noexcept {
   if (per_ == 0 || held_ || available >= period_ * 99 / 100) return budget();
   const double fits = trianglesIn(toSeconds(available));
-  if (fits < static_cast<double>(settings_.min_triangles)) return 0;
+  if (fits < static_cast<double>(least())) return 0;
   return static_cast<std::size_t>(std::min(fits, triangles_));
 }
 

@@ -16,6 +16,7 @@
 // only if the gain exceeds a dead band. README.md has figures and sources.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -48,11 +49,11 @@ class Governor {
   std::size_t budget() const noexcept;
 
   // The budget of a frame that has only `available` left until its deadline, since the one before
-  // it ran over: the number that the cost model expects to fit; 0 if not even min_triangles fit.
+  // it ran over: the number that the cost model expects to fit; 0 if not even least() fit.
   std::size_t budgetFor(Duration available) const noexcept;
 
   // Triangles of a frame that takes `work` according to the cost model, without head room and
-  // independent of the last budget, within min_triangles and max_triangles. Returns budget() before
+  // independent of the last budget, within least() and max_triangles. Returns budget() before
   // the first measurement.
   std::size_t costWithin(Duration work) const noexcept;
 
@@ -69,8 +70,8 @@ class Governor {
   // another content or another view is shown). REQUIRES: ratio > 0, finite.
   void expect(double ratio) noexcept;
 
-  // Fixes the budget to this number of triangles, clamped to min_triangles and max_triangles,
-  // whatever the frame time, until the next call; nullopt returns to the computed budget. The model
+  // Fixes the budget to this number of triangles, clamped to least() and max_triangles, whatever
+  // the frame time, until the next call; nullopt returns to the computed budget. The model
   // continues to learn meanwhile.
   void hold(std::optional<std::size_t> triangles) noexcept { held_ = triangles; }
   bool held() const noexcept { return held_.has_value(); }
@@ -78,6 +79,11 @@ class Governor {
   // Changes the frame rate. The model is kept, and the budget becomes what fits the new period.
   // REQUIRES: rate_hz > 0.
   void setRate(double rate_hz) noexcept;
+
+  // Of a content whose detail has another unit than triangles: the lowest cost at which it is still
+  // recognisable, which takes the place of min_triangles where that is higher; nullopt: the content
+  // has triangles. If the limit changes, the budget becomes what fits. REQUIRES: least_useful > 0.
+  void setLeastUseful(std::optional<std::size_t> least_useful) noexcept;
 
   // Replaces limits and share of late frames; the rate is setRate()'s. The model is kept, and the
   // budget stays as far as the limits allow. REQUIRES: validate() finds nothing.
@@ -91,7 +97,10 @@ class Governor {
   double coefficient() const noexcept { return per_; }     // c; 0 before the first frame
   double exponent() const noexcept { return exponent_; }   // p
   Duration period() const noexcept { return period_; }
-  std::size_t least() const noexcept { return settings_.min_triangles; }
+  // The lower limit of the budget, for the content that is shown.
+  std::size_t least() const noexcept {
+    return std::min(settings_.min_triangles, least_useful_.value_or(settings_.min_triangles));
+  }
 
  private:
   struct Model {
@@ -117,6 +126,7 @@ class Governor {
   Duration period_;
   double triangles_;
   std::optional<std::size_t> held_;
+  std::optional<std::size_t> least_useful_;
   double head_room_;
   double exponent_;
   double fixed_ = 0;

@@ -8,8 +8,10 @@
 namespace merlin::render::governor {
 
 struct GovernorSettings {
-  double rate_hz = 30;                    // frames per second while anything moves
-  std::size_t min_triangles = 500;        // lower limit of the budget, even if frames are late
+  double rate_hz = 30;  // frames per second while anything moves
+  // Lower limit of the budget, even if frames are late; of a content with another unit of detail at
+  // most the cost at which it is still recognisable.
+  std::size_t min_triangles = 500;
   std::size_t max_triangles = 4'000'000;  // upper limit of the budget while anything moves
   std::size_t first_triangles = 10'000;   // budget before the first measurement
   double late_share = 0.01;               // share of late frames that the head room is adjusted to

@@ -68,11 +68,11 @@ struct PanelOptions {
 
 // What the panel shows of the wall. Equal facts are drawn alike.
 struct PanelFacts {
-  std::string content, slide;  // names; no slide: empty
-  ShownKind kind = ShownKind::kModel;
+  std::string content, slide;        // names; no slide: empty
   std::vector<std::string> missing;  // names of contents that cannot be shown yet
-  bool flies = false;                // the ball moves the viewer
-  double rate_hz = 0;                // asked for
+  ShownKind kind = ShownKind::kModel;
+  bool flies = false;  // the ball moves the viewer
+  double rate_hz = 0;  // asked for
   bool rate_by_hand = false;
   std::uint32_t detail = 0;       // budget of moving frames, in detail_unit
   std::uint32_t full_detail = 0;  // cost of full detail; 0: not known

@@ -10,6 +10,20 @@ namespace {
 class WallPaceTest : public FakeWall {
  protected:
   WallPaceTest() : FakeWall(microseconds(10), 40, {.min_triangles = 100}) {}
+  // Of pictures; the painter takes as long as for a fine model, at each step.
+  struct PictureSteps final : render::content::DetailAxis {
+    std::size_t steps() const noexcept override { return 9; }
+    std::size_t costOf(std::size_t step) const noexcept override { return 4096U >> step; }
+    std::size_t stepWithin(std::size_t budget) const noexcept override {
+      std::size_t step = 0;
+      while (step < 8 && costOf(step) > budget) ++step;
+      return step;
+    }
+    std::size_t leastUseful() const noexcept override { return 16; }
+    std::string_view unit() const noexcept override { return "kilotexels"; }
+  };
+  PictureSteps picture_;
+
   Duration since() const { return clock_.now() - feed_.begins.front(); }
 };
 
@@ -126,6 +140,33 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   EXPECT_EQ(stats().held_cost, 0u);
   EXPECT_FLOAT_EQ(stats().rate_asked_hz, 30);
   EXPECT_GT(frames_.frames.back().cost, 2300u);
+}
+
+// 100 kilotexels, as many as the fewest triangles, would be two steps finer.
+TEST_F(WallPaceTest, APictureGetsAsCoarseAsItCan) {
+  contents_.push_back({&picture_, &painter_});
+  run(4, [&](Timestamp) {
+    if (since() > std::chrono::seconds(1)) loop_->show(1);
+    painter_.slow = since() > std::chrono::seconds(1) ? 2 : 1;
+  });
+  EXPECT_LT(stats().budget, 32u);
+  EXPECT_EQ(painter_.steps_drawn.back(), 8u);
+  EXPECT_EQ(stats().cost, 16u);
+}
+
+TEST_F(WallPaceTest, DetailByHandEndsWithTheUnitThatItIsIn) {
+  contents_.push_back({&detail_, &painter_});
+  contents_.push_back({&picture_, &painter_});
+  std::vector<std::uint32_t> held;
+  run(5.5, [&](Timestamp) {
+    if (since() > std::chrono::seconds(static_cast<int>(held.size()) + 1)) {
+      held.push_back(stats().held_cost);
+      if (held.size() == 1) loop_->hold(1000);
+      if (held.size() < 5) loop_->show(held.size() % 3);  // models 1, picture 2, models 0 and 1
+    }
+  });
+  EXPECT_EQ(held, (std::vector<std::uint32_t>{0, 1000, 0, 0, 0}))
+      << "another model keeps it, a picture does not, and it does not come back";
 }
 
 // The same cost, two per cent up or down: not one triangle changes.

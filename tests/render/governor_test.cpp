@@ -253,6 +253,26 @@ TEST(Governor, KeepsTheLeastAndTheMost) {
   EXPECT_EQ(governor.budget(), 1'000'000u);
 }
 
+// 100 of a picture's units are no coarse picture: its own least counts. A higher one does not.
+TEST(Governor, KeepsTheLeastOfAContentWithAnotherUnit) {
+  governor::Governor governor = settled();
+  governor.setLeastUseful(16);
+  EXPECT_EQ(governor.least(), 16u);
+  for (int i = 0; i < 100; ++i) governor.observe(frame(16, milliseconds(39), hours(1)));
+  EXPECT_EQ(governor.budget(), 16u);
+  governor.setLimits(kSettings);
+  EXPECT_EQ(governor.budget(), 16u) << "other settings do not change what is shown";
+  governor.hold(20);
+  EXPECT_EQ(governor.budget(), 20u);
+  governor.hold(std::nullopt);
+  governor.setLeastUseful(5000);
+  EXPECT_EQ(governor.least(), 100u);
+  EXPECT_EQ(governor.budget(), 100u) << "at once";
+  governor.setLeastUseful(16);
+  governor.setLeastUseful(std::nullopt);
+  EXPECT_EQ(governor.budget(), 100u);
+}
+
 TEST(GovernorBudgetFor, IsTheBudgetForAWholePeriod) {
   const governor::Governor governor = settled();
   EXPECT_EQ(governor.budgetFor(milliseconds(40)), governor.budget());

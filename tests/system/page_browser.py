@@ -97,8 +97,19 @@ def commands(driver):
         "return document.getElementById('content-name').textContent").startswith(name))
     driver.click("#command-next_content")
     driver.until("and the third", lambda: content() == 2)
+    driver.until("the page shows its unit", lambda: driver.run(
+        "return document.getElementById('cost-name').textContent") == "Kilotexels")
+    driver.run("""const slider = document.getElementById('triangles');
+        slider.focus(); slider.value = 0; slider.dispatchEvent(new Event('input'));
+        slider.dispatchEvent(new Event('change'));""")
+
+    def coarsest():
+        detail = status()["detail"]
+        return detail["held_cost"] == max(4, round(detail["full_cost"] / 2 ** (detail["steps"] - 1)))
+    driver.until("the slider begins at a picture's coarsest step", coarsest)
     driver.click("#command-next_content")
     driver.until("and the first one again", lambda: content() == 0)
+    driver.until("what is in a picture's unit is not held for a model", lambda: status()["detail"]["held_cost"] == 0)
 
 
 def contents(driver):
@@ -115,6 +126,50 @@ def contents(driver):
     driver.run("document.querySelector('%s').focus()" % (tile % "model"))
     driver.press("\ue007")
     driver.until("the Enter key shows one as well", lambda: status()["content"]["name"] == "model")
+
+
+def refuse(driver, least, text):
+    """From now on the page's server refuses pictures of this width and more."""
+    driver.run("""const [least, error] = arguments;
+        window.served = window.served || window.fetch;
+        window.fetch = (url, options) => {
+            const width = /picture[.]jpg.*width=([0-9]+)/.exec(url);
+            return width && Number(width[1]) >= least ?
+                Promise.resolve(new Response(JSON.stringify({error}), {status: 503})) : window.served(url, options);
+        };""", least, text)
+
+
+def refusals(driver):
+    """Others look at too many views and sizes; a thumbnail does not come."""
+    fault = "return document.getElementById('picture-fault').hidden ? '' : document.getElementById('picture-fault').textContent"
+    width = "return document.getElementById('picture').naturalWidth"
+    driver.run("document.getElementById('screen').scrollIntoView({block: 'center'})")
+    driver.until("the picture is shown", lambda: driver.run(width) > 320)
+    refuse(driver, 321, "too many sizes")
+    driver.until("a smaller picture is shown instead", lambda: driver.run(width) == 320)
+    assert driver.run(fault) == "", "it is shown, but: " + driver.run(fault)
+    refuse(driver, 1, "too many views")
+    driver.until("the picture says what the server says", lambda: driver.run(fault) == "too many views")
+    driver.run("window.fetch = window.served")
+    driver.until("until it comes again", lambda: driver.run(fault) == "")
+    driver.until("as large as before", lambda: driver.run(width) > 320)
+    seen = "return [...document.querySelectorAll('#contents .thumbnail img')].map(image => image.src)"
+    before = driver.run(seen)
+    driver.run("""let failed = false;
+        window.fetch = async (url, options) => {
+            if (url.startsWith('/thumbnail.jpg') && !failed) {
+                failed = true;
+                return new Response(JSON.stringify({error: 'not now'}), {status: 503});
+            }
+            const answer = await window.served(url, options);
+            if (url !== '/api/contents') return answer;
+            const {contents} = await answer.json();
+            for (const content of contents) content.thumbnail = content.thumbnail && content.thumbnail + 1000;
+            return new Response(JSON.stringify({contents}));
+        };""")
+    driver.until("every thumbnail is read again, also the one that failed", lambda:
+                 len(before) > 1 and len(driver.run(seen)) == len(before) and not set(before) & set(driver.run(seen)))
+    driver.run("window.fetch = window.served")
 
 
 def idle(driver):
@@ -220,6 +275,7 @@ def main():
         looks(driver)
         commands(driver)
         contents(driver)
+        refusals(driver)
         idle(driver)
         phone(driver)
         labels(driver)

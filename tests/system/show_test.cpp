@@ -121,7 +121,7 @@ TEST_F(ShowFile, OneThatIsStoppedSaysOnTheWallHowFarItIsAndLeavesNothing) {
       << showing.output();
   EXPECT_EQ(there(), std::vector<std::string>());
   EXPECT_STREQ(content().name, "model");
-  EXPECT_TRUE(eventually([&] { return wall_->status()["notice"] == ""; }));
+  EXPECT_TRUE(eventually([&] { return wall_->status()["notice"].get<std::string>().empty(); }));
 }
 
 TEST_F(ShowFile, MerlindOpensNoPathThatAClientNames) {
@@ -153,6 +153,41 @@ TEST_F(ShowFile, WhatCannotBeShownIsSaidHereAndOnTheWall) {
   EXPECT_EQ(alone.status, 1);
   EXPECT_NE(alone.output.find("no merlind runs as \"nobody-runs\""), std::string::npos)
       << alone.output;
+}
+
+TEST_F(ShowFile, PanoramaIsRefusedForWhatIsNoPictureThatIsImported) {
+  writeText(*dir_ / "sky.ppm", "P6\n64 32\n255\n" + std::string(64 * 32 * 3, '\x90'));
+  const std::string pyramid = *dir_ / "sky.tif", there = folder() + "/there.tif";
+  ASSERT_EQ(run({kMerlin, "image", "import", *dir_ / "sky.ppm", "-o", pyramid}).status, 0);
+  fs::copy(pyramid, there);
+  const std::pair<std::string, std::string> refused[] = {
+      {"model", "the name of a content"},
+      {pyramid, "already a pyramid"},
+      {there, "in the content folder already"},
+      {*dir_ / "model.mrm", "a model"},
+  };
+  for (const auto& [what, found] : refused) {
+    const Outcome shown = run(command({what, "--panorama"}));
+    EXPECT_NE(shown.status, 0) << what;
+    EXPECT_EQ(shown.output, fmt::format("merlin: {}: --panorama is for a picture that is imported, "
+                                        "and this is {}; import the picture by: merlin image "
+                                        "import --panorama\n",
+                                        what, found));
+  }
+  EXPECT_STREQ(content().kind, "model");
+  const Outcome shown = run(command({*dir_ / "sky.ppm", "--panorama"}));
+  EXPECT_EQ(shown.status, 0) << shown.output;
+  EXPECT_STREQ(content().kind, "panorama");
+}
+
+// 1 MB is too little for any picture.
+TEST_F(ShowFile, ThePicturesImportHasTheMemoryThatIsGiven) {
+  writeText(*dir_ / "small.ppm", "P6\n64 32\n255\n" + std::string(64 * 32 * 3, '\x90'));
+  const Outcome shown = run(command({*dir_ / "small.ppm", "--memory", "1M"}));
+  EXPECT_NE(shown.status, 0);
+  EXPECT_NE(shown.output.find("needs more memory"), std::string::npos) << shown.output;
+  const Outcome again = run(command({*dir_ / "small.ppm", "--memory", "2G"}));
+  EXPECT_EQ(again.status, 0) << again.output;
 }
 
 }  // namespace

@@ -44,6 +44,27 @@ struct ShowOptions {
 
 constexpr Duration kLook = std::chrono::milliseconds(5);
 
+// Refuses --panorama for what is shown as it is, since whether a picture is a panorama stands in
+// its pyramid. `found`: what it is.
+Result<Ok> checkPanorama(const ShowOptions& options, const char* found) {
+  if (!options.image.panorama) return Ok{};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: --panorama is for a picture that is imported, and this is {}; "
+                           "import the picture by: merlin image import --panorama",
+                           options.what(), found)};
+}
+
+Result<Ok> checkPanorama(const ShowOptions& options, FileKind kind) {
+  switch (kind) {
+    case FileKind::kModel: return checkPanorama(options, "a model");
+    case FileKind::kMesh: return checkPanorama(options, "imported as a model");
+    case FileKind::kPyramid: return checkPanorama(options, "already a pyramid");
+    case FileKind::kPicture:
+    case FileKind::kSlides: break;
+  }
+  return Ok{};
+}
+
 // What became of a request, once the wall says and has shown another frame, or a period later is at
 // rest with all its detail: who looks late sees no other frame. Nothing before the end of the time
 // to wait.
@@ -52,18 +73,21 @@ std::optional<shm::WallContent> awaitDone(const ShowOptions& options, std::uint3
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
   SystemClock clock;
   const Timestamp until = clock.now() + fromSeconds(options.wait_s);
+  std::optional<shm::WallContent> done;
   std::optional<std::uint64_t> frame;
   std::int64_t said_ns = 0;
   for (; segment && clock.now() < until; clock.sleepUntil(clock.now() + kLook, {})) {
     const auto content = (*segment)->content.read();
     const auto stats = (*segment)->stats.read();
-    if (!content || !stats || content->finished < request) continue;
+    if (!content || !stats) continue;
+    if (content->finished == request) done = content;
+    if (!done) continue;
     if (!frame) {
       frame = stats->frames;
       said_ns = content->updated_ns;
     }
     const bool at_rest = stats->full_detail != 0 && stats->updated_ns > said_ns;
-    if (content->refused[0] != '\0' || stats->frames > *frame || at_rest) return content;
+    if (done->refused[0] != '\0' || stats->frames > *frame || at_rest) return done;
   }
   return std::nullopt;
 }
@@ -172,6 +196,7 @@ Result<std::string> putFile(const ShowOptions& options, const ContentFolder& fol
                             WallNotices& notices) {
   const auto kind = kindOfFile(options.what(), !options.meshOption().empty());
   if (!kind) return kind.error();
+  if (const auto good = checkPanorama(options, *kind); !good) return good.error();
   const auto name = nameInFolder(options.what(), *kind);
   if (!name) return name;
   const auto done = put(options, folder, *kind, *name, notices);
@@ -190,6 +215,8 @@ int showFile(const ShowOptions& options) {
     return fail(error);
   };
   const bool there = isIn(*folder, options.what());
+  if (const auto good = checkPanorama(options, "in the content folder already"); there && !good)
+    return fail(good.error());
   const auto name = there ? Result<std::string>(fs::path(options.what()).filename().string())
                           : putFile(options, *folder, notices);
   if (!name) return cannot(name.error());
@@ -215,6 +242,8 @@ int showName(const ShowOptions& options) {
     return fail({Errc::kInvalidArgument,
                  fmt::format("{}: {} is for files; a file needs a '/' or an ending in its name",
                              options.what(), option)});
+  if (const auto good = checkPanorama(options, "the name of a content"); !good)
+    return fail(good.error());
   const auto shown = ask(options, {"show", options.what()});
   if (shown) return kExitDone;
   std::error_code error;
@@ -234,7 +263,8 @@ int show(ShowOptions& options) {
   const bool ending = fs::path(options.what()).has_extension();
   const bool file = options.what().find('/') != std::string::npos ||
                     (ending && fs::exists(options.what(), error)) ||
-                    (ending && !options.meshOption().empty());
+                    (ending && (options.image.panorama || !options.meshOption().empty()));
+  if (options.mesh.memory > 0) options.image.memory = options.mesh.memory;
   return file ? showFile(options) : showName(options);
 }
 

@@ -26,13 +26,19 @@ export class Contents {
       this.tiles = new Map(contents.map((c, place) => [c.name, this.makeTile(c, place, open)]));
       this.box.replaceChildren(...[...this.tiles.values()].map(tile => tile.button));
     }
+    let fault = null;
     for (const c of contents) {
       const tile = this.tiles.get(c.name);
       tile.note.textContent = c.fault ? "cannot be read" : kKinds[c.kind] || c.kind;
       tile.note.classList.toggle("bad", Boolean(c.fault));
       tile.button.title = c.fault || "";
-      if (c.thumbnail && c.thumbnail !== tile.number) await this.picture(tile, c.thumbnail);
+      try {
+        if (c.thumbnail && c.thumbnail !== tile.number) await this.picture(tile, c.thumbnail);
+      } catch (error) {
+        fault = error;  // the others' pictures do not wait for this one
+      }
     }
+    if (fault) throw fault;
   }
 
   makeTile(content, place, open) {
@@ -53,18 +59,21 @@ export class Contents {
     return {button, frame, note, place, number: 0, url: ""};
   }
 
+  // The number is taken once the picture is there, so that what failed is tried again.
   async picture(tile, number) {
-    tile.number = number;
     const url = URL.createObjectURL(await getThumbnail(tile.place)), image = new Image();
     image.alt = "";
     image.src = url;
     try {
       await image.decode();
-      tile.frame.replaceChildren(image);
-    } finally {
-      if (tile.url) URL.revokeObjectURL(tile.url);
-      tile.url = url;
+    } catch (error) {
+      URL.revokeObjectURL(url);
+      throw error;
     }
+    tile.frame.replaceChildren(image);
+    if (tile.url) URL.revokeObjectURL(tile.url);
+    tile.url = url;
+    tile.number = number;
   }
 
   // Marks the content that is shown.

@@ -223,9 +223,18 @@ function showOutputs(wall) {
            o.reason || o.picture_reason || (o.kind === name ? "" : o.kind))));
 }
 
-// The slider of the cost has a logarithmic scale from 1/1000 to all of it.
-const costOf = (place, full) => Math.max(1, Math.round(full * 10 ** (3 * (place / 1000 - 1))));
-const placeOf = (cost, full) => Math.round(1000 * (1 + Math.log10(Math.max(cost, 1) / Math.max(full, 1)) / 3));
+// The least detail that the wall takes while it moves: of pictures that of the coarsest step, each of
+// which has half of the one before; of models /wall/rate/min_triangles, whose default this is.
+const kLeastTriangles = 500, kLeastArgument = 4;
+function leastCost(detail) {
+  const least = detail.unit === "triangles" ? kLeastTriangles : detail.full_cost / 2 ** (detail.steps - 1);
+  return Math.max(kLeastArgument, Math.min(least, detail.full_cost));
+}
+
+// The slider of the cost has a logarithmic scale from the least to all of it.
+const range = detail => Math.max(detail.full_cost / leastCost(detail), 1.001);
+const costOf = (place, detail) => Math.round(leastCost(detail) * range(detail) ** (place / 1000));
+const placeOf = (cost, detail) => Math.round(1000 * Math.log(Math.max(cost / leastCost(detail), 1)) / Math.log(range(detail)));
 
 const isUsed = id => document.activeElement === byId(id) && Date.now() < (state.used[id] || 0);
 
@@ -238,7 +247,7 @@ function showDetail(wall) {
   }
   byId("cost-name").textContent = readable(detail.unit || "detail");
   if (!isUsed("triangles")) {
-    byId("triangles").value = placeOf(detail.held_cost || wall.budget || detail.cost, detail.full_cost);
+    byId("triangles").value = placeOf(detail.held_cost || wall.budget || detail.cost, detail);
     byId("triangles-value").textContent = detail.held_cost ? grouped(detail.held_cost) + " by hand" : "auto";
   }
   byId("triangles-auto").setAttribute("aria-pressed", String(!detail.held_cost));
@@ -349,27 +358,51 @@ async function readEvents() {
 let picture_seen = true, picture_url = "";
 new IntersectionObserver(entries => { picture_seen = entries.at(-1).isIntersecting; }).observe(byId("screen"));
 
+const kWidths = [320, 640, 960, 1280, 1920];
+const kAskAgain = 5000;  // ms until a size that the server refused is asked for again
+
 function pictureWidth() {
   const wanted = byId("screen").clientWidth * Math.min(devicePixelRatio || 1, 2);
-  return [320, 640, 960, 1280].find(width => width >= wanted) || 1920;
+  return kWidths.find(width => width >= wanted) || kWidths.at(-1);
+}
+
+// The next picture: in a smaller size while the server makes no more sizes of it, for others look
+// at too many. Fails with what the server says if it makes not even the smallest.
+const refused_until = {};  // by view and width
+async function nextPicture(view, after) {
+  const widths = kWidths.slice(0, kWidths.indexOf(pictureWidth()) + 1), least = widths[0];
+  for (const width of widths.reverse()) {
+    const size = view + " " + width;
+    if (width !== least && Date.now() < (refused_until[size] || 0)) continue;
+    try {
+      return await getPicture(view, width, after);
+    } catch (error) {
+      if (error.status !== 503 || width === least) throw error;
+      refused_until[size] = Date.now() + kAskAgain;
+    }
+  }
+}
+
+function showPictureFault(text) {
+  byId("picture-fault").textContent = text;
+  byId("picture-fault").hidden = !text;
 }
 
 async function showPictures() {
-  let after = 0, shown = "";
+  let after = 0;  // no two pictures have the same number, whatever their view and size
   for (;;) {
     if (document.hidden || !picture_seen || !state.online) {
       await wait(300);
       continue;
     }
-    const view = state.view, width = pictureWidth();
-    if (shown !== view + width) after = 0;
     try {
-      const picture = await getPicture(view, width, after);
+      const picture = await nextPicture(state.view, after);
+      showPictureFault("");
       if (!picture) continue;
-      after = picture.number;
-      shown = view + width;
       await drawPicture(picture.blob);
-    } catch {
+      after = picture.number;
+    } catch (error) {
+      if (error.status === 503) showPictureFault(error.message);
       await wait(1000);
     }
   }
@@ -460,7 +493,7 @@ async function repeat(read, period) {
 
 const alignment = new Alignment(run);
 const contents = new Contents(byId("contents"), showContent);
-const fullCost = () => wallStatus() && wallStatus().detail ? wallStatus().detail.full_cost : 1;
+const shownDetail = () => wallStatus() && wallStatus().detail || {unit: "triangles", full_cost: kLeastTriangles};
 
 async function begin() {
   takeTokenFromAddress();
@@ -472,8 +505,8 @@ async function begin() {
     toast(error.message, true);
   });
   makeSlider("rate", "rate", String, value => value + " Hz");
-  makeSlider("triangles", "triangles", place => String(costOf(place, fullCost())),
-             place => grouped(costOf(place, fullCost())) + " by hand");
+  makeSlider("triangles", "triangles", place => String(costOf(place, shownDetail())),
+             place => grouped(costOf(place, shownDetail())) + " by hand");
   setOpen(false);
   if (token()) await checkToken();
   let commands = null;
