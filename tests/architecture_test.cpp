@@ -236,6 +236,7 @@ const std::map<std::string, Folders> kOnlyIn = {
       "daemon/cli/report",
       "daemon/cli/show",
       "daemon/cli/watch",
+      "render/import",
       "render/mesh/io/gltf"}},
     {"microhttpd.h", {"daemon/page"}},
     {"qrencode.h", {"daemon/page"}},

@@ -1,5 +1,6 @@
 #include "daemon/import/sandbox.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
@@ -132,15 +133,42 @@ bool limitCalls() {
   return ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0;
 }
 
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFiles = 4096;
+
+bool isHidden(const fs::directory_entry& entry) {
+  return entry.path().filename().string().starts_with('.');
+}
+
 // Adds the visible files of a folder.
-void addFiles(const std::filesystem::path& folder, std::vector<std::string>& files) {
-  constexpr std::size_t kMost = 4096;
+void addFiles(const fs::path& folder, std::vector<std::string>& files) {
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const bool hidden = entry.path().filename().string().starts_with('.');
-    if (files.size() < kMost && !hidden && entry.is_regular_file(error))
-      files.push_back(entry.path().string());
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (files.size() >= kMostFiles) return;
+    if (!isHidden(entry) && entry.is_regular_file(error)) files.push_back(entry.path().string());
   }
+}
+
+constexpr const char* kUsualFolders[] = {"textures", "Textures", "images", "maps", "materials"};
+
+// The visible folders in a folder, the usual ones first, in case there are too many files. A link
+// counts among the usual ones alone: an unpacked model may have brought one to anywhere.
+std::vector<fs::path> foldersIn(const fs::path& folder) {
+  constexpr std::size_t kMostLooked = 65536;
+  std::vector<fs::path> folders, others;
+  for (const char* name : kUsualFolders) folders.push_back(folder / name);
+  std::error_code error;
+  std::size_t looked = 0;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (++looked > kMostLooked) break;
+    const bool usual = std::ranges::find(folders, entry.path()) != folders.end();
+    if (!usual && !isHidden(entry) && !entry.is_symlink(error) && entry.is_directory(error))
+      others.push_back(entry.path());
+  }
+  std::ranges::sort(others);
+  folders.insert(folders.end(), others.begin(), others.end());
+  return folders;
 }
 
 }  // namespace
@@ -149,8 +177,7 @@ std::vector<std::string> filesBeside(const std::string& input) {
   std::vector<std::string> files;
   const auto folder = std::filesystem::absolute(input).parent_path();
   addFiles(folder, files);
-  for (const char* name : {"textures", "Textures", "images", "maps", "materials"})
-    addFiles(folder / name, files);
+  for (const auto& inside : foldersIn(folder)) addFiles(inside, files);
   return files;
 }
 

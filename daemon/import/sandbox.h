@@ -16,7 +16,7 @@ struct Limits {
 };
 
 // The files that a model may name, at most 4096: the visible ones in the folder of `input`, and in
-// folders of it that are called textures, images, maps or materials.
+// the visible folders of it, textures, images, maps and materials first.
 std::vector<std::string> filesBeside(const std::string& input);
 
 // Closes the sandbox around this process, for good. `inputs`: files that may be read; `folder`: the

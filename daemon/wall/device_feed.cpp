@@ -242,7 +242,7 @@ bool DeviceFeed::isOfAnotherHand(const shm::DeviceSlots& devices, const std::str
 
 // Returns whether a ball moves a corner.
 bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,
-                            WallInput& input) const {
+                            WallInput& input) {
   actions::ActionCounts used;
   for (std::size_t i = 0; i < devices.actions.size(); ++i) {
     const std::string& source = devices.actions[i].source;
@@ -262,9 +262,10 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
     }
   }
   // What one hand has grabbed is let go before another one carries it, from where that is.
-  if (other_hand_) {
+  if (other_hand_ && moved_) {
     for (const std::size_t action : kMoving) used.held[action] = false;
   }
+  moved_ = holdsOneOf(used, kMoving);
   const auto begun = [&](std::size_t action) { return used.begun[action]; };
   input.scene.grab = used.held[actionIndex("grab")];
   input.scene.fly = used.held[actionIndex("fly")];

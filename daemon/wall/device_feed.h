@@ -62,7 +62,7 @@ class DeviceFeed final : public InputFeed {
   void moveCorner(Duration since_last, bool held, WallInput& input) const;
   bool isOfAnotherHand(const shm::DeviceSlots& devices, const std::string& source) const;
   bool useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,
-                  WallInput& input) const;
+                  WallInput& input);
 
   shm::SegmentFollower<shm::DevicesReader> devices_;
   FeedSettings settings_;
@@ -70,6 +70,7 @@ class DeviceFeed final : public InputFeed {
   std::optional<std::string> holder_;  // who has the wall
   std::size_t hand_ = 0;               // the hand that acted last: index of settings_.hands
   bool other_hand_ = false;            // it is another one than at the read before
+  bool moved_ = false;                 // something was grabbed, or flown, at the last read
   bool leaves_out_ball_ = false;
   std::optional<Duration> age_;
   std::optional<Timestamp> last_read_;

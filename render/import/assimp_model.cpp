@@ -1,4 +1,5 @@
-// Reads models with assimp: glTF, COLLADA, FBX, 3DS and whatever else it knows.
+// Reads models with assimp: glTF, COLLADA, FBX, 3DS and the others that input_kinds.cpp of
+// daemon/cli/mesh sends here.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,6 +17,8 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "render/import/companion_path.h"
+#include "render/import/gltf_check.h"
 #include "render/import/model_file.h"
 #include "render/import/model_textures.h"
 #include "render/mesh/io/companion_files.h"
@@ -72,7 +75,7 @@ class ModelFolder final : public Assimp::IOSystem {
 
  private:
   std::string pathOf(const char* name) const {
-    return name == name_ ? file_.path : mesh::pathBeside(folder_, name);
+    return name == name_ ? file_.path : companionPath(folder_, name);
   }
 
   const ModelFile& file_;
@@ -108,6 +111,8 @@ struct Material {
   std::array<float, 3> colour = kPlain;
   mesh::SurfaceTexture texture;
   unsigned texcoords = 0;  // which of the mesh's texture coordinates
+  // What is done to them: each times `scale`, and then `offset` is added.
+  std::array<float, 2> scale = {1, 1}, offset{};
 };
 
 class SceneReader {
@@ -130,6 +135,10 @@ class SceneReader {
     BuiltModel built = std::move(builder_).finish();
     const auto& notes = textures_.notes();
     built.notes.insert(built.notes.end(), notes.begin(), notes.end());
+    if (transforms_ > 0)
+      built.notes.push_back(
+          fmt::format("left out: the {} of {} textures, which lie otherwise than in the model",
+                      linear_ ? "rotations" : "scales, offsets and rotations", transforms_));
     if (others_ > 0) built.notes.push_back(fmt::format("left out: {} lines and points", others_));
     if (morphs_ || scene_.mNumAnimations > 0)
       built.notes.push_back(fmt::format("left out: {} animations{}; this is the rest pose",
@@ -175,8 +184,25 @@ class SceneReader {
                                                    nullptr, wrap) != aiReturn_SUCCESS)
         continue;
       m.texture = {imageOf(path), wrapOf(wrap[0]), wrapOf(wrap[1])};
+      takeTransform(material, type, m);
     }
     return m;
+  }
+
+  // Of glTF, assimp says with v upwards what is to be done. Its own step (TransformUVCoords) does
+  // something else, about the picture's middle, and of other formats its meaning is not known.
+  void takeTransform(const aiMaterial& material, aiTextureType type, Material& m) {
+    aiUVTransform t;
+    const bool there =
+        aiGetMaterialUVTransform(&material, AI_MATKEY_UVTRANSFORM(type, 0), &t) == aiReturn_SUCCESS;
+    const bool none = t.mScaling == aiVector2D(1, 1) && t.mTranslation == aiVector2D(0, 0);
+    if (!there || (none && t.mRotation == 0)) return;
+    if (!linear_ || t.mRotation != 0) {
+      ++transforms_;
+      return;
+    }
+    m.scale = {t.mScaling.x, t.mScaling.y};
+    m.offset = {t.mTranslation.x, t.mTranslation.y};
   }
 
   // The nodes with the transforms that take their coordinates to the model's.
@@ -226,7 +252,8 @@ class SceneReader {
     if (material.texcoords < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
         mesh.mTextureCoords[material.texcoords]) {
       const aiVector3D& t = mesh.mTextureCoords[material.texcoords][v];
-      corner.texcoord = {t.x, t.y};
+      corner.texcoord = {t.x * material.scale[0] + material.offset[0],
+                         t.y * material.scale[1] + material.offset[1]};
     }
     return corner;
   }
@@ -269,13 +296,23 @@ class SceneReader {
   std::vector<std::pair<const aiNode*, aiMatrix4x4>> nodes_;
   std::map<std::string, aiMatrix4x4> by_name_;
   ModelBuilder builder_;
-  std::size_t others_ = 0, meshes_ = 0;
+  std::size_t others_ = 0, meshes_ = 0, transforms_ = 0;
   bool morphs_ = false;
 };
+
+bool isGltf(const ModelFile& file) { return file.format == "gltf" || file.format == "glb"; }
+
+Result<Ok> checkFirst(const ModelFile& file) {
+  if (!isGltf(file)) return Ok{};
+  const auto bytes = MappedFile::open(file.path);
+  if (!bytes) return Ok{};  // assimp says so
+  return checkGltf(bytes->text());
+}
 
 }  // namespace
 
 Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_triangles) {
+  if (const auto good = checkFirst(file); !good) return good.error();
   Assimp::Importer importer;
   auto* const folder = new ModelFolder(file);  // the importer's from here on
   importer.SetIOHandler(folder);

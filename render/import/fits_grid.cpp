@@ -130,8 +130,7 @@ void readScale(Cards& cards, range::GridHead& head) {
   }
   if (!unit.empty() && !head.header.scale)
     head.notes.push_back(
-        fmt::format("BUNIT {} is not a length that is known; a unit is taken as a metre (--scale)",
-                    oneLine(excerpt(unit))));
+        fmt::format("BUNIT {} is not a length that is known", oneLine(excerpt(unit))));
   if (const auto scale = cards.number("SCALE")) head.header.scale = scale;
 }
 

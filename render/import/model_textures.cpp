@@ -1,10 +1,23 @@
 #include "render/import/model_textures.h"
 
+#include <cerrno>
 #include <utility>
 
-#include "render/mesh/io/companion_files.h"
+#include <fcntl.h>
+
+#include "daemon/base/unique_fd.h"
+#include "render/import/companion_path.h"
 
 namespace merlin::render::import {
+namespace {
+
+// Whether the file is there and may not be opened: the sandbox of daemon/import is closed to it.
+bool isForbidden(const std::string& path) {
+  const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  return !file.valid() && errno == EACCES;
+}
+
+}  // namespace
 
 const image::ImageFile* ModelTextures::once(const std::string& name,
                                             const std::function<Result<image::ImageFile>()>& read) {
@@ -22,7 +35,14 @@ const image::ImageFile* ModelTextures::named(const std::string& name) {
   return once(name, [&]() -> Result<image::ImageFile> {
     if (name.empty() || name.find('\0') != std::string::npos)
       return Error{Errc::kMalformed, "an empty name of a texture image"};
-    return image::readImage(mesh::pathBeside(folder_, name));
+    const std::string path = companionPath(folder_, name);
+    auto image = image::readImage(path);
+    if (!image && isForbidden(path))
+      return Error{image.error().code,
+                   image.error().what +
+                       " (read are visible files in the model's folder and in "
+                       "its visible folders, 4096 in all; put it beside the model)"};
+    return image;
   });
 }
 

@@ -84,7 +84,11 @@ TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {
     // As where a file is being written: the folder's stamp does not change any more.
     if (path == folder && ++tries == 1) return Error{Errc::kMalformed, "is cut"};
     if (path == folder) return ReadyModel{place, folder + "/first", nullptr, nullptr};
-    if (test::readText(path) == "good") return ReadyModel{place, path, nullptr, nullptr};
+    if (test::readText(path) == "good") {
+      ReadyModel ready{place, path, nullptr, nullptr};
+      ready.stamp = *fileStamp(path);
+      return ready;
+    }
     return Error{Errc::kMalformed, path + ": is damaged"};
   };
   MissingContents missing({"there is no such file", "there is no such folder"});

@@ -86,14 +86,18 @@ TEST_F(SandboxTest, LeavesNoNetworkNoProgramAndNoOtherProcess) {
 }
 
 TEST_F(SandboxTest, OfTheFilesBesideAModelTheVisibleOnesMayBeRead) {
-  for (const char* folder : {"textures", "private"}) {
+  for (const char* folder : {"textures", "assets", ".private"}) {
     std::filesystem::create_directory(dir_ / folder);
     test::writeText(dir_ / folder + "/a.png", "");
   }
   test::writeText(dir_ / ".hidden", "");
+  test::TempDir elsewhere;
+  test::writeText(elsewhere / "secret", "");
+  std::filesystem::create_directory_symlink(elsewhere.path(), dir_ / "link");
   auto files = filesBeside(input_);
   std::ranges::sort(files);
-  EXPECT_EQ(files, (std::vector<std::string>{input_, dir_ / "other", dir_ / "textures/a.png"}));
+  EXPECT_EQ(files, (std::vector<std::string>{dir_ / "assets/a.png", input_, dir_ / "other",
+                                             dir_ / "textures/a.png"}));
 }
 
 TEST_F(SandboxTest, LimitsFilesAndMemory) {

@@ -222,6 +222,17 @@ TEST(Clouds, LargeCoordinatesKeepTheirDigits) {
   EXPECT_EQ(cloud.positions[8], 14);
 }
 
+TEST(Clouds, ThoseOfAPlyWithDoublesToo) {
+  const auto cloud = cloudOf(
+      "ply\nformat ascii 1.0\ncomment first another element\nelement camera 1\nproperty list "
+      "uchar double view\nelement vertex 2\nproperty double heat\nproperty double z\nproperty "
+      "double x\nproperty list uchar int seen\nproperty double y\nend_header\n2 7 8\n"
+      "3 100.5 500000.125 0 5000000.25\n4 101 500001.0625 2 9 9 5000001.5\n");
+  EXPECT_EQ(cloud.origin, (std::array<double, 3>{500'000, 5'000'000, 0}));
+  EXPECT_EQ(cloud.positions, (std::vector<float>{0.125F, 0.25F, 100.5F, 1.0625F, 1.5F, 101}));
+  EXPECT_EQ(valuesOf(cloud, "heat"), (std::vector<float>{3, 4}));
+}
+
 TEST(SurfaceGuess, ACellOfTheOctreeIsAsWideAsTheSpacing) {
   const auto settings = points::guessed({}, 128, 1.1);
   EXPECT_EQ(settings.depth, 7);

@@ -12,6 +12,7 @@
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/files.h"
+#include "render/image/png_levels.h"
 #include "render/range/geometry.h"
 #include "render/range/io/angle_table.h"
 #include "render/range/io/elevation.h"
@@ -372,6 +373,38 @@ TEST_F(RangeFile, CellsInDegreesBecomeMetres) {
   EXPECT_EQ(projected->notes[0], "projection: PROJCS[\"UTM\"]");
 }
 
+TEST_F(RangeFile, AnEsriGridLiesAtTheMiddleOfItsLowerLeftCell) {
+  using Origin = std::array<double, 2>;
+  EXPECT_EQ(read(kGrid + "1 2 3 4 5 6\n", {}, "a.asc")->image.geometry.origin,
+            Origin({500'015, 4'000'015}));
+  EXPECT_EQ(
+      read("ncols 2\nnrows 2\nxllcenter 7000\nyllcorner 90\ndx 4\ndy 2\n1 2 3 4\n", {}, "a.asc")
+          ->image.geometry.origin,
+      Origin({7000, 91}));
+  EXPECT_FALSE(read("ncols 2\nnrows 2\ncellsize 1\n1 2 3 4\n", {}, "a.asc")->image.geometry.origin);
+}
+
+TEST_F(RangeFile, APrjFileSaysDegreesInWktOrInArcInfosLines) {
+  const std::string text = "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 40\ncellsize 0.5\n1 2 3 4\n";
+  const auto cell = [&](const std::string& projection) {
+    writeText(dir_ / "a.prj", projection);
+    const auto loaded = read(text, {}, "a.asc");
+    EXPECT_TRUE(loaded);
+    EXPECT_EQ(loaded->notes.size(), loaded->image.geometry.cell_y > 1 ? 2U : 1U) << projection;
+    return loaded->image.geometry.cell_y;
+  };
+  for (const char* metres :
+       {"Projection    UTM\nZone          10\nDatum         NAD83\nUnits         METERS\n",
+        "PROJCS[\"a\",GEOGCS[\"b\"]]", "PROJCRS[\"a\",BASEGEOGCRS[\"b\"]]", "LOCAL_CS[\"c\"]"})
+    EXPECT_EQ(cell(metres), 0.5) << metres;
+  writeText(dir_ / "a.prj", "Projection    UTM\r\nZone\t10\r\n");
+  EXPECT_EQ(read(text, {}, "a.asc")->image.geometry.projection, "Projection UTM Zone 10");
+  for (const char* degrees :
+       {"GEOGCS[\"WGS 84\"]", "GEOGCRS[\"WGS 84\"]", "Projection GEOGRAPHIC\r\nUnits SECONDS\r\n",
+        "projection albers\nunits dd\n"})
+    EXPECT_NEAR(cell(degrees), 55'520, 20) << degrees;
+}
+
 TEST_F(RangeFile, ATileOfHeightsLiesWhereItsNameSays) {
   std::string bytes;
   bytes.reserve(2 * 1201 * 1201);
@@ -382,6 +415,9 @@ TEST_F(RangeFile, ATileOfHeightsLiesWhereItsNameSays) {
   EXPECT_FALSE(isReturn(loaded->image.range[5]));
   EXPECT_NEAR(loaded->image.geometry.cell_y, 92.146, 0.01) << "110,574 m / 1200";
   EXPECT_NEAR(loaded->image.geometry.cell_x, 92.762, 0.01);
+  EXPECT_EQ(loaded->image.geometry.origin, (std::array<double, 2>{10, -1}));
+  EXPECT_TRUE(loaded->image.geometry.projection.starts_with("GEOGCS[\"WGS 84\""));
+  EXPECT_TRUE(loaded->image.geometry.projection.ends_with("AUTHORITY[\"EPSG\",\"4326\"]]"));
   EXPECT_NE(fault(bytes, {}, "any.hgt").find("--cell"), std::string::npos);
   EXPECT_NE(fault(bytes.substr(1), {}, "S01E010.hgt").find("has 2884801 bytes"), std::string::npos);
 }
@@ -403,6 +439,43 @@ TEST_F(RangeFile, FeaturesHaveTheImagesSizeAndTheirScale) {
   const auto other = readPlane("x", dir_ / "s.pgm", image);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().what, dir_ / "s.pgm" + ": has 3 x 2 pixels; the range image has 2 x 2");
+}
+
+TEST_F(RangeFile, AFeatureOfAPngOfSixteenBitsHasTheFiguresOfTheFile) {
+  const RangeImage image = flatImage(2, 2, Scanner::kOrthogonal);
+  const auto png = render::image::encodeLevels({2, 2, 1, {20'000, 20'010, 0, 65'535}});
+  ASSERT_TRUE(png);
+  writeText(dir_ / "t.png", *png);
+  const auto plane = readPlane("thermal", dir_ / "t.png", image);
+  ASSERT_TRUE(plane) << plane.error().what;
+  EXPECT_EQ(plane->dimension, 1U);
+  EXPECT_EQ(plane->values, (std::vector<float>{20'000, 20'010, 0, 65'535}));
+  const auto colour = readPlane("colour", dir_ / "t.png", image);
+  ASSERT_TRUE(colour);
+  EXPECT_EQ(colour->dimension, 3U);
+  EXPECT_EQ(colour->values[11], 1);
+  const auto other = readPlane("x", dir_ / "t.png", flatImage(3, 2, Scanner::kOrthogonal));
+  EXPECT_EQ(other.error().what, dir_ / "t.png" + ": has 2 x 2 pixels; the range image has 3 x 2");
+  writeText(dir_ / "cut.png", png->substr(0, png->size() - 30));
+  const auto cut = readPlane("x", dir_ / "cut.png", image);
+  ASSERT_FALSE(cut);
+  EXPECT_TRUE(cut.error().what.starts_with(dir_ / "cut.png" + ": PNG: ")) << cut.error().what;
+}
+
+TEST_F(RangeFile, ItsRangesAreMetresWhereSomethingSaysSo) {
+  const auto inMetres = [&](const std::string& comments, const RangeOptions& options = {}) {
+    const auto loaded = read("P5\n# angles: 20 20\n" + comments + "2 2\n255\nabcd", options);
+    EXPECT_TRUE(loaded);
+    return loaded && loaded->in_metres;
+  };
+  EXPECT_FALSE(inMetres(""));
+  EXPECT_FALSE(inMetres("# maximum: 4\n"));
+  EXPECT_TRUE(inMetres("# minimum: 0\n# maximum: 4\n"));
+  EXPECT_TRUE(inMetres("# scale: 0.001\n"));
+  EXPECT_TRUE(inMetres("# geometry: elevation\n# cell: 30 30\n"));
+  RangeOptions options;
+  options.scale = 0.01;
+  EXPECT_TRUE(inMetres("", options));
 }
 
 // As in the Stanford 3D Scanning Repository: seen from far along z, rows from the bottom. 3 x 2

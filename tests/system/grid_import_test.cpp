@@ -307,7 +307,9 @@ TEST_F(GridImport, TheImageOfAFitsFileIsChosen) {
             std::string::npos);
   const std::string about = run({kMerlin, "mesh", "info", dir_ / "a.fits", "--json"}).output;
   EXPECT_NE(about.find("note: " + (dir_ / "a.fits") + ": left out: 2"), std::string::npos) << about;
-  EXPECT_NE(about.find("\"unit\":\"m\""), std::string::npos) << about;
+  EXPECT_NE(about.find("\"unit\":\"\""), std::string::npos) << about;
+  const auto scaled = run({kMerlin, "mesh", "info", dir_ / "a.fits", "--json", "--scale", "1"});
+  EXPECT_NE(scaled.output.find("\"unit\":\"m\""), std::string::npos) << scaled.output;
 }
 
 TEST_F(GridImport, AFitsFileThatIsCutOrTooLargeOrEmptyIsRefused) {

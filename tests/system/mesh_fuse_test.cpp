@@ -76,6 +76,32 @@ TEST_F(MeshFuse, RefusesScansThatDoNotSayWhereTheyStood) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
+TEST_F(MeshFuse, TakesTheOptionsOfAnImportForAllScans) {
+  const std::string scan = dir_ / "a.pgm", pose = dir_ / "pose.txt";
+  writeText(scan, "P5\n# feature: heat=absent.pgm\n8 8\n255\n" + std::string(64, '\x64'));
+  writeText(pose, "1 0 0 0\n0 1 0 0\n0 0 1 0\n");
+  const Outcome bare = fuse({scan, "--pose", pose, "-o", out_});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_NE(bare.output.find("the angles of the image are not known"), std::string::npos)
+      << bare.output;
+  const Outcome done = fuse({scan, "--pose", pose, "--angles", "40", "30", "--scale", "0.01",
+                             "--spikes", "5%", "-o", out_});
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("the feature is left out (put it where the image names it)"),
+            std::string::npos)
+      << done.output;
+  const auto info = jsonOf(run({kMerlin, "mesh", "info", out_, "--json"}));
+  EXPECT_NEAR(info["box"]["high"][2], -0.86, 0.1) << "1 m away, not 100";
+  const Outcome gone = fuse(
+      {scan, "--pose", pose, "--angles", "40", "30", "--between", "1", "2", "-o", dir_ / "b.ply"});
+  EXPECT_NE(gone.output.find("the filters removed all of its 64 returns"), std::string::npos)
+      << gone.output;
+  const Outcome taken = fuse({"--angles", dir_ / "beams.txt", scan, "-o", dir_ / "b.ply"});
+  EXPECT_EQ(taken.status, 2);
+  EXPECT_NE(taken.output.find(scan + ": is taken for a value of --angles"), std::string::npos)
+      << taken.output;
+}
+
 TEST_F(MeshFuse, TakesPosesFromFilesOfTheirOwn) {
   const std::string scan = dir_ / "a.pgm", pose = dir_ / "pose.txt";
   writeText(scan, "P5\n# angles: 40 30\n8 8\n255\n" + std::string(64, '\x64'));

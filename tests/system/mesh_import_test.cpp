@@ -175,6 +175,30 @@ TEST_F(MeshImport, TheSameInputGivesTheSameBytesOnAnyNumberOfThreads) {
   EXPECT_TRUE(readText(dir_ / "a.ply") == readText(dir_ / "b.ply"));
 }
 
+TEST_F(MeshImport, TheUnitIsAMetreOnlyWhereSomethingSaysSo) {
+  writeText(scan_, "P5\n# angles: 60 40\n4 4\n255\n" + std::string(16, '\x64'));
+  const std::string model = dir_ / "out.mrm";
+  const auto unit = [&] {
+    const Outcome info = run({kMerlin, "mesh", "info", model, "--json"});
+    return nlohmann::json::parse(info.output)["unit"].get<std::string>();
+  };
+  const auto counts = report({scan_, "-o", model});
+  EXPECT_EQ(counts["notes"].dump(),
+            "[\"nothing says in which unit its ranges are, and they are taken as they stand; "
+            "--scale METRES_PER_UNIT makes metres of them\"]");
+  EXPECT_EQ(unit(), "");
+  EXPECT_EQ(report({scan_, "--scale", "0.01", "-o", model})["notes"].size(), 0U);
+  EXPECT_EQ(unit(), "m");
+}
+
+TEST_F(MeshImport, AModelForTheWallIsSentToTheExport) {
+  const std::string model = dir_ / "a.mrm";
+  ASSERT_EQ(import({scan_, "-o", model}).status, 0);
+  expectRefusal({model, "-o", ply_}, model +
+                                         ": is a model for the wall already; merlin mesh export " +
+                                         model + " -o OUT.ply makes a mesh of it");
+}
+
 TEST_F(MeshImport, RefusalsNameFilePlaceAndReason) {
   const std::string bad = dir_ / "bad.pgm";
   writeText(bad, "P5\n2 2\n255\nabcd");

@@ -86,6 +86,20 @@ TEST_F(MeshInfo, ARangeImageHasRowsColumnsAndReturns) {
       << text.output;
 }
 
+TEST_F(MeshInfo, TakesTheScaleOfARangeImageAndALimitOfMemory) {
+  const std::string file = dir_ / "a.pgm";
+  writeText(file, "P5\n# angles: 40 30\n4 4\n255\n" + std::string(16, '\x64'));
+  EXPECT_EQ(infoOf(file)["unit"], "") << "nothing says it";
+  const auto scaled = run({kInfoMerlin, "mesh", "info", file, "--json", "--scale", "0.01"});
+  ASSERT_EQ(scaled.status, 0) << scaled.output;
+  const auto info = nlohmann::json::parse(scaled.output);
+  EXPECT_EQ(info["unit"], "m");
+  EXPECT_LT(info["diagonal"], 2);
+  const auto small = run({kInfoMerlin, "mesh", "info", file, "--memory", "1k"});
+  EXPECT_EQ(small.status, 2) << small.output;
+  EXPECT_NE(small.output.find("the limit (--memory"), std::string::npos) << small.output;
+}
+
 TEST_F(MeshInfo, OfAFileThatIsAbsentItSaysThat) {
   for (const char* const name : {"absent", "absent.ply", "absent.mrm"}) {
     const Outcome info = run({kInfoMerlin, "mesh", "info", dir_ / name});
@@ -106,6 +120,9 @@ TEST_F(MeshInfo, OptionsForRangeImagesAreForThose) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.output.find("roof.ply: --angles is for range images"), std::string::npos)
       << refused.output;
+  const Outcome scaled = run({kInfoMerlin, "mesh", "info", roof(), "--scale", "2"});
+  EXPECT_NE(scaled.output.find("roof.ply: --scale is for range images"), std::string::npos)
+      << scaled.output;
 }
 
 }  // namespace

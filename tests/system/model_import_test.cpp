@@ -81,6 +81,32 @@ std::string threeDs() {
   return chunk(0x4D4D, chunk(2, std::string("\3\0\0\0", 4)) + chunk(0x3D3D, mesh));
 }
 
+std::string le(float x) {
+  std::string bytes;
+  appendLe32(bytes, std::bit_cast<std::uint32_t>(x));
+  return bytes;
+}
+
+// The same with a picture, whose coordinates are to be scaled.
+std::string threeDsWithPicture(float scale) {
+  const std::string named("m\0", 2);
+  const std::string material =
+      chunk(0xA000, named) + chunk(0xA200, chunk(0xA300, std::string("t.png\0", 6)) +
+                                               chunk(0xA354, le(scale)) + chunk(0xA356, le(scale)));
+  std::string vertices, faces, coordinates, of_material = named;
+  for (std::string* counted : {&vertices, &coordinates}) appendLe16(*counted, 3);
+  for (const float x : {0.F, 0.F, 0.F, 3.F, 0.F, 0.F, 0.F, 4.F, 0.F}) vertices += le(x);
+  for (const float x : {0.F, 0.F, 1.F, 0.F, 0.F, 1.F}) coordinates += le(x);
+  for (const int x : {1, 0, 1, 2, 7}) appendLe16(faces, x);
+  for (const int x : {1, 0}) appendLe16(of_material, x);
+  const std::string mesh =
+      chunk(0x4000, std::string("one\0", 4) +
+                        chunk(0x4100, chunk(0x4110, vertices) + chunk(0x4140, coordinates) +
+                                          chunk(0x4120, faces + chunk(0x4130, of_material))));
+  return chunk(
+      0x4D4D, chunk(2, std::string("\3\0\0\0", 4)) + chunk(0x3D3D, chunk(0xAFFF, material) + mesh));
+}
+
 class ModelImport : public testing::Test {
  protected:
   Outcome import(const std::string& in, std::vector<std::string> more = {}) {
@@ -162,6 +188,17 @@ TEST_F(ModelImport, ThreeDsIsReadByItsChunks) {
   EXPECT_EQ(json["format"], "3DS");
   EXPECT_EQ(json["triangles"], 1);
   EXPECT_NEAR(info()["diagonal"], 5, 1e-5);
+}
+
+TEST_F(ModelImport, AScaledTextureOf3dsIsLeftAsItIsWithANote) {
+  const std::vector<std::uint8_t> red = {255, 0, 0, 255};
+  ASSERT_TRUE(render::image::writePng(dir_ / "t.png", 1, 1, red));
+  const auto plain = report("a.3ds", threeDsWithPicture(1));
+  EXPECT_GT(plain["texture_bytes"], 60) << plain;
+  EXPECT_EQ(plain["notes"].dump().find("left out"), std::string::npos) << plain["notes"];
+  EXPECT_NE(report("a.3ds", threeDsWithPicture(0.25F))["notes"].dump().find(
+                "left out: the scales, offsets and rotations of 1 textures"),
+            std::string::npos);
 }
 
 TEST_F(ModelImport, GltfColoursComeBackAsTheyWere) {
@@ -336,7 +373,8 @@ TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
   expectRefused("deep.iv", deep, "the import ended by signal 11");
   std::string large = "#Inventor V2.1 ascii\nDEF A Separator { Sphere { } }\n";
   for (int i = 0; i < 20'000; ++i) large += "Translation { translation 1 0 0 } USE A\n";
-  expectRefused("large.iv", large, "takes more memory than the 150 MB that are allowed (--memory,", {"--memory", "150M"});
+  expectRefused("large.iv", large, "takes more memory than the 150 MB that are allowed (--memory,",
+                {"--memory", "150M"});
 #endif
 }
 

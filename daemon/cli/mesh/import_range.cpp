@@ -74,7 +74,7 @@ Result<Ok> addFeature(const std::string& text, ImportedRange& loaded) {
 
 // Adds the images that the file itself names, but for those that were given. One that is missing is
 // a note only: the ranges may have been copied without it.
-Result<Ok> addNamedFeatures(const std::string& path, bool texture,
+Result<Ok> addNamedFeatures(const std::string& path, const RangeImport& options, bool texture,
                             const std::vector<range::FeatureFile>& named, ImportedRange& loaded) {
   const std::size_t given = loaded.image.planes.size();
   const auto isGiven = [&](const std::string& name) {
@@ -94,9 +94,8 @@ Result<Ok> addNamedFeatures(const std::string& path, bool texture,
     }
     if (plane.error().code != Errc::kNotFound) return plane.error();
     loaded.notes.push_back(
-        fmt::format("{}, the file of the feature {}, does not exist; the feature is left out "
-                    "(--feature {}=FILE)",
-                    file, feature.name, feature.name));
+        fmt::format("{}, the file of the feature {}, does not exist; the feature is left out ({})",
+                    file, feature.name, options.otherFileFor(feature.name)));
   }
   return Ok{};
 }
@@ -196,8 +195,15 @@ Argument RangeImport::keep(const char* name, Argument argument) {
 void RangeImport::addTo(Command command) {
   addGeometry(command);
   addRaw(command);
+  addMaxEdge(command);
   addFilters(command);
   addFeatures(command);
+}
+
+void RangeImport::addReadingTo(Command command) {
+  addGeometry(command);
+  addRaw(command);
+  addFilters(command);
 }
 
 void RangeImport::addGeometry(Command command) {
@@ -245,13 +251,16 @@ void RangeImport::addRaw(Command command) {
                     "Raw binary: the planes' values follow one another pixel by pixel"));
 }
 
-void RangeImport::addFilters(Command command) {
+void RangeImport::addMaxEdge(Command command) {
   keep("--max-edge",
        command.option(
            "--max-edge", max_edge,
            "Longest edge of a triangle: a length, a percentage of the range, or none for "
            "any; by default 10 times the step between pixels, and any for elevation maps"))
       .typeName("LENGTH|PERCENT%");
+}
+
+void RangeImport::addFilters(Command command) {
   keep("--median",
        command.option("--median", median, "Median filter of this width in pixels: 3, 5, ... 15"))
       .check([](const std::string& value) {
@@ -270,6 +279,7 @@ void RangeImport::addFilters(Command command) {
 }
 
 void RangeImport::addFeatures(Command command) {
+  takes_features_ = true;
   keep(
       "--feature",
       command.option("--feature", features,
@@ -292,6 +302,11 @@ std::string RangeImport::anyGiven() const {
     if (arguments_[i].isGiven()) return names_[i];
   }
   return {};
+}
+
+std::string RangeImport::otherFileFor(const std::string& feature) const {
+  return takes_features_ ? fmt::format("--feature {}=FILE", feature)
+                         : "put it where the image names it";
 }
 
 std::optional<std::string> RangeImport::takeInput() {
@@ -343,13 +358,18 @@ Result<ImportedRange> loadRange(const std::string& path, const RangeImport& opti
   imported.image = std::move(loaded->image);
   imported.format = std::move(loaded->format);
   imported.notes = std::move(loaded->notes);
+  imported.in_metres = loaded->in_metres;
+  if (!imported.in_metres)
+    imported.notes.emplace_back(
+        "nothing says in which unit its ranges are, and they are taken as they stand; --scale "
+        "METRES_PER_UNIT makes metres of them");
   imported.returns_in_file = static_cast<std::size_t>(
       std::count_if(imported.image.range.begin(), imported.image.range.end(), range::isReturn));
   imported.image.join_ends = !texture;
   for (const std::string& text : options.features) {
     if (const auto added = addFeature(text, imported); !added) return added.error();
   }
-  const auto added = addNamedFeatures(path, texture, loaded->features, imported);
+  const auto added = addNamedFeatures(path, options, texture, loaded->features, imported);
   if (!added) return added.error();
   return imported;
 }

@@ -19,14 +19,21 @@ namespace merlin::cli {
 class RangeImport {
  public:
   void addTo(Command command);
+  // The options of how a file is read, and the filters, for a command that makes its own mesh of
+  // several files: all but --max-edge, --feature, --colour-by and --border.
+  void addReadingTo(Command command);
   // The name of an option that was given, for a message that it does not fit; empty if none was.
   std::string anyGiven() const;
   // A file name that the greedy --angles took, because it stood before the input.
   std::optional<std::string> takeInput();
 
+  // What can be done about a feature whose file is missing, for a message.
+  std::string otherFileFor(const std::string& feature) const;
+
   Result<render::range::RangeOptions> fileOptions() const;
 
   bool isRaw() const { return !raw_.empty(); }
+  bool filters() const { return !between.empty() || !spikes.empty() || median > 0; }
 
   std::optional<double> scale;  // of any input
   std::string hdu;              // of a FITS file
@@ -40,6 +47,7 @@ class RangeImport {
   Argument keep(const char* name, Argument argument);  // for anyGiven()
   void addGeometry(Command command);
   void addRaw(Command command);
+  void addMaxEdge(Command command);
   void addFilters(Command command);
   void addFeatures(Command command);
 
@@ -49,6 +57,7 @@ class RangeImport {
   std::optional<double> exaggeration_, no_return_;
   std::size_t raw_header_ = 0;
   bool raw_interleaved_ = false;
+  bool takes_features_ = false;  // --feature
   std::vector<Argument> arguments_;
   std::vector<std::string> names_;
 };
@@ -66,6 +75,7 @@ struct ImportedRange {
   std::string format;
   std::vector<std::string> notes;
   std::vector<FeatureFacts> features;
+  bool in_metres = false;  // as LoadedRange
   std::size_t returns_in_file = 0, outside = 0, spikes = 0;
   render::range::Threshold max_edge;
   std::string max_edge_text;  // for a person

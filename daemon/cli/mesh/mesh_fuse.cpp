@@ -25,6 +25,7 @@ namespace fuse = render::fuse;
 struct MeshFuse {
   std::vector<std::string> scans, poses;
   std::string output;
+  RangeImport range;  // of all scans
   fuse::FuseSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;
@@ -43,10 +44,16 @@ struct FusedFile {
 
 Result<render::range::RangeImage> readScan(const MeshFuse& options, std::size_t number) {
   const std::string& path = options.scans[number];
-  auto loaded = loadRange(path, {}, false,
-                          readerOf(inputKindOf(path), {{}, options.output, options.limit()}));
+  const auto kind = options.range.isRaw() ? std::nullopt : inputKindOf(path);
+  auto loaded = loadRange(path, options.range, false,
+                          readerOf(kind, {{}, options.output, options.limit(), options.range.hdu}));
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(fmt::format("{}: {}", path, note));
+  if (options.range.filters()) {  // which check the memory of a mesh, and none is made here
+    const auto filtered =
+        filterRange(path, options.range, options.limit(), {threadsOr(options.threads)}, *loaded);
+    if (!filtered) return filtered.error();
+  }
   if (!options.poses.empty()) {
     const auto pose = readPose(options.poses[number]);
     if (!pose) return pose.error();
@@ -151,7 +158,15 @@ void report(const MeshFuse& options, const fuse::Fused& fused, const FusedFile& 
            peakMemory() >> 20);
 }
 
-Result<Ok> checkFuse(const MeshFuse& options) {
+// Errors: kInvalidArgument; `options` lose the scan that --angles took.
+Result<Ok> checkFuse(MeshFuse& options) {
+  if (const auto scan = options.range.takeInput())
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: is taken for a value of --angles, which may be a file or two "
+                             "numbers; give --angles FILE behind the scans",
+                             *scan)};
+  if (options.scans.empty())
+    return Error{Errc::kInvalidArgument, "no scans are given; name their files before the options"};
   if (!options.makesModel()) {
     if (const auto known = render::mesh::checkMeshEnding(options.output); !known)
       return Error{known.error().code, known.error().what + "; models as .mrm"};
@@ -226,7 +241,6 @@ void addMeshFuse(Command mesh, Run& run) {
       "confidence and angle of incidence. Scans are not aligned to one another."
       "\nExample: merlin mesh fuse scan1.pgm scan2.pgm scan3.pgm --close -o bust.mrm");
   command.option("scans", options->scans, "The range images, as merlin mesh import reads them")
-      .required()
       .typeName("SCAN...");
   command
       .option("-o", options->output,
@@ -239,6 +253,10 @@ void addMeshFuse(Command mesh, Run& run) {
               "each scan, in their order. It overrides what the scans say")
       .repeatable()
       .typeName("FILE");
+  command.option("--scale", options->range.scale, "Metres per unit of the ranges, of all scans")
+      .positive()
+      .typeName("METRES_PER_UNIT");
+  options->range.addReadingTo(command);
   addVolume(command, *options);
   addLimits(command, options->memory, options->threads);
   command.flag("--json", options->json, "Print the report as JSON, for programs");

@@ -55,7 +55,7 @@ class Stopwatch {
 
 // The units, the ranges of features, and where a map lies, for the model's text "about".
 std::string aboutRange(const ImportedRange& range) {
-  std::string text = "unit=m\n";
+  std::string text = range.in_metres ? "unit=m\n" : "";
   const auto& geometry = range.image.geometry;
   if (!geometry.projection.empty()) text += fmt::format("map.projection={}\n", geometry.projection);
   if (geometry.origin)
@@ -154,6 +154,11 @@ Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKi
                   render::range::readableRanges(), render::mesh::readableEndings(),
                   render::points::readableClouds(), foreignFormats());
   if (const auto there = checkIsThere(path); !there) return there;
+  if (!kind && path.ends_with(".mrm"))
+    return Error{Errc::kUnsupported,
+                 fmt::format("{0}: is a model for the wall already; merlin mesh export {0} -o "
+                             "OUT.ply makes a mesh of it",
+                             path)};
   if (!kind)
     return Error{Errc::kUnsupported, path + ": is of no format that MERLIN reads; " + read};
   if (!option.empty())

@@ -27,7 +27,10 @@ namespace {
 struct InfoOptions {
   std::string file;
   RangeImport range;
+  std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   bool json = false;
+
+  std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
 };
 
 // Where merlin-import's result lies until it is read.
@@ -98,8 +101,9 @@ Result<FileInfo> infoOfMesh(const std::string& path) {
   return info;
 }
 
-Result<FileInfo> infoOfForeign(const std::string& path, const InputKind& kind) {
-  const auto model = loadModel(path, kind, {meanwhile(), freeMemory()});
+Result<FileInfo> infoOfForeign(const InfoOptions& options, const InputKind& kind) {
+  const std::string& path = options.file;
+  const auto model = loadModel(path, kind, {meanwhile(), options.limit()});
   if (!model) return model.error();
   FileInfo info{path, model->format};
   info.unit = kind.unit();
@@ -139,11 +143,11 @@ void addPlanes(const ImportedRange& range, FileInfo& info) {
 
 Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<InputKind>& kind) {
   auto range = loadRange(options.file, options.range, false,
-                         readerOf(kind, {{}, meanwhile(), freeMemory(), options.range.hdu}));
+                         readerOf(kind, {{}, meanwhile(), options.limit(), options.range.hdu}));
   if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.file + ": " + note);
   FileInfo info{options.file, range->format};
-  info.unit = "m";
+  info.unit = range->in_metres ? "m" : "";
   const render::range::RangeImage& image = range->image;
   info.image = ImageInfo{image.width, image.height, range->returns_in_file,
                          std::string(nameOf(image.geometry.scanner))};
@@ -151,7 +155,8 @@ Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<Inp
   const SystemClock clock;
   LateBar bar("inspecting", image.pixels(), clock);
   const auto work = bar.work(0);
-  if (const auto fits = filterRange(options.file, options.range, freeMemory(), work, *range); !fits)
+  if (const auto fits = filterRange(options.file, options.range, options.limit(), work, *range);
+      !fits)
     return fits.error();
   const auto meshed = meshRange(options.file, options.range, work, *range);
   bar.finish();
@@ -162,7 +167,7 @@ Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<Inp
 
 Result<FileInfo> infoOf(const InfoOptions& options) {
   if (const auto there = checkIsThere(options.file); !there) return there.error();
-  const std::string option = options.range.anyGiven();
+  const std::string option = options.range.scale ? "--scale" : options.range.anyGiven();
   const auto kind = options.range.isRaw() ? std::nullopt : inputKindOf(options.file);
   if (options.range.isRaw() || (kind && kind->isGrid())) return infoOfRange(options, kind);
   if (!option.empty())
@@ -170,7 +175,7 @@ Result<FileInfo> infoOf(const InfoOptions& options) {
                  fmt::format("{}: {} is for range images", options.file, option)};
   if (kind && kind->isPoints()) return infoOfPoints(options.file);
   if (options.file.ends_with(".mrm")) return infoOfModel(options.file);
-  return kind && kind->reader == InputReader::kForeign ? infoOfForeign(options.file, *kind)
+  return kind && kind->reader == InputReader::kForeign ? infoOfForeign(options, *kind)
                                                        : infoOfMesh(options.file);
 }
 
@@ -195,7 +200,18 @@ void addMeshInfo(Command mesh, Run& run) {
       "Nothing is written."
       "\nExample: merlin mesh info scan.mrm --json");
   command.option("file", options->file, "The file").required().typeName("FILE");
+  command
+      .option("--scale", options->range.scale,
+              "Metres per unit of the ranges or heights of a range image or an elevation map")
+      .positive()
+      .typeName("METRES_PER_UNIT");
   options->range.addTo(command);
+  command
+      .option("--memory", options->memory,
+              "Maximum memory that reading and meshing may take, such as 900M or 16G; the default "
+              "is the free memory")
+      .size()
+      .typeName("SIZE");
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return info(*options); }; });
 }

@@ -174,8 +174,9 @@ std::string serverLines(const Json& s) {
 
 // A line for each hand whose gestures are recognised: its last one.
 std::string missingLines(const Json& s) {
+  const Json missing = s.value("missing_contents", Json::object());
   std::string text;
-  for (const auto& [name, why] : s.value("missing_contents", Json::object()).items())
+  for (const auto& [name, why] : missing.items())
     text += fmt::format("left out {}: {}\n", name, why.get<std::string>());
   return text;
 }

@@ -1,12 +1,77 @@
 #include "render/points/io/ply_cloud.h"
 
+#include <array>
+#include <cstdint>
 #include <utility>
 
 #include "daemon/base/printable_text.h"
 #include "render/mesh/io/ply/ply.h"
+#include "render/mesh/io/ply/ply_body.h"
 #include "render/mesh/io/ply/ply_header.h"
 
 namespace merlin::render::points {
+namespace {
+
+using mesh::ply::Body;
+using mesh::ply::Element;
+using mesh::ply::Property;
+
+// Reads a property's number, or the last one of a list. False at the file's end.
+bool nextOf(const Property& p, Body& body, double& value) {
+  double count = 1;
+  if (p.list && !body.next(p.count_type, count)) return false;
+  for (auto left = static_cast<std::uint64_t>(count); left > 0; --left) {
+    if (!body.next(p.type, value)) return false;
+  }
+  return true;
+}
+
+// The first property of each axis.
+std::array<const Property*, 3> axesOf(const Element& vertices) {
+  std::array<const Property*, 3> axes{};
+  for (const Property& p : vertices.properties) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!p.list && !axes[k] && p.name == std::string_view("xyz").substr(k, 1)) axes[k] = &p;
+  }
+  return axes;
+}
+
+// Reads an element; `point` receives the coordinates that it has. False at the file's end.
+bool nextRow(const Element& e, const std::array<const Property*, 3>& axes, Body& body,
+             std::array<double, 3>& point) {
+  for (const Property& p : e.properties) {
+    double value = 0;
+    if (!nextOf(p, body, value)) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (axes[k] == &p) point[k] = value;
+  }
+  return true;
+}
+
+// Reads the coordinates again, as doubles, relative to the origin near the first point: the parser
+// of meshes keeps floats, which are too coarse for coordinates of a map. REQUIRES: the parser has
+// read the file.
+void readExactly(std::string_view bytes, PointCloud& cloud) {
+  const auto header = mesh::ply::parseHeader(bytes);
+  if (!header) return;
+  Body body(bytes.substr(header->size), header->form);
+  for (const Element& e : header->elements) {
+    const bool vertices = e.name == "vertex";
+    const auto axes = axesOf(e);
+    const std::uint64_t rows = e.properties.empty() ? 0 : e.count;
+    for (std::uint64_t row = 0; row < rows; ++row) {
+      std::array<double, 3> point{};
+      if (!nextRow(e, axes, body, point)) return;
+      if (!vertices) continue;
+      if (row == 0) cloud.origin = originNear(point);
+      for (std::size_t k = 0; k < 3; ++k)
+        cloud.positions[3 * row + k] = static_cast<float>(point[k] - cloud.origin[k]);
+    }
+    if (vertices) return;
+  }
+}
+
+}  // namespace
 
 bool isPlyCloud(std::string_view bytes) {
   if (!bytes.starts_with("ply\n") && !bytes.starts_with("ply\r")) return false;
@@ -28,6 +93,7 @@ Result<PointCloud> parsePlyCloud(std::string_view bytes) {
   PointCloud cloud;
   cloud.format = "PLY without faces";
   cloud.positions = std::move(loaded->mesh.positions);
+  readExactly(bytes, cloud);
   cloud.features = std::move(loaded->mesh.features);
   cloud.notes = std::move(loaded->notes);
   return cloud;

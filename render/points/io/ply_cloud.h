@@ -11,8 +11,8 @@ namespace merlin::render::points {
 // Whether the bytes begin a PLY file with vertices, without faces, strips and range_grid.
 bool isPlyCloud(std::string_view bytes);
 
-// Each scalar vertex property becomes a feature, as of a mesh. Coordinates are floats: of a file
-// with doubles, seven digits are kept. Errors: those of ply::parse().
+// Each scalar vertex property becomes a feature, as of a mesh. Coordinates are read as doubles and
+// kept relative to originNear() of the first point. Errors: those of ply::parse().
 Result<PointCloud> parsePlyCloud(std::string_view bytes);
 
 }  // namespace merlin::render::points

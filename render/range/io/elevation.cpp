@@ -29,6 +29,14 @@ std::optional<Corner> cornerOf(std::string_view name) {
 
 constexpr std::size_t kTileSides[] = {1201, 3601};
 
+// EPSG:4326, of the tiles' corners, longitude first as `origin` has it.
+constexpr const char* kWgs84 =
+    "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563,"
+    "AUTHORITY[\"EPSG\",\"7030\"]],AUTHORITY[\"EPSG\",\"6326\"]],"
+    "PRIMEM[\"Greenwich\",0,AUTHORITY[\"EPSG\",\"8901\"]],"
+    "UNIT[\"degree\",0.0174532925199433,AUTHORITY[\"EPSG\",\"9122\"]],"
+    "AXIS[\"Latitude\",NORTH],AXIS[\"Longitude\",EAST],AUTHORITY[\"EPSG\",\"4326\"]]";
+
 std::size_t sideOf(std::size_t bytes) {
   for (const std::size_t side : kTileSides) {
     if (bytes == 2 * side * side) return side;
@@ -38,6 +46,7 @@ std::size_t sideOf(std::size_t bytes) {
 
 struct GridHeader {
   std::optional<double> columns, rows, west, south, cell, dx, dy, no_data;
+  std::optional<double> west_middle, south_middle;  // of the lower left cell, not its corner
 };
 
 // Reads a line of the header; false if its key is none.
@@ -48,8 +57,8 @@ bool readKey(const std::string& key, double value, GridHeader& header) {
   };
   constexpr Key kKeys[] = {
       {"ncols", &GridHeader::columns},   {"nrows", &GridHeader::rows},
-      {"xllcorner", &GridHeader::west},  {"xllcenter", &GridHeader::west},
-      {"yllcorner", &GridHeader::south}, {"yllcenter", &GridHeader::south},
+      {"xllcorner", &GridHeader::west},  {"xllcenter", &GridHeader::west_middle},
+      {"yllcorner", &GridHeader::south}, {"yllcenter", &GridHeader::south_middle},
       {"cellsize", &GridHeader::cell},   {"dx", &GridHeader::dx},
       {"dy", &GridHeader::dy},           {"nodata_value", &GridHeader::no_data}};
   for (const Key& row : kKeys) {
@@ -88,25 +97,63 @@ Result<std::size_t> countOf(const char* key, const std::optional<double>& value)
                      : fmt::format("{} is missing", key)};
 }
 
-bool isInDegrees(const GridHeader& header, double dx, std::string_view projection) {
-  if (!projection.empty()) return projection.find("PROJC") == std::string_view::npos;
-  return header.west && header.south && std::abs(*header.west) <= 360 &&
-         std::abs(*header.south) <= 90 && dx < 0.1;
+// Whether a text of a .prj file is of degrees: WKT, or ArcInfo's lines such as "Units DD".
+bool saysDegrees(std::string_view projection) {
+  const std::string text = lowerCase(projection);
+  if (text.find("projc") != std::string::npos) return false;  // it has a geographic one inside
+  if (text.find("geogcs") != std::string::npos || text.find("geogcrs") != std::string::npos)
+    return true;
+  for (std::string_view rest = text; !rest.empty();) {
+    std::string_view line = takeLine(rest);
+    const std::string_view key = takeWord(line), value = trimmed(line);
+    if ((key == "projection" && value == "geographic") || (key == "units" && value == "dd"))
+      return true;
+  }
+  return false;
+}
+
+// The middle of the lower left cell; nothing if the header lacks it.
+std::optional<double> middleOf(const std::optional<double>& corner,
+                               const std::optional<double>& middle, double cell) {
+  return corner ? *corner + cell / 2 : middle;
+}
+
+using Origin = std::optional<std::array<double, 2>>;
+Origin originOf(const GridHeader& header, double dx, double dy) {
+  const auto east = middleOf(header.west, header.west_middle, dx);
+  const auto north = middleOf(header.south, header.south_middle, dy);
+  if (!east || !north) return std::nullopt;
+  return std::array{*east, *north};
+}
+
+bool isInDegrees(const Origin& origin, double dx, std::string_view projection) {
+  if (!trimmed(projection).empty()) return saysDegrees(projection);
+  return origin && std::abs((*origin)[0]) <= 360 && std::abs((*origin)[1]) <= 90 && dx < 0.1;
+}
+
+// The words of a .prj file, with one blank between them.
+std::string inOneLine(std::string_view text) {
+  std::string line;
+  for (std::string_view word = takeWord(text); !word.empty(); word = takeWord(text))
+    line.append(line.empty() ? "" : " ").append(word);
+  return line;
 }
 
 // The distances of columns and rows, in metres if they are in degrees.
 void setCells(const GridHeader& header, std::string_view projection, StoredImage& image) {
   double dx = header.dx.value_or(header.cell.value_or(0));
   double dy = header.dy.value_or(header.cell.value_or(0));
-  if (projection.size() <= kMostProjection / 4)  // an escaped byte takes four
-    image.header.projection = oneLine(trimmed(projection));
-  if (!projection.empty())
-    image.notes.push_back(fmt::format("projection: {}", oneLine(excerpt(trimmed(projection)))));
-  if (!isInDegrees(header, dx, projection)) {
+  const std::string line = inOneLine(projection);
+  if (line.size() <= kMostProjection / 4)  // an escaped byte takes four
+    image.header.projection = oneLine(line);
+  if (!line.empty()) image.notes.push_back(fmt::format("projection: {}", oneLine(excerpt(line))));
+  image.header.origin = originOf(header, dx, dy);
+  if (!isInDegrees(image.header.origin, dx, projection)) {
     image.header.cell = {dx, dy};
     return;
   }
-  const double middle = header.south.value_or(0) + dy * static_cast<double>(image.height) / 2;
+  const double south = image.header.origin ? (*image.header.origin)[1] : 0;
+  const double middle = south + dy * static_cast<double>(image.height - 1) / 2;
   const auto metres = metresPerDegree(middle);
   image.notes.push_back(
       fmt::format("cells of {:.6g} x {:.6g} degrees are taken as {:.2f} x {:.2f} m, as at latitude "
@@ -172,6 +219,8 @@ Result<StoredImage> parseHgt(std::string_view bytes, std::string_view name) {
     const auto metres = metresPerDegree(corner->latitude_deg + 0.5);
     const double cells = static_cast<double>(side - 1);
     image.header.cell = {metres[0] / cells, metres[1] / cells};
+    image.header.origin = {corner->longitude_deg, corner->latitude_deg};
+    image.header.projection = kWgs84;
     image.notes.push_back(
         fmt::format("cells of {:.0f} arc seconds are taken as {:.2f} x {:.2f} m, as at latitude "
                     "{}; WGS 84, south-west corner {}, {}",

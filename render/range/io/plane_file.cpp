@@ -9,11 +9,14 @@
 #include "daemon/base/bytes.h"
 #include "daemon/base/files.h"
 #include "render/image/image_file.h"
+#include "render/image/png_levels.h"
 #include "render/image/png_writer.h"
 #include "render/range/io/netpbm.h"
 
 namespace merlin::render::range {
 namespace {
+
+constexpr double kLargest = 65535;
 
 Error planeError(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.what};
@@ -58,7 +61,8 @@ Plane planeOf(const std::string& name, StoredImage stored) {
   return plane;
 }
 
-bool isGrey(const std::vector<std::uint8_t>& rgb) {
+template <typename T>
+bool isGrey(const std::vector<T>& rgb) {
   for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
     if (rgb[i] != rgb[i + 1] || rgb[i] != rgb[i + 2]) return false;
   }
@@ -78,7 +82,38 @@ Plane planeOf(const std::string& name, const image::ImageFile& picture) {
   return plane;
 }
 
-constexpr double kLargest = 65535;
+// A PNG of 16 bits a channel: figures, of which a reader of pictures would keep the upper half,
+// bent by a gamma.
+bool isPng16(std::span<const std::byte> file) {
+  constexpr std::size_t kDepthAt = 24;  // behind the mark, the chunk's head, width and height
+  constexpr std::string_view kMark = "\x89PNG";
+  return file.size() > kDepthAt && file[kDepthAt] == std::byte{16} &&
+         std::equal(kMark.begin(), kMark.end(), file.begin(),
+                    [](char c, std::byte b) { return std::byte(c) == b; });
+}
+
+// One channel if red, green and blue are equal everywhere, as of a PGM of 16 bits.
+StoredImage storedOf(const image::Levels& levels) {
+  StoredImage stored;
+  stored.width = static_cast<std::size_t>(levels.width);
+  stored.height = static_cast<std::size_t>(levels.height);
+  stored.largest = kLargest;
+  stored.channels = isGrey(levels.values) ? 1 : 3;
+  const std::size_t step = stored.channels == 1 ? 3 : 1;
+  stored.values.reserve(levels.values.size() / step);
+  for (std::size_t i = 0; i < levels.values.size(); i += step)
+    stored.values.push_back(levels.values[i]);
+  return stored;
+}
+
+Result<Plane> readPng16(const std::string& name, const std::string& path,
+                        std::span<const std::byte> file, const RangeImage& image) {
+  const auto levels = image::decodeLevels(file, kMostPixels);
+  if (!levels) return planeError(path, levels.error());
+  StoredImage stored = storedOf(*levels);
+  if (const auto fault = sizeFault(path, stored.width, stored.height, image)) return *fault;
+  return planeOf(name, std::move(stored));
+}
 
 // The values that the stored 0 and the largest stored value stand for.
 struct StoredScale {
@@ -150,6 +185,7 @@ Result<Plane> readPlane(const std::string& name, const std::string& path, const 
     if (const auto fault = sizeFault(path, stored->width, stored->height, image)) return *fault;
     return planeOf(name, *std::move(stored));
   }
+  if (isPng16(file->bytes())) return readPng16(name, path, file->bytes(), image);
   const auto picture = image::readImage(path);
   if (!picture && picture.error().code == Errc::kUnsupported)
     return Error{Errc::kUnsupported, path +

@@ -9,8 +9,9 @@
 namespace merlin::render::range {
 
 // Reads an image of the same size as the range image: PGM as one value per pixel, with the scale
-// and the unit of its header; PPM, PNG and JPEG as colours of 0..1, or as one value of 0..255 if
-// red, green and blue are equal everywhere and `name` is not "colour". The content decides, not the
+// and the unit of its header; PPM, PNG and JPEG as colours of 0..1, or as one value per pixel of
+// 0..255 (a PNG of 16 bits: 0..65535, the figures as they are stored, without any gamma) if red,
+// green and blue are equal everywhere and `name` is not "colour". The content decides, not the
 // file's ending. Errors, with the file's name: kNotFound, kIo, kMalformed, kUnsupported,
 // kInvalidArgument (another size: both are named).
 Result<Plane> readPlane(const std::string& name, const std::string& path, const RangeImage& image);

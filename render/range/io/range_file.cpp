@@ -139,6 +139,11 @@ std::string elevationOnly(const RangeOptions& options, Scanner scanner) {
   return {};
 }
 
+bool isInMetres(const ImageHeader& header) {
+  return header.scale || (header.minimum && header.maximum) || header.unit == "m" ||
+         header.scanner == Scanner::kElevation;
+}
+
 Result<LoadedRange> loadStored(StoredImage stored, const RangeOptions& options) {
   if (const auto set = overrideHeader(options, stored.header); !set) return set.error();
   LoadedRange loaded;
@@ -157,6 +162,7 @@ Result<LoadedRange> loadStored(StoredImage stored, const RangeOptions& options) 
                  fmt::format("the table of angles is for {} columns, the image has {}",
                              *stored.header.columns, stored.width)};
   setRanges(stored, image);
+  loaded.in_metres = isInMetres(stored.header);
   image.planes = std::move(stored.planes);
   loaded.features = std::move(stored.header.features);
   loaded.notes = std::move(stored.notes);
@@ -187,6 +193,7 @@ Result<LoadedRange> loadPoints(std::string_view bytes, const RangeOptions& optio
         "--no-return out"};
   auto loaded = parsePoints(bytes);
   if (!loaded) return loaded;
+  loaded->in_metres = options.scale.has_value();
   const double scale = options.scale.value_or(1);
   for (float& range : loaded->image.range) range = static_cast<float>(range * scale);
   for (const std::size_t k : {3U, 7U, 11U}) loaded->image.geometry.T_world_scanner[k] *= scale;

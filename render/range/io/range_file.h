@@ -40,6 +40,9 @@ struct LoadedRange {
   std::string format;                 // "PGM", ...
   std::vector<FeatureFile> features;  // that the file names; they are not read
   std::vector<std::string> notes;     // for the user: what was left out or assumed
+  // Whether something says that the lengths are metres: a scale, the values of the smallest and the
+  // largest stored number, the unit, or that it is a map.
+  bool in_metres = false;
 };
 
 // Whether readRange() without options.raw is for a file that begins, or is named, like this.

@@ -1,0 +1,157 @@
+#include "render/import/gltf_check.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/bytes.h"
+#include "daemon/base/printable_text.h"
+
+namespace merlin::render::import {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kFloat = 5126;  // componentType
+
+// Extensions that a file may require: they change nothing of what MERLIN shows (light, shine), or
+// are read (texture transforms), or are judged by what they allow (quantised attributes).
+constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
+                                          "KHR_texture_transform",
+                                          "KHR_lights_punctual",
+                                          "KHR_materials_anisotropy",
+                                          "KHR_materials_clearcoat",
+                                          "KHR_materials_dispersion",
+                                          "KHR_materials_emissive_strength",
+                                          "KHR_materials_ior",
+                                          "KHR_materials_iridescence",
+                                          "KHR_materials_pbrSpecularGlossiness",
+                                          "KHR_materials_sheen",
+                                          "KHR_materials_specular",
+                                          "KHR_materials_transmission",
+                                          "KHR_materials_unlit",
+                                          "KHR_materials_variants",
+                                          "KHR_materials_volume",
+                                          "KHR_xmp_json_ld"};
+
+// Attributes that MERLIN takes from assimp and that may be other than floats, by their beginnings.
+// Normals are made anew; assimp converts colours.
+constexpr std::string_view kFloats[] = {"POSITION", "TEXCOORD_", "WEIGHTS_"};
+
+Error malformed(const std::string& what) { return {Errc::kMalformed, "glTF: " + what}; }
+
+// The member of that name; null if there is none.
+const json* memberOf(const json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  return object.is_object() && found != object.end() ? &*found : nullptr;
+}
+
+// The array of that name: an empty one if there is none.
+Result<const json*> arrayOf(const json& object, const char* name) {
+  static const json kEmpty = json::array();
+  const json* found = memberOf(object, name);
+  if (!found) return &kEmpty;
+  if (!found->is_array()) return malformed(fmt::format("{} is no array", name));
+  return found;
+}
+
+// The JSON of the file: of a .glb its first chunk. Nothing for a .glb of another version.
+Result<std::optional<std::string_view>> textOf(std::string_view file) {
+  constexpr std::size_t kHead = 12, kChunkHead = 8;
+  if (!file.starts_with("glTF")) return std::optional(file);
+  if (file.size() < kHead + kChunkHead) return malformed("is cut in its first 20 bytes");
+  const auto* p = reinterpret_cast<const std::uint8_t*>(file.data());
+  if (loadLe32(p + 4) != 2) return std::optional<std::string_view>();
+  const std::size_t length = loadLe32(p + kHead);
+  if (file.substr(kHead + 4, 4) != "JSON") return malformed("its first chunk is no JSON");
+  if (length > file.size() - kHead - kChunkHead)
+    return malformed(fmt::format("its first chunk has {} bytes, {} are there", length,
+                                 file.size() - kHead - kChunkHead));
+  const std::string_view text = file.substr(kHead + kChunkHead, length);
+  // Some writers fill the chunk with zeros instead of blanks.
+  return std::optional(text.substr(0, text.find_last_not_of('\0') + 1));
+}
+
+// Of glTF 1 the form is another.
+bool isFirstVersion(const json& model) {
+  const json* asset = memberOf(model, "asset");
+  const json* version = asset ? memberOf(*asset, "version") : nullptr;
+  if (!version) return false;
+  return version->is_string() ? version->get_ref<const std::string&>().starts_with('1')
+                              : version->is_number() && version->get<double>() < 2;
+}
+
+Result<Ok> checkExtensions(const json& model) {
+  const auto required = arrayOf(model, "extensionsRequired");
+  if (!required) return required.error();
+  for (const json& name : **required) {
+    if (!name.is_string()) return malformed("extensionsRequired has what is no name");
+    const auto& text = name.get_ref<const std::string&>();
+    if (std::ranges::find(kHarmless, text) != std::end(kHarmless)) continue;
+    return Error{Errc::kUnsupported,
+                 fmt::format("requires the glTF extension {}, which is not read; export the model "
+                             "without it (compression and instances off, textures as PNG or JPEG)",
+                             oneLine(excerpt(text)))};
+  }
+  return Ok{};
+}
+
+// `where`: the primitive, for a message.
+Result<Ok> checkAttribute(const json& accessors, const std::string& where, const std::string& name,
+                          const json& index) {
+  const auto reads = [&](std::string_view begin) { return name.starts_with(begin); };
+  if (std::ranges::none_of(kFloats, reads)) return Ok{};
+  const std::string what = fmt::format("{}: {}", where, oneLine(excerpt(name)));
+  if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size())
+    return malformed(fmt::format("{} names no accessor; there are {}", what, accessors.size()));
+  const auto number = index.get<std::uint64_t>();
+  const json* type = memberOf(accessors[number], "componentType");
+  if (!type || !type->is_number_integer())
+    return malformed(fmt::format("accessor {} has no componentType", number));
+  if (type->get<std::int64_t>() == kFloat) return Ok{};
+  return Error{Errc::kUnsupported,
+               fmt::format("{} is quantised (accessor {} has componentType {}); only floats "
+                           "({}) are read: export the model without quantisation, or convert it: "
+                           "gltfpack -noq -i IN -o OUT.glb",
+                           what, number, type->get<std::int64_t>(), kFloat)};
+}
+
+Result<Ok> checkMesh(const json& accessors, std::size_t number, const json& mesh) {
+  const auto primitives = arrayOf(mesh, "primitives");
+  if (!primitives) return primitives.error();
+  for (std::size_t p = 0; p < (*primitives)->size(); ++p) {
+    const std::string where = fmt::format("mesh {}, primitive {}", number, p);
+    const json* attributes = memberOf((**primitives)[p], "attributes");
+    if (!attributes || !attributes->is_object()) return malformed(where + " has no attributes");
+    for (const auto& [name, index] : attributes->items()) {
+      if (const auto good = checkAttribute(accessors, where, name, index); !good) return good;
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<Ok> checkGltf(std::string_view file) {
+  const auto text = textOf(file);
+  if (!text) return text.error();
+  if (!*text) return Ok{};
+  const json model = json::parse((*text)->begin(), (*text)->end(), nullptr, false);
+  if (!model.is_object()) return malformed("its JSON is damaged or cut");
+  if (isFirstVersion(model)) return Ok{};
+  if (const auto good = checkExtensions(model); !good) return good;
+  const auto accessors = arrayOf(model, "accessors"), meshes = arrayOf(model, "meshes");
+  if (!accessors) return accessors.error();
+  if (!meshes) return meshes.error();
+  for (std::size_t m = 0; m < (*meshes)->size(); ++m) {
+    if (const auto good = checkMesh(**accessors, m, (**meshes)[m]); !good) return good;
+  }
+  return Ok{};
+}
+
+}  // namespace merlin::render::import

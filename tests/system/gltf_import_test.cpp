@@ -1,0 +1,230 @@
+// `merlin mesh import` on glTF files that assimp alone would read wrongly, and on those that name
+// files beside them. All of them are made here.
+#include <bit>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "daemon/base/bytes.h"
+#include "render/image/png_writer.h"
+#include "tests/system/merlind.h"
+
+namespace merlin::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::string floats(const std::vector<float>& values) {
+  std::string bytes;
+  for (const float value : values) appendLe32(bytes, std::bit_cast<std::uint32_t>(value));
+  return bytes;
+}
+
+std::string shorts(const std::vector<unsigned>& values) {
+  std::string bytes;
+  for (const unsigned value : values) {
+    bytes.push_back(static_cast<char>(value & 0xFF));
+    bytes.push_back(static_cast<char>(value >> 8));
+  }
+  return bytes;
+}
+
+// A triangle with texture coordinates, in floats; its buffer, of 80 bytes, is the file `buffer`.
+const std::string kTriangle = floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + shorts({0, 1, 2, 0}) +
+                              floats({0, 0, 1, 0, 0, 1}) + std::string(12, '\0');
+Json triangle(const std::string& buffer, const std::string& texture = {}) {
+  Json json = {{"asset", {{"version", "2.0"}}},
+               {"buffers", {{{"byteLength", 80}, {"uri", buffer}}}},
+               {"bufferViews",
+                {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 36}},
+                 {{"buffer", 0}, {"byteOffset", 36}, {"byteLength", 6}},
+                 {{"buffer", 0}, {"byteOffset", 44}, {"byteLength", 24}}}},
+               {"accessors",
+                {{{"bufferView", 0},
+                  {"componentType", 5126},
+                  {"count", 3},
+                  {"type", "VEC3"},
+                  {"min", {0, 0, 0}},
+                  {"max", {1, 1, 0}}},
+                 {{"bufferView", 1}, {"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}},
+                 {{"bufferView", 2}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}}}},
+               {"meshes",
+                {{{"primitives",
+                   {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 2}}}, {"indices", 1}}}}}}},
+               {"nodes", {{{"mesh", 0}}}},
+               {"scenes", {{{"nodes", {0}}}}},
+               {"scene", 0}};
+  if (texture.empty()) return json;
+  json["images"] = {{{"uri", texture}}};
+  json["textures"] = {{{"source", 0}}};
+  json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  json["meshes"][0]["primitives"][0]["material"] = 0;
+  return json;
+}
+
+// The same with its buffer inside.
+std::string glb(Json json) {
+  json["buffers"][0].erase("uri");
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  std::string file = "glTF";
+  for (const std::size_t n : {std::size_t{2}, 12 + 8 + text.size() + 8 + 80, text.size()})
+    appendLe32(file, static_cast<std::uint32_t>(n));
+  file += "JSON" + text;
+  appendLe32(file, 80);
+  return file + std::string("BIN\0", 4) + kTriangle;
+}
+
+class GltfImport : public testing::Test {
+ protected:
+  void SetUp() override { writeText(dir_ / "a.bin", kTriangle); }
+  Outcome import(const std::string& content, const std::string& name = "a.gltf") {
+    writeText(dir_ / name, content);
+    return run({kMerlin, "mesh", "import", dir_ / name, "-o", out_, "--json"});
+  }
+  Json report(const std::string& content, const std::string& name = "a.gltf") {
+    const Outcome done = import(content, name);
+    EXPECT_EQ(done.status, 0) << done.output;
+    const auto start = done.output.find("{\"input\"");
+    return start == std::string::npos ? Json() : Json::parse(done.output.substr(start));
+  }
+  void expectRefused(const std::string& content, const std::string& why) {
+    const Outcome done = import(content);
+    EXPECT_EQ(done.status, 2) << done.output;
+    EXPECT_NE(done.output.find("a.gltf: " + why), std::string::npos) << done.output;
+    EXPECT_FALSE(fs::exists(out_));
+  }
+  void picture(const std::string& name) {
+    const std::vector<std::uint8_t> red = {255, 0, 0, 255};
+    ASSERT_TRUE(render::image::writePng(dir_ / name, 1, 1, red));
+  }
+
+  TempDir dir_;
+  std::string out_ = dir_ / "out.ply";
+};
+
+TEST_F(GltfImport, WhatIsNoFloatIsRefusedWithTheWayOut) {
+  for (const auto& [name, accessor] : {std::pair("POSITION", 0U), std::pair("TEXCOORD_0", 2U)}) {
+    Json quantised = triangle("a.bin");
+    quantised["accessors"][accessor]["componentType"] = 5123;
+    quantised["extensionsRequired"] = {"KHR_mesh_quantization"};
+    const std::string why = fmt::format(
+        "mesh 0, primitive 0: {} is quantised (accessor {} has componentType 5123); only floats "
+        "(5126) are read: export the model without quantisation, or convert it: gltfpack -noq -i "
+        "IN -o OUT.glb",
+        name, accessor);
+    expectRefused(quantised.dump(), why);
+    expectRefused(glb(quantised), why);
+  }
+  Json normals = triangle("a.bin");
+  normals["accessors"].push_back(normals["accessors"][1]);
+  normals["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = 3;
+  expectRefused(normals.dump(), "mesh 0, primitive 0: WEIGHTS_0 is quantised");
+}
+
+TEST_F(GltfImport, ARequiredExtensionIsReadOrNamed) {
+  Json json = triangle("a.bin");
+  json["extensionsRequired"] = {"KHR_mesh_quantization", "KHR_materials_unlit"};
+  EXPECT_EQ(report(json.dump())["triangles"], 1);
+  EXPECT_EQ(report(glb(json))["triangles"], 1);
+  fs::remove(out_);
+  json["extensionsRequired"].push_back("EXT_whatever");
+  expectRefused(json.dump(), "requires the glTF extension EXT_whatever, which is not read; ");
+  expectRefused(glb(json), "requires the glTF extension EXT_whatever, which is not read; ");
+}
+
+TEST_F(GltfImport, FaultsOfItsJsonAreSaid) {
+  const std::string text = triangle("a.bin").dump();
+  expectRefused(text.substr(0, text.size() - 9), "glTF: its JSON is damaged or cut");
+  const auto with = [](const char* pointer, const Json& value) {
+    Json json = triangle("a.bin");
+    json[Json::json_pointer(pointer)] = value;
+    return json.dump();
+  };
+  expectRefused(with("/extensionsRequired", 3), "glTF: extensionsRequired is no array");
+  expectRefused(with("/extensionsRequired", {3}), "glTF: extensionsRequired has what is no name");
+  expectRefused(with("/accessors", 3), "glTF: accessors is no array");
+  expectRefused(with("/meshes/0/primitives", "x"), "glTF: primitives is no array");
+  expectRefused(with("/meshes/0/primitives/0/attributes", 1),
+                "glTF: mesh 0, primitive 0 has no attributes");
+  for (const Json& index : {Json(3), Json(-1), Json("0"), Json(0.0)})
+    expectRefused(with("/meshes/0/primitives/0/attributes/POSITION", index),
+                  "glTF: mesh 0, primitive 0: POSITION names no accessor; there are 3");
+  expectRefused(with("/accessors/0/componentType", "5126"),
+                "glTF: accessor 0 has no componentType");
+  expectRefused(glb(triangle("")).substr(0, 15), "glTF: is cut in its first 20 bytes");
+  expectRefused(glb(triangle("")).substr(0, 90), "glTF: its first chunk has ");
+}
+
+TEST_F(GltfImport, FilesMayBeNamedAsUris) {
+  writeText(dir_ / "my scene.bin", kTriangle);
+  picture("r\xC3\xB6t.png");
+  const auto json = report(triangle("my%20scene.bin", "r%C3%B6t.png").dump());
+  EXPECT_EQ(json["triangles"], 1);
+  EXPECT_GT(json["texture_bytes"], 60) << json;
+  picture("a%20b.png");
+  EXPECT_GT(report(triangle("a.bin", "a%20b.png").dump())["texture_bytes"], 60)
+      << "as it is written";
+}
+
+TEST_F(GltfImport, ANameThatIsDecodedDoesNotLeaveTheFolder) {
+  picture("above.png");
+  fs::create_directory(dir_ / "models");
+  writeText(dir_ / "models/a.bin", kTriangle);
+  for (const char* name : {"%2E%2E/above.png", "..%2Fabove.png", "%2e%2e%5cabove.png"}) {
+    const auto json = report(triangle("a.bin", name).dump(), "models/a.gltf");
+    EXPECT_EQ(json["texture_bytes"], 0) << name;
+    EXPECT_NE(json["notes"].dump().find("models/above.png"), std::string::npos) << json["notes"];
+  }
+}
+
+TEST_F(GltfImport, FilesInAFolderBesideItAreReadAndOthersAreExplained) {
+  fs::create_directories(dir_ / "assets/deep");
+  writeText(dir_ / "assets/s.bin", kTriangle);
+  picture("assets/t.png");
+  picture("assets/deep/t.png");
+  const auto json = report(triangle("assets/s.bin", "assets/t.png").dump());
+  EXPECT_GT(json["texture_bytes"], 60) << json;
+  const auto deep = report(triangle("a.bin", "assets/deep/t.png").dump());
+  const std::string notes = deep["notes"].dump();
+  if (deep["texture_bytes"] != 0) GTEST_SKIP() << "this system lacks Landlock";
+  EXPECT_NE(notes.find("assets/deep/t.png: Permission denied (read are visible files in the "
+                       "model's folder and in its visible folders, 4096 in all; put it beside the "
+                       "model); this texture is left out"),
+            std::string::npos)
+      << notes;
+}
+
+TEST_F(GltfImport, ATransformOfTheTextureIsApplied) {
+  picture("t.png");
+  Json json = triangle("a.bin", "t.png");
+  json["extensionsUsed"] = {"KHR_texture_transform"};
+  json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
+      {"KHR_texture_transform", {{"scale", {0.25, 0.25}}, {"offset", {0.5, 0}}}}};
+  report(json.dump());
+  const auto info = Json::parse(run({kMerlin, "mesh", "info", out_, "--json"}).output);
+  for (const auto& feature : info["features"]) {
+    if (feature["name"] != "texcoord") continue;
+    // u: 0.5 to 0.75; v, upwards: 0.75 to 1.
+    EXPECT_NEAR(feature["range"][0], 0.5, 1e-6);
+    EXPECT_NEAR(feature["range"][1], 1, 1e-6);
+    return;
+  }
+  FAIL() << info["features"];
+}
+
+TEST_F(GltfImport, ARotatedTextureIsLeftAsItIsWithANote) {
+  picture("t.png");
+  Json json = triangle("a.bin", "t.png");
+  json["extensionsUsed"] = {"KHR_texture_transform"};
+  json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
+      {"KHR_texture_transform", {{"rotation", 1}}}};
+  EXPECT_NE(report(json.dump())["notes"].dump().find(
+                "left out: the rotations of 1 textures, which lie otherwise than in the model"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace merlin::test
