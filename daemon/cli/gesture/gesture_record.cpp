@@ -80,7 +80,9 @@ Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std:
   while (clock.now() - began < fromSeconds(seconds)) {
     const auto taken = hand.samples.listen([&](const HandSample& s) {
       heard = clock.now();
-      if (poses)
+      // What a busy machine hands over late may be of before or after the take.
+      const Timestamp received = fromNanoseconds(s.received_ns);
+      if (poses && received >= began && received < began + fromSeconds(seconds))
         poses->push_back({label, axes.turned(s.received_ns, s.position_m, s.orientation_wxyz)});
     });
     if (!taken) return taken.error();
