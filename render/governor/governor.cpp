@@ -236,10 +236,7 @@ void Governor::setLimits(const GovernorSettings& settings) noexcept {
 
 void Governor::setLeastUseful(std::optional<std::size_t> least_useful) noexcept {
   assert(least_useful.value_or(1) > 0);
-  const std::size_t before = least();
   least_useful_ = least_useful;
-  if (least() == before) return;
-  if (per_ > 0) startOver();
   triangles_ = clamped(triangles_);
 }
 

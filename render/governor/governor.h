@@ -82,7 +82,7 @@ class Governor {
 
   // Of a content whose detail has another unit than triangles: the lowest cost at which it is still
   // recognisable, which takes the place of min_triangles where that is higher; nullopt: the content
-  // has triangles. If the limit changes, the budget becomes what fits. REQUIRES: least_useful > 0.
+  // has triangles. REQUIRES: least_useful > 0.
   void setLeastUseful(std::optional<std::size_t> least_useful) noexcept;
 
   // Replaces limits and share of late frames; the rate is setRate()'s. The model is kept, and the
