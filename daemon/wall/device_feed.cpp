@@ -50,15 +50,12 @@ bool holdsOneOf(const actions::ActionCounts& counts, std::span<const std::size_t
   return std::any_of(actions.begin(), actions.end(), [&](std::size_t i) { return counts.held[i]; });
 }
 
+// Its index in kAlignActions; kAlignActionCount: it is none of them.
 std::uint8_t alignActionOf(std::size_t action) {
-  constexpr std::array kAlign = {actionIndex("align_output_next"), actionIndex("align_corner_next"),
-                                 actionIndex("align_left"),        actionIndex("align_right"),
-                                 actionIndex("align_up"),          actionIndex("align_down"),
-                                 actionIndex("align_undo"),        actionIndex("align_redo"),
-                                 actionIndex("next_testcard")};
-  static_assert(kAlign.size() == kAlignActionCount);
-  return static_cast<std::uint8_t>(std::find(kAlign.begin(), kAlign.end(), action) -
-                                   kAlign.begin());
+  if (action >= kActions.size()) return kAlignActionCount;  // of a newer release's devices
+  const auto* const found = std::find(std::begin(kAlignActions), std::end(kAlignActions),
+                                      std::string_view(kActions[action]));
+  return static_cast<std::uint8_t>(found - std::begin(kAlignActions));
 }
 
 bool isGlove(const shm::DeviceSlots& devices, const std::string& name) {

@@ -142,11 +142,11 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   } catch (const std::exception& e) {
     ready = Error{Errc::kIo, fmt::format("{}: {}", path, e.what())};
   }
-  take(place, std::move(ready));
+  handOver(place, std::move(ready));
 }
 
 // What was read since the file of a place has changed.
-void ModelWatch::take(std::size_t place, Result<ReadyModel> ready) {
+void ModelWatch::handOver(std::size_t place, Result<ReadyModel> ready) {
   const Watched& file = files_[place];
   const bool missing = !file.fault.empty();
   if (missing && ready) {

@@ -100,7 +100,7 @@ class ModelWatch {
  private:
   void run(const std::stop_token& stop, Progress& progress);
   void lookAt(std::size_t place, Progress& progress);
-  void take(std::size_t place, Result<ReadyModel> read);
+  void handOver(std::size_t place, Result<ReadyModel> ready);
   void readAsked(Progress& progress);
   void followOffered();
   void noteWhetherThere(std::size_t place, bool there);

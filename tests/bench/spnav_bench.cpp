@@ -144,11 +144,17 @@ class BareServer {
   pid_t pid_ = -1;
 };
 
+io::PtyMaster openLine() {
+  auto line = io::PtyMaster::open("");
+  if (!line) didNotRun("a pseudo-terminal", line.error().what, "see /dev/pts");
+  return *std::move(line);
+}
+
 // A server on a line of its own.
 class Subject {
  public:
   Subject(Server server, const Options& options, const test::TempDir& dir)
-      : server_(server), line_(*io::PtyMaster::open("")) {
+      : server_(server), line_(openLine()) {
     const std::string folder = dir / kNames[server];
     std::filesystem::create_directories(folder + "/run");
     socket_ = folder + "/run/spnav.sock";
