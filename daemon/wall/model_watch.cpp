@@ -149,10 +149,7 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
 void ModelWatch::handOver(std::size_t place, Result<ReadyModel> ready) {
   const Watched& file = files_[place];
   const bool missing = !file.fault.empty();
-  if (missing && ready) {
-    report(fmt::format("{} can be read now, and is shown in its turn", file.path));
-    return offer(*std::move(ready));
-  }
+  if (missing && ready) return offer(*std::move(ready));
   if (missing) {
     if (missing_.faultOf(place) != ready.error().what)
       report(fmt::format("{} is still left out: {}", file.path, ready.error().what));

@@ -232,7 +232,11 @@ ContentSource::Replacement ShownModels::refusal(const ReadyModel& ready, std::st
 // The last place has a name only once something is shown there.
 void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
   Shown& shown = shown_[ready.place];
-  if (std::exchange(shown.missing, false)) parts_.missing.nowShown(ready.place);
+  if (std::exchange(shown.missing, false)) {
+    parts_.missing.nowShown(ready.place);
+    parts_.watch.report(
+        fmt::format("{} can be read now, and is shown in its turn", shown.entry.path));
+  }
   shown.file = ready.path;
   shown.is_last_slide = ready.is_last_slide;
   if (ready.place < listed()) return;
