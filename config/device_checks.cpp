@@ -106,6 +106,15 @@ void checkNames(const DevicesSettings& d, LoadedSettings& loaded) {
   }
 }
 
+// Whether both are devices of one server, which gives each reader a connection of its own.
+bool shareServer(const DeviceSettings& a, const DeviceSettings& b, const PortAddress& port) {
+  const auto shares = [](const DeviceSettings& device) {
+    const DriverEntry* const driver = findDriver(device.line.driver);
+    return driver && driver->shares_server;
+  };
+  return port.kind == PortKind::kTcp && shares(a) && shares(b);
+}
+
 // Two drivers on one serial line would each read only a part of the device's bytes. Two paths of
 // one device are found where files may be read: daemon/devices/device_checks.
 void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
@@ -113,8 +122,9 @@ void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
   for (std::size_t i = 0; i < d.list.size(); ++i) {
     auto port = parsePort(d.list[i].line.port);
     if (!port) continue;
-    const auto same = std::ranges::find_if(
-        taken, [&](const auto& other) { return sameLine(other.first, *port); });
+    const auto same = std::ranges::find_if(taken, [&](const auto& other) {
+      return sameLine(other.first, *port) && !shareServer(d.list[other.second], d.list[i], *port);
+    });
     if (same == taken.end()) {
       taken.emplace_back(*std::move(port), i);
       continue;
@@ -141,16 +151,17 @@ void checkOwnSocket(const DeviceSettings& device, const std::string& at, LoadedS
                                 own));
 }
 
-// The same of a tracker that is read from MERLIN's own VRPN server.
+// The same of a device that is read from MERLIN's own VRPN server.
 void checkOwnVrpn(const DeviceSettings& device, const std::string& at, LoadedSettings& loaded) {
   const auto port = parsePort(device.line.port);
-  if (device.line.driver != "vrpn" || !port || port->kind != PortKind::kTcp) return;
+  const bool of_vrpn = device.line.driver == "vrpn" || device.line.driver == "vrpn_pad";
+  if (!of_vrpn || !port || port->kind != PortKind::kTcp) return;
   const bool here =
       port->path == "localhost" || port->path == "::1" || port->path.starts_with("127.");
   if (!here || port->service != std::to_string(loaded.settings.serve.vrpn_port)) return;
   loaded.addFinding(at + "/port",
                     fmt::format("is \"{}\", where merlind itself serves by /serve/vrpn_port; the "
-                                "tracker's own server is needed here, and another number there",
+                                "device's own server is needed here, and another number there",
                                 device.line.port));
 }
 
@@ -192,7 +203,8 @@ void checkNamed(const std::string& name, SampleKind kind, const std::string& at,
 }
 
 SampleKind kindOf(const actions::Input& input) {
-  return input.kind == actions::Input::Kind::kButton ? SampleKind::kBall : SampleKind::kGlove;
+  if (input.kind == actions::Input::Kind::kButton) return SampleKind::kBall;
+  return input.kind == actions::Input::Kind::kPinch ? SampleKind::kTouch : SampleKind::kGlove;
 }
 
 // A gesture of a hand that is not there, or whose gestures are not recognised.
@@ -248,7 +260,8 @@ void checkInputAt(const std::string& text, const std::string& at, LoadedSettings
     return checkGesture(text, input->device, at, loaded);
   if (input->kind == actions::Input::Kind::kKey) return checkKey(text, input->device, at, loaded);
   if (findDevice(d, kindOf(*input), input->device)) return;
-  const char* const kind = kindName(kindOf(*input));
+  const bool touch = kindOf(*input) == SampleKind::kTouch;
+  const char* const kind = touch ? "touch surface" : kindName(kindOf(*input));
   const std::string there = namesOf(d, kindOf(*input));
   loaded.addFinding(
       at, fmt::format("is \"{}\", and \"{}\" is not the name of a {}; /devices has {}",

@@ -10,6 +10,7 @@
 #include "drivers/touch/device.h"
 #include "drivers/tuio/device.h"
 #include "drivers/vrpn/device.h"
+#include "drivers/vrpn/pad_device.h"
 
 namespace merlin {
 namespace {
@@ -54,7 +55,8 @@ constexpr DriverEntry kDrivers[] = {
        return vrpn::makeDevice(s.vrpn, c, k);
      },
      describeOwn<&DriverSettings::vrpn>,
-     [](const DriverSettings& s, const LineSettings& line) { return validate(s.vrpn, line); }},
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.vrpn, line); },
+     false, true},
     {"osc", SampleKind::kTracker, 0, "tracker whose poses come as OSC messages, over the network",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return osc::makeDevice(s.osc, c, k);
@@ -82,6 +84,14 @@ constexpr DriverEntry kDrivers[] = {
      describeOwn<&DriverSettings::evdev>,
      [](const DriverSettings& s, const LineSettings& line) { return validate(s.evdev, line); },
      true},
+    {"vrpn_pad", SampleKind::kBall, 0,
+     "button box, joystick or analogs of a VRPN server, over the network",
+     [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
+       return vrpn::makeDevice(s.vrpn_pad, c, k);
+     },
+     describeOwn<&DriverSettings::vrpn_pad>,
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.vrpn_pad, line); },
+     false, true},
     {"touch", SampleKind::kTouch, 0, "touch frame, touch screen or mouse, through the kernel",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return touch::makeDevice(s.touch, c, k);

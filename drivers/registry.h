@@ -18,6 +18,7 @@
 #include "drivers/spacenav/settings.h"
 #include "drivers/touch/settings.h"
 #include "drivers/tuio/settings.h"
+#include "drivers/vrpn/pad_settings.h"
 #include "drivers/vrpn/settings.h"
 
 namespace merlin {
@@ -30,6 +31,7 @@ struct DriverSettings {
   SpacenavSettings spacenav;
   EvdevSettings evdev;
   VrpnSettings vrpn;
+  VrpnPadSettings vrpn_pad;
   OscSettings osc;
   TouchSettings touch;
   TuioSettings tuio;
@@ -48,6 +50,8 @@ struct DriverEntry {
   // are relative to the device: "/port", "/cyberglove/rate_hz".
   SettingFaults (*validate)(const DriverSettings&, const LineSettings&) = nullptr;
   bool has_keys = false;  // whether it knows the kernel's keys and buttons by name
+  // Whether several devices may be read from one tcp:// port, each by a connection of its own.
+  bool shares_server = false;
 };
 
 std::span<const DriverEntry> drivers();

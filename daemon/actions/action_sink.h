@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "daemon/actions/action_writer.h"
 #include "daemon/base/clock.h"
@@ -12,7 +13,9 @@
 namespace merlin::actions {
 
 // One for each device. Takes no lock and allocates nothing, except in reload(). The actions are
-// published before the sample, so that a reader that waits for the sample finds them.
+// published before the sample, so that a reader that waits for the sample finds them. A device that
+// works and lacks a key that a binding names says so in its health, unless that says something
+// else.
 class ActionSink final : public SampleSink, public HealthSink {
  public:
   // `postures`: where the current posture is published before each glove sample; null: not a glove.
@@ -50,8 +53,12 @@ class ActionSink final : public SampleSink, public HealthSink {
     writer_.update(sample);
     parts_.samples.publish(sample);
   }
+  void describe(const DeviceKeys& keys) noexcept override { keys_ = keys; }
   void publish(const DeviceHealth& health) noexcept override {
-    parts_.health.publish(health);
+    DeviceHealth told = health;
+    if (keys_ && health.state == HealthState::kOk && health.reason[0] == '\0')
+      writer_.sayLackingKey(*keys_, told.reason);
+    parts_.health.publish(told);
     writer_.adopt(health.updated_ns);
     const bool lost = health.state != HealthState::kOk &&
                       health.updated_ns - health.since_ns >= stale_after_.load().count();
@@ -62,6 +69,7 @@ class ActionSink final : public SampleSink, public HealthSink {
   ActionWriter writer_;
   Parts parts_;
   std::atomic<Duration> stale_after_;
+  std::optional<DeviceKeys> keys_;  // of the device that was opened last
 };
 
 }  // namespace merlin::actions

@@ -200,7 +200,9 @@ void ActionWriter::update(const BallSample& ball) noexcept {
 }
 
 void ActionWriter::update(const TouchSample& touch) noexcept {
+  const std::uint32_t pinched = pinch_.update(touch);
   apply(touch.received_ns, [&](const Input& input) {
+    if (input.kind == Input::Kind::kPinch) return (pinched & input.button) != 0;
     const std::uint32_t bit = input.button - kFirstMouseButton;  // other keys: large
     return bit < 16 && (touch.buttons >> bit & 1) != 0;
   });
@@ -232,6 +234,33 @@ void ActionWriter::gesture(std::string_view name, std::int64_t now_ns) noexcept 
 
 void ActionWriter::release(std::int64_t now_ns) noexcept {
   apply(now_ns, [](const Input&) { return false; });
+}
+
+void ActionWriter::sayLackingKey(const DeviceKeys& keys, std::span<char> sentence) const noexcept {
+  const auto lacks = [&](const Input& input) {
+    const bool named = input.kind == Input::Kind::kKey && !input.device.empty();
+    return named && (input.button >= keys.size() || !keys[input.button]);
+  };
+  for (const ParsedBinding& binding : bindings_) {
+    const Input* const lacking = lacks(binding.input)                   ? &binding.input
+                                 : binding.with && lacks(*binding.with) ? &*binding.with
+                                                                        : nullptr;
+    if (!lacking) continue;
+    std::string_view name = lacking->name;
+    const bool is_button = name.starts_with("btn_");
+    name.remove_prefix(4);  // this, or "key_"
+    const std::string_view parts[] = {
+        is_button ? "it has no button." : "it has no key.", name,
+        ", which a binding names; `merlin devices` lists the keys that it has"};
+    std::size_t length = 0;
+    for (const std::string_view part : parts) {
+      const std::size_t fits = std::min(part.size(), sentence.size() - 1 - length);
+      std::copy_n(part.begin(), fits, sentence.begin() + static_cast<std::ptrdiff_t>(length));
+      length += fits;
+    }
+    sentence[length] = '\0';
+    return;
+  }
 }
 
 }  // namespace merlin::actions

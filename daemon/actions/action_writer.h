@@ -5,13 +5,16 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "daemon/actions/input.h"
+#include "daemon/actions/pinch.h"
 #include "daemon/actions/settings.h"
 #include "daemon/base/handover.h"
 #include "daemon/shm/layout.h"
+#include "drivers/port/sample_sink.h"
 
 namespace merlin::actions {
 
@@ -36,6 +39,11 @@ class ActionWriter {
   // The device is lost: all its inputs end.
   void release(std::int64_t now_ns) noexcept;
 
+  // Writes a sentence, ended by NUL, if bindings name a key of this device by the device's name,
+  // and it is not among `keys`: about the first such key. Otherwise `sentence` stays as it is. A
+  // key of any device is not meant.
+  void sayLackingKey(const DeviceKeys& keys, std::span<char> sentence) const noexcept;
+
   // For one other thread: replaces the bindings; the writer uses them from its next call on. A
   // binding that was there before goes on; what one held that is no more ends; and a new one does
   // nothing until its input has been seen released, so that a button that is pressed at this moment
@@ -51,15 +59,15 @@ class ActionWriter {
     Input input;
     std::optional<Input> with;
     std::size_t action = 0;  // index into kActions
-    bool lasts = false, on_leave = false;
     std::int64_t after_ns = 0, repeat_ns = 0;
-    bool pressed = false;       // the input, and the one with it
     std::int64_t since_ns = 0;  // when `pressed` began
-    bool was_held = false;      // pressed for long enough
     std::int64_t again_ns = 0;  // when the action repeats
-    bool waits = false;         // until the input has been seen released
     // Index of the first binding to this input alone, which is not a chord, and to `with` alone.
     std::size_t alone = kNone, with_alone = kNone;
+    bool lasts = false, on_leave = false;
+    bool pressed = false;   // the input, and the one with it
+    bool was_held = false;  // pressed for long enough
+    bool waits = false;     // until the input has been seen released
     bool in_chord = false;  // of the first binding to an input alone: a chord with it is pressed
     bool chorded = false;   // one was at some time of this press, so that nothing begins any more
   };
@@ -81,6 +89,7 @@ class ActionWriter {
 
   Source source_;
   std::uint32_t axes_ = 0;  // that are pushed: pushedAxes()
+  Pinch pinch_;             // of a touch surface's fingers
   ParsedBindings bindings_;
   std::unique_ptr<Handover<ParsedBindings>> rebound_;  // a pointer, since a writer is moved
   shm::ActionState state_{};

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
+
+#include "daemon/actions/pinch.h"
 
 namespace merlin::actions {
 namespace {
@@ -83,6 +86,17 @@ std::optional<Input> namedButton(std::string_view name) {
   return Input{Input::Kind::kKey, *device, 0, "btn_" + std::string(name)};
 }
 
+// Fingers that move together are a pinch, those that move apart spread.
+std::optional<Input> pinch(std::string_view name) {
+  for (const auto& [word, bit] :
+       {std::pair{"pinch", Pinch::kTogether}, std::pair{"spread", Pinch::kApart}}) {
+    std::string_view rest = name;
+    const auto device = takeDevice(rest, word);
+    if (device && rest.empty()) return Input{Input::Kind::kPinch, *device, bit, {}};
+  }
+  return std::nullopt;
+}
+
 std::optional<Input> posture(std::string_view name) {
   const auto device = takeDevice(name, "posture.");
   if (!device || name.empty()) return std::nullopt;
@@ -108,7 +122,7 @@ bool Input::isOf(const Source& source) const {
   if (!device.empty() && device != source.name) return false;
   if (source.hand) return kind == Kind::kGesture;
   if (*source.kind == SampleKind::kBall) return kind == Kind::kButton || kind == Kind::kKey;
-  if (*source.kind == SampleKind::kTouch) return kind == Kind::kKey;
+  if (*source.kind == SampleKind::kTouch) return kind == Kind::kKey || kind == Kind::kPinch;
   return *source.kind == SampleKind::kGlove &&
          (kind == Kind::kPosture || kind == Kind::kWristSwitch);
 }
@@ -140,6 +154,7 @@ std::optional<Input> parseInput(std::string_view name) {
   if (auto input = axis(name)) return input;
   if (auto input = posture(name)) return input;
   if (auto input = gesture(name)) return input;
+  if (auto input = pinch(name)) return input;  // after posture.pinch, which is a posture
   return wristSwitch(name);
 }
 

@@ -1,4 +1,4 @@
-// Input: a button, key, posture, gesture or switch that a binding names.
+// Input: a button, key, pinch, posture, gesture or switch that a binding names.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,14 @@ struct Source {
 };
 
 struct Input {
-  enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton, kGesture, kKey };
+  enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton, kGesture, kKey, kPinch };
 
   Kind kind = Kind::kButton;
   // Whose input it is, a device or a hand; empty: that of every one that has such a one.
   std::string device;
   // kButton: its bit in BallSample::buttons; of an axis that is pushed: a bit of pushedAxes().
-  // kKey: the kernel's number, 0 until Source::key_code() gave it.
+  // kKey: the kernel's number, 0 until Source::key_code() gave it. kPinch: a bit of
+  // Pinch::update().
   std::uint32_t button = 0;
   std::string name;  // kPosture, kGesture: its name; kKey: "key_space", "btn_south"
 

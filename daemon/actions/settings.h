@@ -27,7 +27,9 @@ inline constexpr const char* kInputForms =
     "an input device by the kernel's name in lower case, such as key.space, button.south), "
     "DEVICE.axis.x+, x-, y+, y-, z+, z-, rx+ ... rz- (a push "
     "or "
-    "twist of more than half), DEVICE.posture.NAME, DEVICE.switch (DEVICE is the name of a device; "
+    "twist of more than half), DEVICE.pinch and DEVICE.spread (fingers on a touch surface that "
+    "have "
+    "moved together or apart), DEVICE.posture.NAME, DEVICE.switch (DEVICE is the name of a device; "
     "without \"DEVICE.\" it is the input of any device), HAND.gesture.NAME (HAND is the name of a "
     "hand; without \"HAND.\" it is the gesture of any hand), and panel.button";
 

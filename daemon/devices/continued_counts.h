@@ -20,6 +20,7 @@ class ContinuedCounts final : public SampleSink, public HealthSink {
   void publish(const TrackerSample& sample) noexcept override {
     pass(sample, tracker_[(sample.station - 1) % kStations]);
   }
+  void describe(const DeviceKeys& keys) noexcept override { samples_.describe(keys); }
   void publish(const DeviceHealth& health) noexcept override {
     DeviceHealth sum = health;
     sum.samples += before_.samples;

@@ -4,8 +4,6 @@
 #include <cctype>
 #include <charconv>
 
-#include "daemon/base/bytes.h"
-
 namespace merlin::serve {
 
 VrpnFront readVrpn(std::string_view input) {
@@ -17,27 +15,6 @@ VrpnFront readVrpn(std::string_view input) {
   front.message = VrpnMessage{start.header, input.substr(kVrpnHeaderLength, start.payload)};
   front.bytes = start.bytes;
   return front;
-}
-
-std::string vrpnChannels(std::span<const double> channels) {
-  std::string out;
-  appendBeDouble(out, static_cast<double>(channels.size()));
-  for (const double v : channels) appendBeDouble(out, v);
-  return out;
-}
-
-std::string vrpnButton(std::int32_t button, bool down) {
-  std::string out;
-  appendBe32(out, static_cast<std::uint32_t>(button));
-  appendBe32(out, down ? 1 : 0);
-  return out;
-}
-
-std::string vrpnButtons(std::uint32_t down, std::int32_t count) {
-  std::string out;
-  appendBe32(out, static_cast<std::uint32_t>(count));
-  for (std::int32_t i = 0; i < count; ++i) appendBe32(out, down >> i & 1);
-  return out;
 }
 
 std::optional<VrpnCallback> readVrpnCallback(std::string_view datagram) {

@@ -1,13 +1,11 @@
 // What a VRPN server of trackers, buttons and analogs needs beside drivers/port/vrpn_line, which
-// describes the wire format: clients' messages, payloads that we send alone, requests by UDP. No
-// I/O, no clock.
+// describes the wire format: clients' messages, and requests by UDP. No I/O, no clock.
 //
-// Source: vrpn_Connection.C, vrpn_Analog.C, vrpn_Button.C; README.md beside this.
+// Source: vrpn_Connection.C; README.md beside this.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,12 +28,6 @@ struct VrpnFront {
   bool broken = false;    // invalid length: the connection must be closed
 };
 VrpnFront readVrpn(std::string_view input);
-
-// Encode payloads.
-std::string vrpnChannels(std::span<const double> channels);  // Analog Channel
-std::string vrpnButton(std::int32_t button, bool down);      // Button Change
-std::string vrpnButtons(std::uint32_t down,
-                        std::int32_t count);  // Button States: bit i is button i
 
 // Parses a UDP datagram, "127.0.0.1 59207" + NUL, by which a client asks us to connect to it.
 // Nothing if it is malformed, the port is below 1024, or the host has characters other than

@@ -50,9 +50,8 @@ class Senders {
 };
 
 enum Type : std::int32_t { kPing, kPong, kPose, kChannels, kButtonChange, kButtonStates };
-constexpr const char* kTypes[] = {
-    kVrpnPing,           kVrpnPong, kVrpnPoseType, "vrpn_Analog Channel", "vrpn_Button Change",
-    "vrpn_Button States"};
+constexpr const char* kTypes[] = {kVrpnPing,         kVrpnPong,       kVrpnPoseType,
+                                  kVrpnChannelsType, kVrpnButtonType, kVrpnButtonsType};
 
 net::ServerLimits limits() {
   net::ServerLimits l;

@@ -22,6 +22,7 @@ Result<std::string> EvdevDevice::open(ByteStream& stream) {
   if (!described) return described.error();
   if (input_.axes() == 0 && input_.keys() == 0)
     return Error{Errc::kMalformed, "the input device has neither axes nor keys"};
+  sink_.describe(reader_.keys());
   complaint_ = input_.choose(settings_);
   input_.fill(ball_.sample());
   return fmt::format("{}, {} axes, {} keys", input_.name().empty() ? "input device" : input_.name(),

@@ -19,7 +19,7 @@ namespace merlin::evdev {
 class EvdevDevice final : public Device {
  public:
   EvdevDevice(const EvdevSettings& settings, const Clock& clock, SampleSink& sink)
-      : settings_(settings), clock_(clock), reader_(clock), ball_(sink) {}
+      : settings_(settings), clock_(clock), sink_(sink), reader_(clock), ball_(sink) {}
 
   Result<std::string> open(ByteStream& stream) override;
   Result<Ok> poll(ByteStream& stream) override;
@@ -34,6 +34,7 @@ class EvdevDevice final : public Device {
 
   EvdevSettings settings_;
   const Clock& clock_;
+  SampleSink& sink_;
   EvdevReader reader_;
   HeldBall ball_;
   InputDevice input_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -195,15 +194,10 @@ float InputDevice::deflection(const AxisSource& source) const noexcept {
 }
 
 void InputDevice::fill(BallSample& sample) const noexcept {
-  constexpr float kRawScale = 1000;
-  for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const float raw = deflection(sources_[i]);
-    const float share = axisShare(raw, dead_zone_, 1);
-    const float value = std::pow(std::abs(share), curve_);
-    (i < 3 ? sample.translation[i] : sample.rotation[i - 3]) = share < 0 ? -value : value;
-    const bool away = i % 3 == 2;  // a Spaceball's z
-    sample.raw[i] = static_cast<std::int16_t>(std::lround((away ? -raw : raw) * kRawScale));
-  }
+  std::array<float, 6> deflections{};
+  std::ranges::transform(sources_, deflections.begin(),
+                         [&](const AxisSource& source) { return deflection(source); });
+  fillAxes(deflections, dead_zone_, curve_, sample);
   sample.buttons = 0;
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     if (buttons_[i] > 0 && keys_[buttons_[i] - 1].pressed) sample.buttons |= 1U << i;

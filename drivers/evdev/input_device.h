@@ -28,9 +28,8 @@ class InputDevice {
   // empty: nothing.
   std::string choose(const EvdevSettings& settings);
 
-  // Writes the present state into `sample`: axes, buttons, and as raw values the deflections in
-  // thousandths, before dead zone and curve, about a Spaceball's axes, whose z points away from the
-  // person: so clients of the space-mouse socket get what they expect. Allocates nothing.
+  // Writes the present state into `sample`: axes, raw values (fillAxes() of drivers/port/axes.h),
+  // buttons and keys. Allocates nothing.
   void fill(BallSample& sample) const noexcept;
   // Puts each relative axis, which only tells that it moves, to rest if it has told nothing since
   // `since`. Returns whether one was not at rest before.

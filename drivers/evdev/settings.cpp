@@ -16,7 +16,7 @@ void checkPort(const LineSettings& line, SettingFaults& faults) {
   const bool fits = !port || port->kind == PortKind::kEvdev || port->kind == PortKind::kPty ||
                     port->kind == PortKind::kReplay;
   if (line.driver != "evdev" || fits) return;
-  faults.push_back({"/port", fmt::format("is \"{}\", which is no input device; the driver "
+  faults.push_back({"/port", fmt::format("is \"{}\", which is not an input device; the driver "
                                          "\"evdev\" needs evdev:/dev/input/..., which `merlin "
                                          "devices` prints",
                                          line.port)});

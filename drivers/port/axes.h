@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "daemon/base/setting_fault.h"
+#include "drivers/port/samples.h"
 
 namespace merlin {
 
@@ -18,6 +19,14 @@ inline float axisShare(float value, float dead_zone, float full_scale) noexcept 
   const float share = std::min(beyond / (full_scale - dead_zone), 1.0F);
   return value < 0 ? -share : share;
 }
+
+// Writes the axes of an input device into `sample`. `deflections`: of x, y, z and the rotations
+// about them, -1..1; those up to `dead_zone` give 0, the rest of the scale is raised to the power
+// `curve`. The raw values are the deflections in thousandths, before dead zone and curve, about a
+// Spaceball's axes, whose z points away from the person: so clients of the space-mouse socket get
+// what they expect.
+void fillAxes(const std::array<float, 6>& deflections, float dead_zone, float curve,
+              BallSample& sample) noexcept;
 
 // For x, y, z and the rotations about them: a device's axis 1..6, negative if it is reversed.
 using AxisMap = std::array<int, 6>;

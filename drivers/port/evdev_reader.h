@@ -9,6 +9,7 @@
 #include "daemon/base/result.h"
 #include "drivers/port/byte_stream.h"
 #include "drivers/port/evdev_line.h"
+#include "drivers/port/sample_sink.h"
 
 namespace merlin {
 
@@ -23,6 +24,7 @@ class EvdevReader {
   Result<Ok> open(ByteStream& stream, const Describe& describe) {
     parser_.reset();
     in_report_ = false;
+    keys_.reset();
     const Timestamp until = clock_.now() + kDescriptionTime;
     for (;;) {
       std::byte byte{};  // one by one: what follows the description is for poll()
@@ -35,6 +37,7 @@ class EvdevReader {
       const auto record = parser_.feed(byte);
       if (!record) continue;
       describe(*record);
+      if (record->kind == EvdevRecord::kKey && record->code < keys_.size()) keys_.set(record->code);
       if (record->kind == EvdevRecord::kReady) return Ok{};
     }
   }
@@ -62,6 +65,8 @@ class EvdevReader {
     return now;
   }
 
+  // Those of the device that was opened last.
+  const DeviceKeys& keys() const noexcept { return keys_; }
   std::uint64_t badBytes() const noexcept { return parser_.badBytes(); }
   std::uint64_t badPackets() const noexcept { return parser_.badPackets(); }
 
@@ -71,6 +76,7 @@ class EvdevReader {
 
   const Clock& clock_;
   EvdevParser parser_;
+  DeviceKeys keys_;
   bool in_report_ = false;
   Timestamp report_start_{};
 };

@@ -5,9 +5,14 @@
 // has one thread; two devices never publish the same kind of sample.
 #pragma once
 
+#include <bitset>
+
 #include "drivers/port/samples.h"
 
 namespace merlin {
+
+// The keys and buttons that an input device has, by the kernel's numbers.
+using DeviceKeys = std::bitset<kKeyNumbers>;
 
 class SampleSink {
  public:
@@ -17,6 +22,10 @@ class SampleSink {
   virtual void publish(const TrackerSample& sample) noexcept = 0;
   virtual void publish(const BallSample& sample) noexcept = 0;
   virtual void publish(const TouchSample& sample) noexcept = 0;
+
+  // Told each time that a device of the kernel has been opened, before its first sample; other
+  // devices tell nothing.
+  virtual void describe(const DeviceKeys&) noexcept {}
 };
 
 // Receives the health of one device.

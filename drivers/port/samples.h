@@ -60,8 +60,9 @@ struct TrackerFrames {
 };
 static_assert(sizeof(TrackerFrames) == 208);
 
-// Keys of an input device that are followed at once.
-inline constexpr std::size_t kKeys = 8;
+// Keys of an input device that are followed at once, and the numbers that the kernel has for them,
+// from 0 on.
+inline constexpr std::size_t kKeys = 8, kKeyNumbers = 0x300;
 
 struct BallSample {
   std::int64_t received_ns;

@@ -1,5 +1,7 @@
 #include "drivers/port/vrpn_line.h"
 
+#include <cmath>
+
 #include "daemon/base/bytes.h"
 
 namespace merlin {
@@ -19,6 +21,12 @@ double loadDouble(std::string_view bytes, std::size_t at) noexcept {
   return loadBeDouble(reinterpret_cast<const std::uint8_t*>(bytes.data()) + at);
 }
 std::size_t padded(std::size_t payload) noexcept { return (payload + 7) / 8 * 8; }
+
+// VRPN's own numbers of the state of a button.
+bool isDown(std::int32_t state) noexcept {
+  constexpr std::int32_t kOn = 1, kToggleOn = 21;
+  return state == kOn || state == kToggleOn;
+}
 
 }  // namespace
 
@@ -96,6 +104,58 @@ std::optional<VrpnPose> readVrpnPose(std::string_view payload) noexcept {
   for (std::size_t i = 0; i < 4; ++i)
     pose.orientation_wxyz[(i + 1) % 4] = loadDouble(payload, 32 + 8 * i);  // x y z w on the wire
   return pose;
+}
+
+std::string vrpnButton(std::int32_t button, bool down) {
+  std::string out;
+  appendBe32(out, static_cast<std::uint32_t>(button));
+  appendBe32(out, down ? 1 : 0);
+  return out;
+}
+
+std::optional<VrpnButton> readVrpnButton(std::string_view payload) noexcept {
+  if (payload.size() != 8) return std::nullopt;
+  const std::size_t button = loadU32(payload, 0);
+  if (button >= kVrpnButtons) return std::nullopt;
+  return VrpnButton{button, isDown(loadI32(payload, 4))};
+}
+
+std::string vrpnButtons(std::uint32_t down, std::int32_t count) {
+  std::string out;
+  appendBe32(out, static_cast<std::uint32_t>(count));
+  for (std::int32_t i = 0; i < count; ++i) appendBe32(out, down >> i & 1);
+  return out;
+}
+
+std::optional<VrpnButtons> readVrpnButtons(std::string_view payload) noexcept {
+  if (payload.size() < 4) return std::nullopt;
+  VrpnButtons buttons;
+  buttons.count = loadU32(payload, 0);
+  if (buttons.count > kVrpnButtons || payload.size() != 4 + 4 * buttons.count) return std::nullopt;
+  for (std::size_t i = 0; i < buttons.count; ++i)
+    buttons.down[i] = isDown(loadI32(payload, 4 + 4 * i));
+  return buttons;
+}
+
+std::string vrpnChannels(std::span<const double> channels) {
+  std::string out;
+  appendBeDouble(out, static_cast<double>(channels.size()));
+  for (const double v : channels) appendBeDouble(out, v);
+  return out;
+}
+
+// The number of channels comes as a double; only the one that fits the payload's length is right.
+std::optional<VrpnChannels> readVrpnChannels(std::string_view payload) noexcept {
+  if (payload.size() < 8 || payload.size() % 8 != 0) return std::nullopt;
+  VrpnChannels channels;
+  channels.count = payload.size() / 8 - 1;
+  const bool fits = loadDouble(payload, 0) == static_cast<double>(channels.count);
+  if (channels.count > kVrpnChannels || !fits) return std::nullopt;
+  for (std::size_t i = 0; i < channels.count; ++i) {
+    channels.value[i] = loadDouble(payload, 8 + 8 * i);
+    if (!std::isfinite(channels.value[i])) return std::nullopt;
+  }
+  return channels;
 }
 
 }  // namespace merlin

@@ -6,10 +6,11 @@
 // types are the system's: -1 describes a sender, -2 a type, each by a name; the number described is
 // in the place of the sender. Each side has numbers of its own.
 //
-// Source: VRPN 07.38, vrpn_Connection.C, vrpn_Tracker.C.
+// Source: VRPN 07.38, vrpn_Connection.C, vrpn_Tracker.C, vrpn_Button.C, vrpn_Analog.C.
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -31,6 +32,12 @@ inline constexpr const char* kVrpnControl = "VRPN Control";
 inline constexpr const char* kVrpnPing = "vrpn_Base ping_message";
 inline constexpr const char* kVrpnPong = "vrpn_Base pong_message";
 inline constexpr const char* kVrpnPoseType = "vrpn_Tracker Pos_Quat";
+inline constexpr const char* kVrpnButtonType = "vrpn_Button Change";   // of one button
+inline constexpr const char* kVrpnButtonsType = "vrpn_Button States";  // of all of a device
+inline constexpr const char* kVrpnChannelsType = "vrpn_Analog Channel";
+
+// The most buttons and channels that VRPN knows of one device; both are numbered from 0.
+inline constexpr std::size_t kVrpnButtons = 256, kVrpnChannels = 128;
 
 // The cookie that we send.
 std::string vrpnCookie();
@@ -73,5 +80,30 @@ struct VrpnPose {
 std::string vrpnPose(std::int32_t sensor, std::span<const float> position_m,
                      std::span<const float> orientation_wxyz);
 std::optional<VrpnPose> readVrpnPose(std::string_view payload) noexcept;
+
+// Button Change. A button is also down that its server has made a toggle, while it is on.
+struct VrpnButton {
+  std::size_t button = 0;  // less than kVrpnButtons
+  bool down = false;
+};
+std::string vrpnButton(std::int32_t button, bool down);
+std::optional<VrpnButton> readVrpnButton(std::string_view payload) noexcept;
+
+// Button States. `down`: bit i is button i. REQUIRES of what is encoded: at most 32 buttons.
+struct VrpnButtons {
+  std::size_t count = 0;  // at most kVrpnButtons
+  std::bitset<kVrpnButtons> down;
+};
+std::string vrpnButtons(std::uint32_t down, std::int32_t count);
+std::optional<VrpnButtons> readVrpnButtons(std::string_view payload) noexcept;
+
+// Analog Channel: the values of all channels of a device, in the server's unit; what is read is
+// finite.
+struct VrpnChannels {
+  std::size_t count = 0;  // at most kVrpnChannels
+  std::array<double, kVrpnChannels> value{};
+};
+std::string vrpnChannels(std::span<const double> channels);
+std::optional<VrpnChannels> readVrpnChannels(std::string_view payload) noexcept;
 
 }  // namespace merlin

@@ -36,6 +36,7 @@ Result<std::string> TouchDevice::open(ByteStream& stream) {
                         : "neither a touch surface nor a mouse; for a gamepad, joystick or "
                           "space mouse set \"driver\": \"evdev\"")};
   }
+  sink_.describe(reader_.keys());
   frames_.setAspect(surface_.aspect());
   frames_.begin();
   surface_.fill(frames_);

@@ -22,7 +22,11 @@ namespace merlin::touch {
 class TouchDevice final : public Device {
  public:
   TouchDevice(const TouchSettings& settings, const Clock& clock, SampleSink& sink)
-      : settings_(settings), clock_(clock), reader_(clock), frames_(sink, settings.orientation) {}
+      : settings_(settings),
+        clock_(clock),
+        sink_(sink),
+        reader_(clock),
+        frames_(sink, settings.orientation) {}
 
   Result<std::string> open(ByteStream& stream) override;
   Result<Ok> poll(ByteStream& stream) override;
@@ -34,6 +38,7 @@ class TouchDevice final : public Device {
 
   TouchSettings settings_;
   const Clock& clock_;
+  SampleSink& sink_;
   EvdevReader reader_;
   TouchFrames frames_;
   Surface surface_;

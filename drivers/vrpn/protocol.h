@@ -19,8 +19,9 @@ struct Message {
 // Reads what follows the cookie.
 class Parser {
  public:
-  // A description of a sender or type has at most 104 bytes, a pose 64.
-  static constexpr std::size_t kMostPayload = 128;
+  // That of the most channels. All buttons have 1028 bytes, a description of a sender or type at
+  // most 104, a pose 64.
+  static constexpr std::size_t kMostPayload = 8 + 8 * kVrpnChannels;
   // The longest message, with its header, that a server can send: VRPN's own buffer has 64000.
   static constexpr std::size_t kLongest = 65536;
 

@@ -4,27 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "drivers/vrpn/server_checks.h"
+
 namespace merlin {
 namespace {
-
-constexpr std::size_t kLongestName = 99;  // of VRPN
-
-bool canBeServer(PortKind kind) {
-  return kind == PortKind::kTcp || kind == PortKind::kPty || kind == PortKind::kReplay;
-}
-
-void checkName(const std::string& name, SettingFaults& faults) {
-  const std::size_t at = name.find('@');
-  if (at != std::string::npos) {
-    faults.push_back({"/vrpn/device",
-                      fmt::format("is \"{}\"; needed is the name alone, \"{}\": the host belongs "
-                                  "into the port, tcp://HOST:3883",
-                                  name, name.substr(0, at))});
-  } else if (name.empty() || name.size() > kLongestName) {
-    faults.push_back({"/vrpn/device", fmt::format("has {} characters; allowed are 1 to {}",
-                                                  name.size(), kLongestName)});
-  }
-}
 
 void checkStations(const VrpnSettings& settings, SettingFaults& faults) {
   auto used = settings.stations;
@@ -43,13 +26,8 @@ void checkStations(const VrpnSettings& settings, SettingFaults& faults) {
 
 SettingFaults validate(const VrpnSettings& settings, const LineSettings& line) {
   SettingFaults faults;
-  const auto port = parsePort(line.port);
-  if (line.driver == "vrpn" && port && !canBeServer(port->kind)) {
-    faults.push_back({"/port", fmt::format("is \"{}\", at which no VRPN server can be; the driver "
-                                           "\"vrpn\" needs tcp://HOST:PORT, usually port 3883",
-                                           line.port)});
-  }
-  checkName(settings.device, faults);
+  vrpn::checkPort(line, "vrpn", faults);
+  vrpn::checkName(settings.device, "/vrpn/device", faults);
   checkStations(settings, faults);
   return faults;
 }

@@ -127,7 +127,10 @@ Feed vrpnFeed() {
     for (const char c : bytes) {
       const auto message = parser->feed(static_cast<std::byte>(c));
       packets += message ? 1U : 0U;
-      if (message) (void)(readVrpnName(message->payload) || readVrpnPose(message->payload));
+      if (!message) continue;
+      const std::string_view payload = message->payload;
+      (void)(readVrpnName(payload) || readVrpnPose(payload) || readVrpnButton(payload) ||
+             readVrpnButtons(payload) || readVrpnChannels(payload));
     }
     return packets;
   };

@@ -172,11 +172,27 @@ TEST(DevicesConfig, APortIsTheSameHoweverItIsSpelt) {
     EXPECT_EQ(both("tuio", "udp:3333", other), "") << other;
   EXPECT_NE(both("tuio", "udp://[::1]:3333", "udp://[0:0::1]:3333"), "");
   EXPECT_EQ(both("tuio", "udp://[::1]:3333", "udp://0.0.0.0:3333"), "");
-  EXPECT_NE(both("vrpn", "tcp://Lab:3883", "tcp://lab:3883"), "");
-  EXPECT_NE(both("vrpn", "tcp://localhost:4001", "tcp://127.0.0.1:4001"), "");
-  EXPECT_EQ(both("vrpn", "tcp://lab:3883", "tcp://lab2:3883"), "");
+  EXPECT_NE(both("fastrak", "tcp://Lab:3883", "tcp://lab:3883"), "");
+  EXPECT_NE(both("fastrak", "tcp://localhost:4001", "tcp://127.0.0.1:4001"), "");
+  EXPECT_EQ(both("fastrak", "tcp://lab:3883", "tcp://lab2:3883"), "");
   EXPECT_NE(both("sample", "serial:/dev/ttyS0", "pty:/dev/ttyS0"), "");
   EXPECT_EQ(both("sample", "replay:a", "replay:a"), "");
+}
+
+// A VRPN server has several devices, and gives each reader a connection of its own.
+TEST(DevicesConfig, DevicesOfOneServerShareItsPort) {
+  const auto with = [](const std::string& second, const char* port = "tcp://lab:3883") {
+    return devicesAre(fmt::format(R"({{"name": "a", "driver": "vrpn", "port": "{0}"}},
+                                     {{"name": "b", "driver": "{1}", "port": "{0}"}},
+                                     {{"name": "c", "driver": "vrpn_pad", "port": "{0}"}})",
+                                  port, second));
+  };
+  EXPECT_EQ(with("vrpn"), "");
+  EXPECT_EQ(with("vrpn_pad"), "");
+  EXPECT_NE(with("fastrak").find("/devices/1/port is \"tcp://lab:3883\", which is the port of the "
+                                 "device \"a\" at /devices/0; each device needs its own"),
+            std::string::npos);
+  EXPECT_NE(with("vrpn", "pty:/tmp/a"), "") << "a line has one reader";
 }
 
 constexpr const char* kOneOfEach = R"({"name": "left", "driver": "cyberglove"},
@@ -264,6 +280,20 @@ TEST(DevicesConfig, BindingsNameDevicesWhoseKeysHaveNames) {
             "f.json:2: /bindings/0/input is \"ball.button.south\", and \"ball\" is not the name of "
             "a device whose keys have names, which are those of the drivers evdev, touch; /devices "
             "has pad, mouse\n");
+}
+
+TEST(DevicesConfig, BindingsNameTouchSurfacesThatArePinched) {
+  const auto bound = [](const std::string& input) {
+    return devicesAre(R"({"name": "wall", "driver": "tuio"}, {"name": "pad", "driver": "evdev"})",
+                      R"(, "bindings": [{"action": "reset_view", "input": ")" + input + "\"}]");
+  };
+  for (const char* good : {"wall.pinch", "wall.spread", "pinch", "spread"})
+    EXPECT_EQ(bound(good), "") << good;
+  EXPECT_EQ(bound("pad.pinch"),
+            "f.json:1: /bindings/0/input is \"pad.pinch\", and \"pad\" is not the name of a touch "
+            "surface; /devices has wall\n");
+  EXPECT_NE(bound("wall.pinching").find("/bindings/0/input is \"wall.pinching\"; allowed are"),
+            std::string::npos);
 }
 
 TEST(DevicesConfig, BindingsNameHandsThatMakeGestures) {
@@ -387,9 +417,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadDevice{
             R"("driver": "evdev", "evdev": {"axes": ["x", "up", "none", "none", "none", "none"]})",
             "/devices/0/evdev/axes/1 is \"up\"; allowed are the kernel's name of an axis"},
-        BadDevice{R"("driver": "evdev", "port": "serial:/dev/input/event5")",
-                  "/devices/0/port is \"serial:/dev/input/event5\", which is no input device; the "
-                  "driver \"evdev\" needs evdev:/dev/input/..."},
+        BadDevice{
+            R"("driver": "evdev", "port": "serial:/dev/input/event5")",
+            "/devices/0/port is \"serial:/dev/input/event5\", which is not an input device; the "
+            "driver \"evdev\" needs evdev:/dev/input/..."},
         BadDevice{R"("driver": "spacenav", "port": "serial:/dev/ttyUSB0")",
                   "/devices/0/port is \"serial:/dev/ttyUSB0\", at which no spacenavd can be; the "
                   "driver \"spacenav\" needs unix:PATH"},
@@ -402,7 +433,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadDevice{R"("driver": "vrpn", "vrpn": {"device": "Wand@lab"})",
                   "/devices/0/vrpn/device is \"Wand@lab\"; needed is the name alone"},
         BadDevice{R"("driver": "vrpn", "port": "tcp://127.0.0.1:4000")",
-                  "/devices/0/port is \"tcp://127.0.0.1:4000\", where merlind itself serves"}));
+                  "/devices/0/port is \"tcp://127.0.0.1:4000\", where merlind itself serves"},
+        BadDevice{R"("driver": "vrpn_pad", "port": "tcp://localhost:4000")",
+                  "/devices/0/port is \"tcp://localhost:4000\", where merlind itself serves"},
+        BadDevice{R"("driver": "vrpn_pad", "vrpn_pad": {"axes": ["0", "one", "2", "3", "4", "5"]})",
+                  "/devices/0/vrpn_pad/axes/1 is \"one\"; allowed are the server's number"},
+        BadDevice{R"("driver": "vrpn_pad", "vrpn": {"device": "x"})", "/devices/0/vrpn"}));
 
 }  // namespace
 }  // namespace merlin

@@ -9,6 +9,7 @@
 #include "daemon/actions/action_reader.h"
 #include "daemon/actions/action_sink.h"
 #include "daemon/actions/action_writer.h"
+#include "daemon/actions/pinch.h"
 #include "daemon/actions/settings.h"
 #include "daemon/base/commands.h"
 #include "tests/support/local_devices.h"
@@ -463,6 +464,136 @@ TEST_F(ActionsTest, AMousesButtonsAreInputs) {
   };
   EXPECT_TRUE(press(0xFFFD).empty()) << "all others";
   EXPECT_EQ(press(2), std::vector<std::size_t>{kNextMode});
+}
+
+TEST_F(ActionsTest, ADeviceThatLacksABoundKeySaysSoOnceItWorks) {
+  Binding chord{"pad.button.1", "reset_view"};
+  chord.with = "pad.key.space";
+  test::RecordingSink samples;
+  test::RecordingHealth health;
+  ActionSink sink(
+      ActionWriter({{"key.tab", "next_mode"}, {"pad.button.south", "grab"}, chord},
+                   {"pad", SampleKind::kBall, false, &keyCode}, 1, segment_->actions[test::kBall]),
+      {nullptr, samples, health, std::chrono::seconds(1)});
+  const auto reason = [&](HealthState state, const char* own = "") {
+    DeviceHealth h{};
+    h.state = state;
+    std::string_view(own).copy(h.reason, sizeof h.reason - 1);
+    sink.publish(h);
+    return std::string(health.last().reason);
+  };
+  EXPECT_EQ(reason(HealthState::kOk), "") << "a device that has not told its keys";
+  DeviceKeys keys;
+  keys.set(0x130);
+  sink.describe(keys);
+  EXPECT_EQ(reason(HealthState::kOpening), "");
+  EXPECT_EQ(reason(HealthState::kOk),
+            "it has no key.space, which a binding names; `merlin devices` "
+            "lists the keys that it has");
+  EXPECT_EQ(reason(HealthState::kOk, "a fault"), "a fault");
+  sink.describe({});
+  EXPECT_EQ(reason(HealthState::kOk).substr(0, 26), "it has no button.south, wh");
+  keys.set(57);
+  sink.describe(keys);
+  EXPECT_EQ(reason(HealthState::kOk), "") << "key.tab may be that of another device";
+}
+
+// Two fingers at the same height, this far apart; the surface is twice as wide as high.
+TouchSample fingers(float apart, std::uint32_t second = 2) {
+  TouchSample sample{};
+  sample.fingers = 2;
+  sample.aspect = 2;
+  sample.id[0] = 1;
+  sample.id[1] = second;
+  for (const std::size_t i : {0U, 1U}) {
+    sample.position[i][0] = 0.5F + (i == 0 ? -apart : apart) / 4;
+    sample.position[i][1] = 0.5F;
+  }
+  return sample;
+}
+
+TEST(Pinch, IsAnInputThatIsNotThePostureOrTheGestureOfThatName) {
+  EXPECT_EQ(*parseInput("touch.pinch"),
+            (Input{Input::Kind::kPinch, "touch", Pinch::kTogether, {}}));
+  EXPECT_EQ(*parseInput("spread"), (Input{Input::Kind::kPinch, "", Pinch::kApart, {}}));
+  EXPECT_EQ(parseInput("posture.pinch")->kind, Input::Kind::kPosture);
+  EXPECT_EQ(parseInput("left.posture.pinch")->kind, Input::Kind::kPosture);
+  EXPECT_EQ(parseInput("gesture.spread")->kind, Input::Kind::kGesture);
+  EXPECT_EQ(parseInput("key.pinch")->kind, Input::Kind::kKey);
+  EXPECT_FALSE(parseInput("touch.pinch+"));
+  EXPECT_FALSE(parseInput("a.touch.pinch"));
+}
+
+TEST(Pinch, BeginsAtALargeRatioAndEndsAtASmallerOne) {
+  Pinch pinch;
+  EXPECT_EQ(pinch.update(fingers(0.5F)), 0u);
+  EXPECT_EQ(pinch.update(fingers(0.36F)), 0u) << "by 1.39";
+  EXPECT_EQ(pinch.update(fingers(0.35F)), Pinch::kTogether) << "by 1.43";
+  EXPECT_EQ(pinch.update(fingers(0.39F)), Pinch::kTogether) << "by 1.28";
+  EXPECT_EQ(pinch.update(fingers(0.41F)), 0u) << "by 1.22";
+  EXPECT_EQ(pinch.update(fingers(0.36F)), 0u);
+  EXPECT_EQ(pinch.update(fingers(0.69F)), 0u) << "by 1.38";
+  EXPECT_EQ(pinch.update(fingers(0.71F)), Pinch::kApart) << "by 1.42";
+  EXPECT_EQ(pinch.update(fingers(0.64F)), Pinch::kApart) << "by 1.28";
+  EXPECT_EQ(pinch.update(fingers(0.61F)), 0u) << "by 1.22";
+}
+
+TEST(Pinch, IsOfTheSameFingersInWhateverOrderTheyCome) {
+  Pinch pinch;
+  (void)pinch.update(fingers(0.6F));
+  TouchSample swapped = fingers(0.3F);
+  std::swap(swapped.id[0], swapped.id[1]);
+  EXPECT_EQ(pinch.update(swapped), Pinch::kTogether);
+  EXPECT_EQ(pinch.update(fingers(0.3F, 3)), 0u) << "another finger begins anew";
+  EXPECT_EQ(pinch.update(fingers(0.2F, 3)), Pinch::kTogether);
+  TouchSample one = fingers(0.2F, 3);
+  one.fingers = 1;
+  EXPECT_EQ(pinch.update(one), 0u);
+  EXPECT_EQ(pinch.update(fingers(0.2F, 3)), 0u);
+  TouchSample many = fingers(0.2F, 3);
+  many.fingers = 4000;
+  EXPECT_EQ(pinch.update(many), 0u) << "no more than a sample has";
+}
+
+TEST(Pinch, IsNoMatterOfAFewMillimetresAndNotOfTurning) {
+  Pinch pinch;
+  (void)pinch.update(fingers(0.002F));
+  EXPECT_EQ(pinch.update(fingers(0.015F)), 0u);
+  EXPECT_EQ(pinch.update(fingers(0.05F)), Pinch::kApart);
+  TouchSample upright = fingers(0.4F, 9);
+  (void)pinch.update(upright);
+  for (const std::size_t i : {0U, 1U}) {
+    upright.position[i][0] = 0.2F;
+    upright.position[i][1] = i == 0 ? 0.1F : 0.5F;
+  }
+  EXPECT_EQ(pinch.update(upright), 0u) << "as far apart, one above the other";
+}
+
+TEST_F(ActionsTest, APinchIsHeldUntilTheFingersAreLiftedOrLost) {
+  Binding repeated{"spread", "next_mode"};
+  repeated.repeat_s = 1;
+  ActionWriter wall({{"wall.pinch", "grab"}, {"other.pinch", "reset_view"}, repeated},
+                    {"wall", SampleKind::kTouch}, 1, segment_->actions[test::kBall]);
+  (void)read();
+  const auto at = [&](float apart, std::int64_t ns, std::uint32_t second = 2) {
+    TouchSample sample = fingers(apart, second);
+    sample.received_ns = ns;
+    wall.update(sample);
+    return read();
+  };
+  EXPECT_FALSE(at(0.8F, 1).all.held[kGrab]);
+  EXPECT_TRUE(at(0.4F, 2).all.held[kGrab]);
+  TouchSample lifted{};
+  wall.update(lifted);
+  EXPECT_FALSE(read().all.held[kGrab]);
+  (void)at(0.2F, 4, 3);
+  EXPECT_EQ(at(0.8F, 5, 3).in_order, std::vector<std::size_t>{kNextMode});
+  wall.adopt(1'000'000'006);
+  EXPECT_EQ(read().in_order, std::vector<std::size_t>{kNextMode}) << "repeats while it is held";
+  (void)at(0.8F, 7, 4);
+  EXPECT_TRUE(at(0.4F, 8, 4).all.held[kGrab]);
+  wall.release(9);
+  EXPECT_FALSE(read().all.held[kGrab]);
 }
 
 TEST(BindingSettings, AGestureTriggersWhatHappensOnce) {

@@ -211,6 +211,8 @@ TEST_F(EvdevTest, KeysThatArePressedAreThereByTheKernelsNumbers) {
   const BallSample& one = after(pressed(BTN_SOUTH, 0));
   EXPECT_EQ(one.keys[0], BTN_START);
   EXPECT_EQ(one.keys[1], 0);
+  EXPECT_TRUE(sink_.keys[BTN_SOUTH]);
+  EXPECT_FALSE(sink_.keys[KEY_SPACE]) << "which a gamepad has not";
 }
 
 TEST_F(EvdevTest, OfManyKeysEightAreThere) {
@@ -245,7 +247,10 @@ TEST_F(EvdevTest, ReconnectedItForgetsTheDeviceOfBefore) {
   connect(spaceMouse());
   after(moved(ABS_X, 350) + pressed(BTN_0, 1));
   stream_.feed(gamepad());
+  EXPECT_TRUE(sink_.keys[BTN_0]);
   ASSERT_TRUE(device_->open(stream_));
+  EXPECT_FALSE(sink_.keys[BTN_0]);
+  EXPECT_TRUE(sink_.keys[BTN_SOUTH]);
   EXPECT_EQ(device_->input().axes(), 8u);
   const BallSample& s = after(moved(ABS_HAT0X, 0));
   EXPECT_EQ(s.buttons, 0u);

@@ -221,6 +221,8 @@ TEST_F(TouchTest, AMousesOtherButtonsAndWheelAreThereWithoutAFinger) {
     EXPECT_TRUE(device_->poll(stream_));
     return sink_.touch.empty() ? TouchSample{} : sink_.touch.back();
   };
+  EXPECT_TRUE(sink_.keys[BTN_LEFT]);
+  EXPECT_FALSE(sink_.keys[BTN_SOUTH]);
   EXPECT_EQ(after(shifted(REL_WHEEL, 2)).wheel, 2u);
   EXPECT_EQ(after(shifted(REL_WHEEL, -3)).wheel, 65535u);
   EXPECT_EQ(after(pressed(BTN_RIGHT, 1)).buttons, 2u);

@@ -204,7 +204,10 @@ TEST_F(VrpnTest, OnlyWhatTheServerCallsOurDevicesPosesIsTaken) {
       samplesOf(type(kPoseNumber, "vrpn_Tracker Velocity") + message(kOther, kPoseNumber, payload)),
       0u);
   EXPECT_EQ(samplesOf(type(3, kVrpnPoseType) + message(kOther, 3, payload)), 1u);
-  EXPECT_EQ(samplesOf(sender(kOther, std::string(500, 'x')) + message(kOther, 3, payload)), 0u);
+  EXPECT_EQ(samplesOf(message(kOther, kVrpnDescribeSender, std::string("\0\0\0\x63x", 5)) +
+                      message(kOther, 3, payload)),
+            0u)
+      << "99 characters are announced, and one comes";
   EXPECT_EQ(device_->counters().bad_packets, 1u);
   EXPECT_EQ(samplesOf(message(3, kVrpnDescribeType, std::string("\xFF\xFF\xFF\xFFx", 5))), 0u);
   EXPECT_EQ(device_->counters().bad_packets, 2u);

@@ -36,6 +36,7 @@
 #include "drivers/touch/device.h"
 #include "drivers/tuio/device.h"
 #include "drivers/vrpn/device.h"
+#include "drivers/vrpn/pad_device.h"
 #include "nn/io/data_set_file.h"
 #include "nn/io/gesture_file.h"
 #include "nn/io/network_file.h"
@@ -278,7 +279,14 @@ void vrpnBytes(Bytes bytes) {
     const auto front = serve::readVrpn(input);
     if (front.broken || !front.message) return;
     require(front.bytes > 0, "a message takes bytes");
-    (void)readVrpnName(front.message->payload);
+    const std::string_view payload = front.message->payload;
+    (void)readVrpnName(payload);
+    if (const auto button = readVrpnButton(payload))
+      require(button->button < kVrpnButtons, "is one");
+    if (const auto buttons = readVrpnButtons(payload))
+      require(buttons->count <= kVrpnButtons, "no more buttons than VRPN has");
+    if (const auto channels = readVrpnChannels(payload))
+      require(channels->count <= kVrpnChannels, "no more channels than VRPN has");
     input.remove_prefix(front.bytes);
   }
 }
@@ -305,12 +313,14 @@ void driverBytes(Device& device, test::FakeClock& clock, std::string_view bytes)
     goes_on = device.poll(stream).ok();
 }
 
-// Of a VRPN server.
+// Of a VRPN server, to the driver of a tracker and to that of buttons and analogs.
 void vrpnServerBytes(Bytes bytes) {
   PlausibleSink sink;
   test::FakeClock clock;
-  vrpn::VrpnDevice device({}, clock, sink);
-  driverBytes(device, clock, textOf(bytes));
+  vrpn::VrpnDevice tracker({}, clock, sink);
+  driverBytes(tracker, clock, textOf(bytes));
+  vrpn::VrpnPad pad({}, clock, sink);
+  driverBytes(pad, clock, textOf(bytes));
 }
 
 void touchBytes(Bytes bytes) {

@@ -121,10 +121,10 @@ class Gamepad {
 
 // A line that says nothing is opened again and again. It is described once for each time, when it
 // is open: what was sent before is dropped then, from some byte on.
-bool isConnected(Merlind& merlind, Gamepad& pad) {
+bool isConnected(Merlind& merlind, Gamepad& pad, const std::string& name = "ball") {
   std::int64_t opened_ns = 0;
   return eventually([&] {
-    const auto health = merlind.health("ball");
+    const auto health = merlind.health(name);
     const bool opening = health && health->state == HealthState::kOpening;
     if (opening && std::exchange(opened_ns, health->since_ns) != health->since_ns) pad.describe();
     return health && health->state == HealthState::kOk;
@@ -165,7 +165,8 @@ TEST(TodaysDevices, KeysAreInputsByTheKernelsNames) {
   options.role = "devices";
   options.emulate = false;
   options.also = ballOf("evdev", "pty:" + dir / "pad");
-  options.also["bindings"] = {{{"input", "button.south"}, {"action", "next_mode"}}};
+  options.also["bindings"] = {{{"input", "button.south"}, {"action", "next_mode"}},
+                              {{"input", "ball.key.space"}, {"action", "reset_view"}}};
   Merlind merlind(dir, "", "keys", options);
   EXPECT_TRUE(isConnected(merlind, pad)) << merlind.process().output();
   pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));
@@ -174,6 +175,11 @@ TEST(TodaysDevices, KeysAreInputsByTheKernelsNames) {
     return actions && actions->begun[actionIndex("next_mode")] == 1;
   }));
   EXPECT_EQ(ballOf(merlind)->keys[0], BTN_SOUTH);
+  EXPECT_TRUE(eventually([&] {
+    return std::string_view(merlind.health("ball")->reason) ==
+           "it has no key.space, which a binding names; `merlin devices` lists the keys that it "
+           "has";
+  })) << merlind.health("ball")->reason;
 }
 
 // A TCP port that is free: the system has just assigned it, and it was closed again.
@@ -240,6 +246,60 @@ TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
   EXPECT_TRUE(eventually([&] { return agree(*server, client); }));
   EXPECT_GT(client.devices()->tracker()->stations[1]->newest()->counter, counter);
   EXPECT_EQ(client.health("tracker")->reconnects, 1u);
+}
+
+// A server with a tracker, which is emulated, and a gamepad, which this test holds.
+MerlindOptions wandServer(int port, const std::string& pad) {
+  MerlindOptions options = vrpnServer(port);
+  options.also["devices"] = nlohmann::json::array(
+      {deviceEntry("tracker", "fastrak"), deviceEntry("pad", "evdev", "pty:" + pad)});
+  return options;
+}
+
+// Both of it are read, by two connections.
+MerlindOptions wandClient(int port) {
+  const std::string server = fmt::format("tcp://127.0.0.1:{}", port);
+  MerlindOptions options;
+  options.emulate = false;
+  options.also["devices"] =
+      nlohmann::json::array({deviceEntry("eyes", "vrpn", server, {{"device", "Tracker0"}}),
+                             deviceEntry("wand", "vrpn_pad", server, {{"device", "Ball0"}})});
+  options.also["bindings"] = {{{"input", "wand.button.1"}, {"action", "next_mode"}},
+                              {{"input", "wand.axis.ry+"}, {"action", "reset_view"}}};
+  return options;
+}
+
+TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAnalogsMove) {
+  const TempDir dir;
+  const int port = freePort();
+  Gamepad pad(dir / "pad");
+  Merlind server(dir, "", "server", wandServer(port, dir / "pad"));
+  ASSERT_TRUE(server.ready()) << server.process().output();  // its segment has all names
+  ASSERT_TRUE(isConnected(server, pad, "pad")) << server.process().output();
+  Merlind client(dir, makeModel(dir, 5), "client", wandClient(port));
+  ASSERT_TRUE(client.ready()) << client.process().output();
+  ASSERT_TRUE(client.healthIs("eyes", HealthState::kOk)) << client.process().output();
+  ASSERT_TRUE(client.healthIs("wand", HealthState::kOk)) << client.process().output();
+  EXPECT_STREQ(client.health("wand")->identity,
+               "VRPN buttons and analogs Ball0 at server version 07.38");
+  ASSERT_TRUE(eventually([&] { return client.wall().moving == 0; }));
+  const auto begun = [&](std::size_t action) {
+    return eventually([&] {
+      const auto actions = client.actions("wand");
+      return actions && actions->begun[action] == 1;
+    });
+  };
+  pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));
+  EXPECT_TRUE(begun(actionIndex("next_mode")));
+  pad.report(record(EvdevRecord::kMoved, ABS_RX, 32767));
+  EXPECT_TRUE(begun(actionIndex("reset_view"))) << "its pushed axis is an input too";
+  EXPECT_TRUE(eventually([&] { return client.wall().moving == 1; }));
+  EXPECT_FLOAT_EQ(client.devices()->ball("wand")->samples->newest()->rotation[1], 1);
+  pad.report(record(EvdevRecord::kMoved, ABS_RX, 0) + record(EvdevRecord::kPressed, BTN_SOUTH, 0));
+  EXPECT_TRUE(eventually([&] { return client.wall().moving == 0; }));
+  EXPECT_EQ(client.devices()->ball("wand")->samples->newest()->buttons, 0u);
+  server.process().kill(SIGKILL);
+  EXPECT_TRUE(client.healthIs("wand", HealthState::kAbsent));
 }
 
 }  // namespace

@@ -101,6 +101,50 @@ TEST(TouchSystem, AFrameOfTheKernelTouches) {
   EXPECT_TRUE(fingersAre(merlind, "frame", 1));
 }
 
+TEST(TouchSystem, FingersThatMoveTogetherAreAnInput) {
+  const TempDir dir;
+  const auto line = io::PtyMaster::open(dir / "frame");
+  ASSERT_TRUE(line);
+  const auto say = [&](const std::string& bytes) {
+    (void)!::write(line->fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
+  };
+  std::string description;
+  for (const int code : {ABS_MT_SLOT, ABS_MT_TRACKING_ID, ABS_MT_POSITION_X, ABS_MT_POSITION_Y})
+    description += record(EvdevRecord::kAxis, code, 0, code == ABS_MT_SLOT ? 9 : 1000);
+  description += record(EvdevRecord::kReady);
+  MerlindOptions options = devicesAlone(deviceEntry("touch", "touch", "pty:" + dir / "frame"));
+  options.also["bindings"] = {{{"input", "touch.pinch"}, {"action", "reset_view"}},
+                              {{"input", "touch.spread"}, {"action", "next_mode"}}};
+  Merlind merlind(dir, "", "pinch", options);
+  EXPECT_TRUE(eventually([&] {
+    say(description);
+    const auto health = merlind.health("touch");
+    return health && health->state == HealthState::kOk;
+  })) << merlind.process().output();
+  const auto finger = [](int slot, int id, int x) {
+    return record(EvdevRecord::kMoved, ABS_MT_SLOT, slot) +
+           record(EvdevRecord::kMoved, ABS_MT_TRACKING_ID, id) +
+           record(EvdevRecord::kMoved, ABS_MT_POSITION_X, x) +
+           record(EvdevRecord::kMoved, ABS_MT_POSITION_Y, 500);
+  };
+  const auto begun = [&](std::uint32_t together, std::uint32_t apart) {
+    return eventually([&] {
+      const auto actions = merlind.actions("touch");
+      return actions && actions->begun[actionIndex("reset_view")] == together &&
+             actions->begun[actionIndex("next_mode")] == apart;
+    });
+  };
+  const std::string report = record(EvdevRecord::kReport);
+  say(finger(0, 1, 300) + finger(1, 2, 700) + report);
+  EXPECT_TRUE(fingersAre(merlind, "touch", 2));
+  say(finger(0, 1, 450) + finger(1, 2, 550) + report);
+  EXPECT_TRUE(begun(1, 0));
+  say(finger(1, -1, 550) + report);
+  EXPECT_TRUE(fingersAre(merlind, "touch", 1));
+  say(finger(1, 3, 550) + report + finger(1, 3, 900) + report);
+  EXPECT_TRUE(begun(1, 1));
+}
+
 TEST(TouchSystem, AMousesWheelMovesTheModelAndItsRightButtonActs) {
   const TempDir dir;
   const auto line = io::PtyMaster::open(dir / "mouse");

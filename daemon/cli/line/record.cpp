@@ -1,4 +1,5 @@
 // merlin record: records the bytes on a device's line into a file. merlin replay: replays the file.
+#include <algorithm>
 #include <csignal>
 #include <ctime>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 
+#include "config/loader.h"
 #include "daemon/base/files.h"
 #include "daemon/base/log.h"
 #include "daemon/cli/command.h"
@@ -23,7 +25,7 @@ namespace merlin::cli {
 namespace {
 
 struct RecordOptions {
-  std::string port, device, output;
+  std::string port, device, config, output;
   int baud = 0;
   double seconds = 0;
 };
@@ -86,14 +88,74 @@ Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int 
   return identity;
 }
 
+std::vector<std::string> driverNames() {
+  std::vector<std::string> names;
+  for (const DriverEntry& entry : drivers()) names.emplace_back(entry.name);
+  return names;
+}
+
+// The device of this name in a configuration. Errors: kInvalidArgument (there is none),
+// kMalformed (the configuration is not valid).
+Result<DeviceSettings> configuredDevice(const std::string& file, const std::string& name) {
+  const LoadedSettings loaded = loadSettingsFile(file);
+  const auto fault = std::ranges::find(loaded.findings, false, &Finding::adjusted);
+  if (fault != loaded.findings.end())
+    return Error{Errc::kMalformed,
+                 toText(file, *fault) + fmt::format("; mend it first (`merlind --check-config {}` "
+                                                    "lists all faults)",
+                                                    file)};
+  const auto& list = loaded.settings.devices.list;
+  const auto found = std::ranges::find(list, name, &DeviceSettings::name);
+  if (found != list.end()) return *found;
+  std::vector<std::string> names;
+  for (const DeviceSettings& device : list) names.push_back(device.name);
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: /devices has no device named \"{}\"; its devices: {}", file, name,
+                           names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")))};
+}
+
+// What to record, and how to speak to it: the settings of the device in the configuration, or the
+// usual ones of the driver; without a driver the line is only read. What the options say counts.
+Result<DeviceSettings> recordedDevice(const RecordOptions& options) {
+  DeviceSettings device;
+  if (!options.config.empty()) {
+    const auto found = configuredDevice(options.config, options.device);
+    if (!found) return found.error();
+    device = *found;
+  } else if (const DriverEntry* const driver = findDriver(options.device)) {
+    device.line.driver = driver->name;
+    device.line.baud = driver->baud;
+  } else if (!options.device.empty()) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("there is no driver \"{}\"; the drivers are {}. For a device of a "
+                             "configuration by its name, add --config FILE",
+                             options.device, fmt::join(driverNames(), ", "))};
+  } else {
+    device.line.baud = kUsualBaud;
+  }
+  if (!options.port.empty()) device.line.port = options.port;
+  if (options.baud > 0) device.line.baud = options.baud;
+  if (!device.line.port.empty()) return device;
+  return Error{
+      Errc::kInvalidArgument,
+      options.config.empty()
+          ? "no port is given: name one, such as serial:/dev/ttyUSB0, or a device that has "
+            "one by --config FILE --device NAME"
+          : fmt::format("{}: the device \"{}\" has no port: give one, such as "
+                        "serial:/dev/ttyUSB0",
+                        options.config, options.device)};
+}
+
 int record(const RecordOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   const UniqueFd stop = stopSignals();
-  const auto address = parsePort(options.port);
+  const auto recorded = recordedDevice(options);
+  if (!recorded) return fail(recorded.error());
+  const auto address = parsePort(recorded->line.port);
   if (!address) return fail(address.error());
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
-  const DriverEntry* driver = findDriver(options.device);
-  const int baud = options.baud > 0 ? options.baud : driver ? driver->baud : kUsualBaud;
+  const DriverEntry* const driver = findDriver(recorded->line.driver);
+  const int baud = recorded->line.baud;
   auto line = io::openPort(*address, baud);
   if (!line) return fail(line.error());
   const SystemClock clock;
@@ -101,15 +163,15 @@ int record(const RecordOptions& options) {
   Recording recording(start);
   io::RecordingStream stream(*std::move(line), recording, clock);
   Nowhere nowhere;
-  const auto device = driver ? driver->make({}, clock, nowhere) : nullptr;
+  const auto device = driver ? driver->make(recorded->own, clock, nowhere) : nullptr;
   const Timestamp end =
       options.seconds > 0 ? start + fromSeconds(options.seconds) : Timestamp::max();
   const auto identity = listen(stream, device.get(), end, stop.get());
   recording.transcript.header = {
       {"device", identity ? *identity : "no device answered: " + identity.error().what},
       {"driver", driver ? driver->name : "none, the line was only read"},
-      {"serial", baud > 0 ? fmt::format("{} 8N1", baud) : "none"},
-      {"synthetic", "not known: from " + options.port},
+      {"serial", address->hasSpeed() && baud > 0 ? fmt::format("{} 8N1", baud) : "none"},
+      {"synthetic", "not known: from " + recorded->line.port},
       {"by", "merlin record"},
       {"date", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))}};
   const auto written = writeFile(options.output, io::formatTranscript(recording.transcript));
@@ -171,25 +233,25 @@ int replay(const ReplayOptions& options) {
 
 void addRecord(Command app, Run& run) {
   const auto options = std::make_shared<RecordOptions>();
-  std::vector<std::string> names;
-  for (const DriverEntry& entry : drivers()) names.emplace_back(entry.name);
-  Command command = app.subcommand("record",
-                                   "Record the bytes on a device's line as a transcript.\nIf a "
-                                   "daemon has opened the line, use merlin flight "
-                                   "instead.\nExample: merlin record "
-                                   "pty:/tmp/ball --device spaceball -o "
-                                   "ball.bytes");
-  command
-      .option("port", options->port,
-              "Port of the device: serial:/dev/..., pty:PATH, tcp://HOST:PORT, udp:PORT, "
-              "unix:PATH or evdev:/dev/input/...")
-      .required();
+  const std::string device_help = fmt::format(
+      "Driver that sets up and polls the device ({}), with its usual settings; with --config the "
+      "name of a device in that file, with the settings that it has there. Without --device, the "
+      "line is only read",
+      fmt::join(driverNames(), ", "));
+  Command command = app.subcommand(
+      "record",
+      "Record the bytes on a device's line as a transcript.\nIf a daemon has opened the line, use "
+      "merlin flight instead.\nExample: merlin record pty:/tmp/ball --device spaceball -o "
+      "ball.bytes; merlin record --config merlin.json --device left -o left.bytes");
+  command.option("port", options->port,
+                 "Port of the device: serial:/dev/..., pty:PATH, tcp://HOST:PORT, udp:PORT, "
+                 "unix:PATH or evdev:/dev/input/...; the default is that of the device in the "
+                 "configuration");
   command.option("-o,--output", options->output, "File to write the transcript into (text)")
       .required();
-  command
-      .option("--device", options->device,
-              "Driver that sets up and polls the device; without a driver, the line is only read")
-      .oneOf(names);
+  command.option("--device", options->device, device_help.c_str()).typeName("DRIVER|NAME");
+  command.option("-c,--config", options->config, "The configuration that has the device")
+      .typeName("CONFIG");
   command
       .option("--baud", options->baud,
               "Speed of the line in bits per second; the default is that of the device, 38400 if "
@@ -199,7 +261,10 @@ void addRecord(Command app, Run& run) {
       .option("--seconds", options->seconds,
               "Duration in seconds; the default is until interrupted")
       .seconds();
-  command.callback([options, &run] { run = [options] { return record(*options); }; });
+  command.callback([options, &run] {
+    if (!options->config.empty() && options->device.empty()) lacks("--device NAME");
+    run = [options] { return record(*options); };
+  });
 }
 
 void addReplay(Command app, Run& run) {

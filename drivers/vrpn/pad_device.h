@@ -1,0 +1,49 @@
+// Driver of buttons and analogs that a VRPN server serves: a button box, a joystick, the buttons of
+// a wand. They are read as a ball. The server is the port tcp://HOST:3883.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "daemon/base/clock.h"
+#include "drivers/port/device.h"
+#include "drivers/port/held_ball.h"
+#include "drivers/port/sample_sink.h"
+#include "drivers/vrpn/client.h"
+#include "drivers/vrpn/pad_input.h"
+#include "drivers/vrpn/pad_settings.h"
+
+namespace merlin::vrpn {
+
+// open() takes at most 4 s; it ends when the server has described the device. Errors also: those of
+// Client. What rests is silent, so silence is no fault while the server answers; complaint() says
+// if the server serves neither buttons nor analogs. Publishes one sample for each message, and a
+// push that is held again every 50 ms.
+class VrpnPad final : public Device, private Listener {
+ public:
+  VrpnPad(const VrpnPadSettings& settings, const Clock& clock, SampleSink& sink);
+
+  Result<std::string> open(ByteStream& stream) override;
+  Result<Ok> poll(ByteStream& stream) override;
+  DeviceCounters counters() const noexcept override {
+    return {ball_.samples(), 0, client_.badPackets()};
+  }
+  const char* complaint() const noexcept override { return complaint_; }
+
+ private:
+  bool take(std::size_t type, std::string_view payload, Timestamp first_byte) noexcept override;
+  bool takePayload(std::size_t type, std::string_view payload) noexcept;
+
+  std::string name_;
+  const Clock& clock_;
+  Client client_;
+  HeldBall ball_;
+  PadInput input_;
+  const char* complaint_ = "";
+};
+
+std::unique_ptr<Device> makeDevice(const VrpnPadSettings& settings, const Clock& clock,
+                                   SampleSink& sink);
+
+}  // namespace merlin::vrpn

@@ -1,0 +1,43 @@
+// PadInput: the state of a VRPN device's buttons and channels, and what it means as a ball. Pure.
+#pragma once
+
+#include <array>
+#include <bitset>
+
+#include "drivers/port/samples.h"
+#include "drivers/port/vrpn_line.h"
+#include "drivers/vrpn/channel_source.h"
+#include "drivers/vrpn/pad_settings.h"
+
+namespace merlin::vrpn {
+
+// Allocates nothing after construction.
+class PadInput {
+ public:
+  // REQUIRES: settings in which validate() finds nothing.
+  explicit PadInput(const VrpnPadSettings& settings);
+
+  void take(const VrpnButton& button) noexcept { down_[button.button] = button.down; }
+  void take(const VrpnButtons& buttons) noexcept { down_ = buttons.down; }
+  void take(const VrpnChannels& channels) noexcept { channels_ = channels; }
+  void rest() noexcept;  // nothing is pressed or pushed
+
+  // Writes the present state into `sample`: axes, buttons and raw values (fillAxes() of
+  // drivers/port/axes.h). A channel that the device has not sent is at rest.
+  void fill(BallSample& sample) const noexcept;
+
+ private:
+  static constexpr std::size_t kButtons = 12;
+
+  float deflection(int channel) const noexcept;
+  float deflection(const ChannelSource& source) const noexcept;
+
+  ChannelSources sources_{};
+  std::array<int, kButtons> buttons_{};  // the server's numbers; -1: none
+  double rest_, full_;
+  float dead_zone_, curve_;
+  std::bitset<kVrpnButtons> down_;
+  VrpnChannels channels_;
+};
+
+}  // namespace merlin::vrpn
