@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/printable_text.h"
 #include "daemon/import/sandbox.h"
 #include "render/import/grid_import.h"
 #include "render/import/model_file.h"
@@ -51,7 +52,7 @@ Result<Imported> importModel(const Request& request, const Reports& reports) {
 Result<Imported> importGrid(const Request& request, const Reports& reports) {
   const std::string name = "grid";
   const auto made = render::import::importGrid(
-      {request.input, request.hdu}, request.folder + "/" + name,
+      {request.input, request.hdu, request.variable}, request.folder + "/" + name,
       [&](const render::import::ImportedGrid& size) {
         return reports.size(sizeof(float) * size.width * size.height);
       },
@@ -64,6 +65,16 @@ Result<Imported> importGrid(const Request& request, const Reports& reports) {
 
 Result<Ok> preparePoints(const char* program) { return render::import::preparePoints(program); }
 
+// A text as a JSON string; control characters are escaped by oneLine() before.
+std::string jsonString(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : oneLine(text)) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
 std::string factsOf(const render::points::PointCloud& cloud,
                     const render::import::PointSurface& surface) {
   const auto& used = surface.settings;
@@ -71,9 +82,10 @@ std::string factsOf(const render::points::PointCloud& cloud,
   return fmt::format(
       "\"format\": \"{}\", \"points\": {}, \"spacing\": {}, \"depth\": {}, \"neighbours\": {}, "
       "\"trim\": {}, \"trimmed\": {}, \"normals\": \"{}\", "
-      "\"origin_x\": {}, \"origin_y\": {}, \"origin_z\": {}",
+      "\"origin_x\": {}, \"origin_y\": {}, \"origin_z\": {}, \"projection\": {}",
       cloud.format, cloud.size(), surface.spacing, used.depth, used.neighbours, used.trim,
-      surface.trimmed, surface.normals, origin[0], origin[1], origin[2]);
+      surface.trimmed, surface.normals, origin[0], origin[1], origin[2],
+      jsonString(cloud.projection));
 }
 
 Result<Imported> importPoints(const Request& request, const Reports& reports) {

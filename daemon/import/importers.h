@@ -20,8 +20,9 @@ struct Request {
   bool panorama = false;
   int quality = 90;
   int tile_px = 256;
-  std::string format;  // of a model: ending of the usual name of its format, in lower case
-  std::string hdu;     // of a FITS file: number or name of the image; empty: the first
+  std::string format;    // of a model: ending of the usual name of its format, in lower case
+  std::string hdu;       // of a FITS file: number or name of the image; empty: the first
+  std::string variable;  // of a file of several maps: number or name of one; empty: none is named
   render::points::SurfaceSettings surface{};  // of a point cloud
 };
 

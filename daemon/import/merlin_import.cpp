@@ -33,9 +33,8 @@ constexpr Duration kReportEvery = std::chrono::milliseconds(100);
 int usage() {
   printError(
       "usage: merlin-import KIND IN FOLDER [--panorama] [--quality Q] [--tile PX] "
-      "[--format ENDING] [--hdu N|NAME] [--depth N] [--neighbours K] [--trim LENGTH] [--memory "
-      "BYTES] [--cpu "
-      "SECONDS]\n");
+      "[--format ENDING] [--hdu N|NAME] [--variable NAME|N] [--depth N] [--neighbours K] [--trim "
+      "LENGTH] [--memory BYTES] [--cpu SECONDS]\n");
   for (const Importer& importer : importers())
     printError("  {}: {}\n", importer.kind, importer.help);
   printError("For people there are: merlin image import IN -o OUT, merlin mesh import IN -o OUT\n");
@@ -93,6 +92,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
                       (name == "--tile" && parse(value, o.request.tile_px)) ||
                       (name == "--format" && parse(value, o.request.format)) ||
                       (name == "--hdu" && parseName(value, o.request.hdu)) ||
+                      (name == "--variable" && parseName(value, o.request.variable)) ||
                       (name == "--depth" && parse(value, o.request.surface.depth)) ||
                       (name == "--neighbours" && parse(value, o.request.surface.neighbours)) ||
                       (name == "--trim" && parse(value, o.request.surface.trim)) ||

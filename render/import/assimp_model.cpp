@@ -186,7 +186,19 @@ class SceneReader {
       m.texture = {imageOf(path), wrapOf(wrap[0]), wrapOf(wrap[1])};
       takeTransform(material, type, m);
     }
+    if (linear_) tint(material, m);
     return m;
+  }
+
+  // A glTF material's colour is multiplied with its texture. Other formats mean different things by
+  // having both.
+  void tint(const aiMaterial& material, Material& m) {
+    aiColor4D c;
+    if (!m.texture.picture || material.Get(AI_MATKEY_BASE_COLOR, c) != aiReturn_SUCCESS) return;
+    const std::array<float, 3> factor = {c.r, c.g, c.b};
+    const bool white = std::ranges::all_of(factor, [](float f) { return f == 1; });
+    if (!white && std::ranges::all_of(factor, [](float f) { return std::isfinite(f); }))
+      m.texture.picture = textures_.tinted(*m.texture.picture, factor);
   }
 
   // Of glTF, assimp says with v upwards what is to be done. Its own step (TransformUVCoords) does

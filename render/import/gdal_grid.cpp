@@ -12,6 +12,7 @@
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_string.h>
 #include <fmt/format.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
@@ -102,6 +103,8 @@ class GdalGrid final : public GridSource {
     takeHeights();
     return Ok{};
   }
+
+  void note(std::string text) { head_.notes.push_back(std::move(text)); }
 
   const range::GridHead& head() const override { return head_; }
 
@@ -215,6 +218,78 @@ class GdalGrid final : public GridSource {
   bool single_ = false, south_first_ = false, east_first_ = false;
 };
 
+Result<Dataset> openDataset(const std::string& address) {
+  CPLErrorReset();
+  Dataset dataset(GDALOpenEx(address.c_str(),
+                             GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
+                             nullptr, nullptr));
+  if (!dataset) return Error{Errc::kMalformed, gdalsWords()};
+  return dataset;
+}
+
+// A map among several in one file, which GDAL calls a subdataset.
+struct Map {
+  std::string address;  // for openDataset()
+  std::string name;     // of its variable; empty: it has none
+  std::string about;    // GDAL's description, one line
+};
+
+// The variable in an address such as NETCDF:"a.nc":z or HDF5:"a.h5"://maps/z; a page of a TIFF file
+// (GTIFF_DIR:1:a.tif) has no name.
+std::string variableIn(std::string_view address) {
+  if (address.starts_with("GTIFF_DIR")) return {};
+  const std::string_view last = address.substr(address.rfind(':') + 1);
+  return oneLine(trimmed(last, "/\""));
+}
+
+std::vector<Map> mapsOf(GDALDatasetH dataset) {
+  constexpr int kMost = 1000;
+  // The whole list: GDALGetMetadataItem() finds none of netCDF's.
+  char** const list = GDALGetMetadata(dataset, "SUBDATASETS");
+  const auto item = [&](int number, const char* what) {
+    const std::string key = fmt::format("SUBDATASET_{}_{}", number, what);
+    const char* text = CSLFetchNameValue(list, key.c_str());
+    return std::string(text ? text : "");
+  };
+  std::vector<Map> maps;
+  for (int i = 1; i <= kMost; ++i) {
+    const std::string address = item(i, "NAME");
+    if (address.empty()) break;
+    maps.push_back({address, variableIn(address), oneLine(excerpt(item(i, "DESC")))});
+  }
+  return maps;
+}
+
+std::string listOf(const std::vector<Map>& maps) {
+  constexpr std::size_t kNamed = 8;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(maps.size(), kNamed); ++i)
+    list += fmt::format("{}{}{} ({})", i == 0 ? "" : ", ", i + 1,
+                        maps[i].name.empty() ? "" : fmt::format(" \"{}\"", excerpt(maps[i].name)),
+                        maps[i].about);
+  return maps.size() > kNamed ? fmt::format("{} and {} more", list, maps.size() - kNamed) : list;
+}
+
+// The map with this number, from 1, or this name, in which capital letters count for nothing; of
+// one map nothing need be said. Errors: kInvalidArgument, with the list.
+Result<Map> chosenMap(const std::vector<Map>& maps, const std::string& wanted) {
+  if (wanted.empty() && maps.size() == 1) return maps.front();
+  if (maps.empty())
+    return Error{Errc::kInvalidArgument,
+                 "--variable is for files with several maps, and this has one; leave it out"};
+  for (std::size_t i = 0; i < maps.size() && !wanted.empty(); ++i) {
+    const bool named = !maps[i].name.empty() && lowerCase(maps[i].name) == lowerCase(wanted);
+    if (named || std::to_string(i + 1) == wanted) return maps[i];
+  }
+  return Error{Errc::kInvalidArgument,
+               wanted.empty()
+                   ? fmt::format("has several maps: {}; say which one by --variable NAME, or by "
+                                 "its number",
+                                 listOf(maps))
+                   : fmt::format("has no map {} (--variable); there are {}",
+                                 oneLine(excerpt(wanted)), listOf(maps))};
+}
+
 }  // namespace
 
 Result<Ok> prepareGdal() {
@@ -236,13 +311,23 @@ Result<Ok> prepareGdal() {
   return Error{Errc::kUnsupported, "GDAL has no readers"};
 }
 
-Result<std::unique_ptr<GridSource>> openGdal(const std::string& path) {
-  CPLErrorReset();
-  Dataset dataset(GDALOpenEx(path.c_str(),
-                             GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                             nullptr, nullptr));
-  if (!dataset) return Error{Errc::kMalformed, gdalsWords()};
-  auto grid = std::make_unique<GdalGrid>(std::move(dataset));
+Result<std::unique_ptr<GridSource>> openGdal(const std::string& path, const std::string& wanted) {
+  auto dataset = openDataset(path);
+  if (!dataset) return dataset.error();
+  const std::vector<Map> maps = mapsOf(dataset->get());
+  const bool has_bands = GDALGetRasterCount(dataset->get()) > 0;
+  if (!wanted.empty() || (!has_bands && !maps.empty())) {
+    const auto map = chosenMap(maps, wanted);
+    if (!map) return map.error();
+    dataset = openDataset(map->address);
+    if (!dataset) return dataset.error();
+  }
+  auto grid = std::make_unique<GdalGrid>(*std::move(dataset));
+  if (wanted.empty() && has_bands && maps.size() > 1)
+    grid->note(
+        fmt::format("there are several maps: {}; the first is read (--variable reads "
+                    "another one)",
+                    listOf(maps)));
   if (const auto prepared = grid->prepare(); !prepared) return prepared.error();
   return std::unique_ptr<GridSource>(std::move(grid));
 }

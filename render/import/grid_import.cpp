@@ -19,13 +19,18 @@ Result<std::unique_ptr<GridSource>> openGrid(const GridInput& input) {
   constexpr std::size_t kBeginning = 80;
   const auto beginning = FileCopy::read(in, kBeginning);
   if (!beginning) return beginning.error();
-  if (isFits(beginning->text())) return openFits(in, input.hdu);
+  const bool fits = isFits(beginning->text());
+  if (fits && !input.variable.empty())
+    return Error{Errc::kInvalidArgument,
+                 "--variable is for netCDF and other files of maps; --hdu names an image of a FITS "
+                 "file"};
+  if (fits) return openFits(in, input.hdu);
   if (!input.hdu.empty())
     return Error{Errc::kInvalidArgument, "--hdu is for FITS files, and this is none"};
   // An absolute name is a file's; GDAL takes others for addresses and databases.
   std::error_code error;
   const auto path = std::filesystem::absolute(in, error);
-  return openGdal(error ? in : path.lexically_normal().string());
+  return openGdal(error ? in : path.lexically_normal().string(), input.variable);
 }
 
 // Why the grid was not written: the source's reason, or the disk's.

@@ -14,7 +14,8 @@ namespace merlin::render::import {
 
 struct GridInput {
   std::string path;
-  std::string hdu{};  // of a FITS file: openFits()'s `wanted`
+  std::string hdu{};       // of a FITS file: openFits()'s `wanted`
+  std::string variable{};  // of any other: openGdal()'s `wanted`
 };
 
 struct ImportedGrid {

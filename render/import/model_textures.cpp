@@ -6,6 +6,7 @@
 #include <fcntl.h>
 
 #include "daemon/base/unique_fd.h"
+#include "render/image/tint.h"
 #include "render/import/companion_path.h"
 
 namespace merlin::render::import {
@@ -62,6 +63,17 @@ const image::ImageFile* ModelTextures::ofPixels(const std::string& name, image::
     if (pixels.pixels.empty()) return Error{Errc::kMalformed, "a texture without pixels"};
     return std::move(pixels);
   });
+}
+
+const image::ImageFile* ModelTextures::tinted(const image::ImageFile& image,
+                                              const std::array<float, 3>& factor) {
+  const std::pair key(&image, factor);
+  const auto found = tinted_.find(key);
+  if (found != tinted_.end()) return &found->second;
+  auto made = image::tinted(image, factor, image::Light::kLinear);
+  if (made) return &tinted_.emplace(key, *std::move(made)).first->second;
+  notes_.push_back("a texture is shown without its material's colour: " + made.error().what);
+  return &image;
 }
 
 }  // namespace merlin::render::import

@@ -1,12 +1,14 @@
 // ModelTextures: the texture images of a model, each read once.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/image/image_file.h"
@@ -25,6 +27,10 @@ class ModelTextures {
   // An image of pixels; null if it is empty.
   const image::ImageFile* ofPixels(const std::string& name, image::ImageFile pixels);
 
+  // The image times a colour, proportional to light; each is made once. The image itself where that
+  // fails, which a note then says.
+  const image::ImageFile* tinted(const image::ImageFile& image, const std::array<float, 3>& factor);
+
   const std::vector<std::string>& notes() const noexcept { return notes_; }
 
  private:
@@ -33,6 +39,7 @@ class ModelTextures {
 
   std::string folder_;
   std::map<std::string, std::unique_ptr<image::ImageFile>> images_;
+  std::map<std::pair<const image::ImageFile*, std::array<float, 3>>, image::ImageFile> tinted_;
   std::vector<std::string> notes_;
 };
 

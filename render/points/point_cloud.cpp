@@ -31,14 +31,6 @@ const mesh::Feature* PointCloud::find(std::string_view name) const noexcept {
   return found == features.end() ? nullptr : &*found;
 }
 
-std::array<double, 3> originNear(const std::array<double, 3>& point) noexcept {
-  constexpr double kNear = 1e4;
-  std::array<double, 3> origin{};
-  for (std::size_t k = 0; k < 3; ++k)
-    if (std::isfinite(point[k]) && std::abs(point[k]) >= kNear) origin[k] = std::floor(point[k]);
-  return origin;
-}
-
 Result<Ok> keepFinite(PointCloud& cloud) {
   const std::size_t points = cloud.size();
   std::vector<bool> kept(points);

@@ -9,6 +9,7 @@
 
 #include "daemon/base/result.h"
 #include "render/mesh/mesh.h"
+#include "render/mesh/origin.h"
 
 namespace merlin::render::points {
 
@@ -22,22 +23,19 @@ enum class Side {
 };
 
 struct PointCloud {
-  std::array<double, 3> origin{};  // of the file's coordinates; positions are relative to it
-  std::vector<float> positions;    // points x 3, the file's unit
+  mesh::Origin origin{};         // of the file's coordinates; positions are relative to it
+  std::vector<float> positions;  // points x 3, the file's unit
   // As of a mesh: "normal" (3), "colour" (3, 0..1), "label" (a classification); others are data.
   std::vector<mesh::Feature> features;
   Side side = Side::kUnknown;
   std::array<float, 3> viewpoint{};  // relative to the origin
   std::string format;                // "LAS 1.4", ...
+  std::string projection{};          // of its coordinates, as text (WKT or EPSG:N); empty: unknown
   std::vector<std::string> notes;    // for the user: what was left out or assumed
 
   std::size_t size() const noexcept { return positions.size() / 3; }
   const mesh::Feature* find(std::string_view name) const noexcept;  // nullptr if there is none
 };
-
-// The origin for a cloud with this point: a coordinate of 10^4 and more is moved by its whole part,
-// since a float keeps seven digits; any other axis keeps its zero.
-std::array<double, 3> originNear(const std::array<double, 3>& point) noexcept;
 
 // Removes points whose coordinates are not finite or beyond 10^18, and notes how many; features
 // that are no number become 0, and are noted. Order is kept. Errors: kMalformed (no point is left).

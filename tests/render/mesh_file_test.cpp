@@ -161,6 +161,58 @@ TEST(ReadMesh, TidiesWhatItRead) {
   EXPECT_EQ(loaded->tidied.unused, 1u);
 }
 
+// A float keeps seven digits, the northing of a map has nine.
+TEST(ReadMesh, CoordinatesOfAMapKeepTheirDigitsByAnOrigin) {
+  const TempDir dir;
+  const auto ply = [&](const std::string& type) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty " + type + " x\nproperty " + type +
+           " y\nproperty " + type +
+           " z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+           "450000.125 5400000.0625 12\n450000.25 5400000.125 12\n450001 5400001.5 13\n3 0 1 2\n";
+  };
+  writeText(dir / "a.ply", ply("double"));
+  writeText(dir / "a.obj",
+            "v 450000.125 5400000.0625 12\nv 450000.25 5400000.125 12\nv 450001 5400001.5 13\n"
+            "f 1 2 3\n");
+  for (const char* name : {"a.ply", "a.obj"}) {
+    const auto loaded = mesh::readMesh(dir / name);
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    EXPECT_EQ(loaded->origin, (mesh::Origin{450'000, 5'400'000, 0})) << name;
+    EXPECT_EQ(loaded->mesh.positions, (Floats{0.125F, 0.0625F, 12, 0.25F, 0.125F, 12, 1, 1.5F, 13}))
+        << name;
+    ASSERT_EQ(loaded->notes.size(), 1U);
+    EXPECT_NE(loaded->notes[0].find("relative to 450000, 5400000, 0"), std::string::npos)
+        << loaded->notes[0];
+  }
+  writeText(dir / "b.ply", ply("float"));
+  const auto floats = mesh::readMesh(dir / "b.ply");
+  EXPECT_EQ(floats->origin, mesh::Origin{}) << "the file has no more digits";
+  EXPECT_EQ(floats->mesh.positions[0], 450000.125F);
+}
+
+TEST(MeshFileSize, CountsPolygonsAsTheTrianglesThatTheyBecome) {
+  const TempDir dir;
+  const auto sizeOf = [&](const std::string& name, const std::string& text) {
+    writeText(dir / name, text);
+    const auto size = mesh::meshFileSize(dir / name);
+    EXPECT_TRUE(size) << name;
+    return size ? size->mesh : mesh::MeshSize{};
+  };
+  const auto ascii = sizeOf("a.ply", test::squareFile(test::Form::kAscii));
+  EXPECT_EQ(ascii.vertices, 4U);
+  EXPECT_GE(ascii.triangles, 2U) << "a square is one face, and two triangles";
+  const auto obj =
+      sizeOf("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n# f 1 2 3\nf 1 2 3 4\nf 1 2 3\n");
+  EXPECT_EQ(obj.vertices, 4U);
+  EXPECT_EQ(obj.triangles, 3U);
+  std::string fan =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list uchar uchar vertex_indices\nend_header\n" +
+      std::string(36, '\0') + "\xC8" + std::string(200, '\1');
+  EXPECT_EQ(sizeOf("b.ply", fan).triangles, 198U);
+}
+
 TEST(ReadMesh, SaysWhichFileIsBrokenAndHow) {
   const TempDir dir;
   const std::string file = test::squareFile(test::Form::kAscii);

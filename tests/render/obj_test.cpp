@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,43 @@ TEST_F(ObjFile, MayNameNormalsAndTextureAtEachCorner) {
 
 TEST_F(ObjFile, CountsNegativeIndicesFromTheVerticesSoFar) {
   EXPECT_EQ(trianglesOf("f -4 -3 -1\nv 5 5 5\nf -4 -5 -1\n"), (Indices{0, 1, 2, 1, 0, 3}));
+}
+
+// Two squares side by side, which share an edge, and one behind them that touches no other.
+TEST_F(ObjFile, ObjectsAndGroupsBecomeLabels) {
+  const std::string vertices =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 0 0 9\nv 1 0 9\nv 0 1 9\n";
+  const auto loaded =
+      read(vertices + "o unused\no a\nf 1 2 3\nf 1 3 4\no b\nf 2 5 6\nf 2 6 3\ng c\nf 7 8 9\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const mesh::Mesh& mesh = loaded->mesh;
+  EXPECT_EQ(mesh.vertexCount(), 9U) << "the two squares stay connected";
+  ASSERT_NE(mesh.find("label"), nullptr);
+  EXPECT_EQ(mesh.find("label")->values, (Floats{0, 0, 0, 0, 1, 1, 2, 2, 2}));
+  ASSERT_EQ(loaded->notes.size(), 1U);
+  EXPECT_NE(loaded->notes[0].find("its 3 objects and groups"), std::string::npos);
+  const auto one = read(vertices + "o a\ng x\nf 1 2 3\nf 1 3 4\n");
+  EXPECT_EQ(one->mesh.find("label"), nullptr) << "one needs no number";
+}
+
+// The middle triangle has no corner of its own: each belongs to a neighbour of a lower number.
+TEST_F(ObjFile, ATriangleOfEachPartKeepsACornerWithItsLabel) {
+  const auto loaded = read(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 -1 0\nv 1 1 0\nv -1 0 0\n"
+      "g a\nf 2 1 4\nf 3 2 5\nf 1 3 6\ng b\nf 1 2 3\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const mesh::Mesh& mesh = loaded->mesh;
+  const Floats& label = mesh.find("label")->values;
+  ASSERT_EQ(mesh.triangleCount(), 4U);
+  Floats parts;
+  for (std::size_t t = 0; t < 4; ++t) {
+    const std::uint32_t* c = &mesh.triangles[3 * t];
+    parts.push_back(std::max({label[c[0]], label[c[1]], label[c[2]]}));
+  }
+  EXPECT_EQ(parts, (Floats{0, 0, 0, 1}));
+  const std::uint32_t own = mesh.triangles[9];
+  EXPECT_EQ(label[own], 1);
+  EXPECT_EQ((Floats{&mesh.positions[3 * own], &mesh.positions[3 * own] + 3}), (Floats{0, 0, 0}));
 }
 
 TEST_F(ObjFile, MayHoldWhatMerlinHasNoUseFor) {

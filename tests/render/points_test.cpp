@@ -95,6 +95,76 @@ TEST(Las, WithheldPointsAndNoiseAreLeftOut) {
   EXPECT_EQ(cloudOf(bytes).size(), 2U);
 }
 
+// A LAS file with these variable length records of the user LASF_Projection between header and
+// points.
+std::string withRecords(std::string bytes,
+                        const std::vector<std::pair<int, std::string>>& records) {
+  std::string all;
+  for (const auto& [id, data] : records) {
+    std::string record(54, '\0');
+    record.replace(2, 15, "LASF_Projection");
+    set16(record, 18, static_cast<std::uint32_t>(id));
+    set16(record, 20, static_cast<std::uint32_t>(data.size()));
+    all += record + data;
+  }
+  const std::size_t header = bytes[25] == 2 ? 227 : 375;
+  set32(bytes, 96, static_cast<std::uint32_t>(header + all.size()));
+  set32(bytes, 100, static_cast<std::uint32_t>(records.size()));
+  return bytes.insert(header, all);
+}
+
+std::string shortsOf(const std::vector<std::uint32_t>& values) {
+  std::string bytes(2 * values.size(), '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) set16(bytes, 2 * i, values[i]);
+  return bytes;
+}
+
+TEST(Las, TheProjectionIsOfItsRecords) {
+  const auto projectionOf = [](const std::vector<std::pair<int, std::string>>& records) {
+    const auto cloud = cloudOf(withRecords(las(2, 0, 3), records));
+    EXPECT_EQ(cloud.size(), 3U);
+    EXPECT_TRUE(cloud.notes.empty());
+    return cloud.projection;
+  };
+  EXPECT_EQ(projectionOf({}), "");
+  EXPECT_EQ(projectionOf({{2112, std::string("PROJCS[\"a\",\n...]\0", 18)}}), "PROJCS[\"a\", ...]");
+  const std::string keys = shortsOf({1, 1, 0, 1, 3072, 0, 1, 32633});
+  EXPECT_EQ(projectionOf({{34735, keys}}), "EPSG:32633");
+  EXPECT_EQ(projectionOf({{34735, keys}, {2112, "WKT"}}), "WKT");
+  EXPECT_EQ(projectionOf({{34735, keys + shortsOf({4096, 0, 1, 5773})}}), "EPSG:32633+5773");
+  EXPECT_EQ(projectionOf({{34735, shortsOf({1, 1, 0, 1, 2048, 0, 1, 4326})}}), "EPSG:4326");
+  EXPECT_EQ(projectionOf(
+                {{34735, shortsOf({1, 1, 0, 1, 3073, 34737, 7, 5})}, {34737, "none|my map|more"}}),
+            "my map");
+  const auto unknown =
+      cloudOf(withRecords(las(4, 6, 3), {{34735, shortsOf({1, 1, 0, 1, 3072, 0, 1, 32767})}}));
+  EXPECT_EQ(unknown.projection, "");
+  ASSERT_EQ(unknown.notes.size(), 1U);
+  EXPECT_NE(unknown.notes[0].find("its projection is left out"), std::string::npos);
+}
+
+TEST(Las, ARecordOfTheProjectionThatIsCutIsNone) {
+  std::string bytes = withRecords(las(2, 0, 3), {{2112, "WKT"}});
+  set16(bytes, 227 + 20, 0xFFFF);
+  EXPECT_EQ(cloudOf(bytes).projection, "");
+  set32(bytes, 100, 0xFFFFFFFF);
+  EXPECT_EQ(cloudOf(bytes).size(), 3U);
+}
+
+TEST(Las, WhatBecomesNoFeatureIsNamed) {
+  std::string bytes = las(2, 1, 3);
+  EXPECT_TRUE(cloudOf(bytes).notes.empty()) << "the time is 0 everywhere: it was not recorded";
+  setDouble(bytes, 227 + 20, 1.5);
+  bytes[227 + 14] = 2 << 3;
+  bytes[227 + 16] = 5;
+  const auto cloud = cloudOf(bytes);
+  ASSERT_EQ(cloud.notes.size(), 1U);
+  EXPECT_EQ(cloud.notes[0],
+            "left out of each point, as no feature: GPS time, return numbers, scan angles");
+  EXPECT_EQ(cloudOf(las(4, 10, 3)).notes[0],
+            "left out of each point, as no feature: near infrared, waveforms");
+}
+
 TEST(Las, WhatIsWrongInAHeaderIsNamed) {
   const std::string good = las(4, 6, 3);
   const auto with = [&](std::size_t at, std::uint32_t v) {

@@ -202,6 +202,23 @@ TEST_F(RangeFile, RawTypesHaveTheirSignAndOrder) {
   EXPECT_EQ(first("f64le", std::string("\0\0\0\0\0\0\x04\x40", 8)), 2.5F);
 }
 
+TEST(PlaneFile, WholeNumbersWithinARangeStayWholeAndTheRangeStays) {
+  const TempDir dir;
+  RangeImage image;
+  image.width = 47;
+  image.height = 2;
+  image.range.assign(94, 1.0F);
+  Plane plane{"label", 1, {}, "class", 0, 46};
+  for (int p = 0; p < 94; ++p) plane.values.push_back(static_cast<float>(p % 47));
+  ASSERT_TRUE(writePlane(dir / "a.pgm", plane, image).ok());
+  const auto again = readPlane("label", dir / "a.pgm", image);
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->values, plane.values);
+  EXPECT_EQ(again->unit, "class");
+  EXPECT_EQ(again->low, 0);
+  EXPECT_EQ(again->high, 46);
+}
+
 TEST(RawLayout, FaultsNameWhatIsAllowed) {
   for (const char* text :
        {"", "3:range=u8", "2x2:", "2x2:depth=u8", "2x2:range=u9", "2x2:range=u8,range=u8",
@@ -221,6 +238,15 @@ TEST(AngleTable, RowsHaveAltitudeAndAzimuth) {
   EXPECT_NEAR(header.beams[0].azimuth_rad, 4.5 * std::numbers::pi / 180, 1e-12);
   EXPECT_EQ((*header.angles_deg)[0], 360);
   EXPECT_FALSE(header.columns);
+}
+
+TEST(AngleTable, WithoutATurnOfItsOwnTheImagesStays) {
+  ImageHeader header;
+  header.angles_deg = {90, 0};
+  ASSERT_TRUE(parseAngleTable("10\n-10\n", header).ok());
+  EXPECT_EQ((*header.angles_deg)[0], 90);
+  ASSERT_TRUE(parseAngleTable("# columns: 8 over 60 deg\n10\n-10\n", header).ok());
+  EXPECT_EQ((*header.angles_deg)[0], 60) << "the table's own goes first";
 }
 
 TEST(AngleTable, OfRowsThatWereShiftedByColumnsTheRestIsAdded) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "daemon/cli/foreign_import.h"
+#include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/print.h"
 
 namespace merlin::cli {
@@ -20,6 +21,7 @@ Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind
           : ForeignFile{
                 kind.kind, path, limits.output, {"--format", kind.ending}, limits.memory_bytes};
   auto report = importForeign(file, [&](const std::string& made) -> Result<Ok> {
+    if (const auto fits = roomToRead(made, path, limits.memory_bytes); !fits) return fits;
     auto loaded = render::mesh::readMesh(made);
     if (!loaded)
       return Error{loaded.error().code,
@@ -40,7 +42,8 @@ Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind
   return model;
 }
 
-Result<ImportedModel> loadOwn(const std::string& path) {
+Result<ImportedModel> loadOwn(const std::string& path, std::uint64_t memory_bytes) {
+  if (const auto fits = roomToRead(path, path, memory_bytes); !fits) return fits.error();
   auto loaded = render::mesh::readMeshByContent(path);
   if (!loaded) return loaded.error();
   ImportedModel model;
@@ -53,8 +56,8 @@ Result<ImportedModel> loadOwn(const std::string& path) {
 
 Result<ImportedModel> loadModel(const std::string& path, const InputKind& kind,
                                 const ModelLimits& limits) {
-  auto model =
-      kind.reader == InputReader::kForeign ? loadForeign(path, kind, limits) : loadOwn(path);
+  auto model = kind.reader == InputReader::kForeign ? loadForeign(path, kind, limits)
+                                                    : loadOwn(path, limits.memory_bytes);
   if (!model) return model;
   for (const std::string& note : model->notes) printNote(fmt::format("{}: {}", path, note));
   render::mesh::ensureNormals(model->loaded.mesh);

@@ -25,7 +25,8 @@ struct ImportedModel {
   std::vector<std::string> notes{};  // already printed
 };
 
-// Where a foreign format is read meanwhile, and the memory that the reading program may take.
+// Where a foreign format is read meanwhile, and the memory that reading may take, in the program
+// that reads a foreign format as in this one.
 struct ModelLimits {
   std::string output;
   std::uint64_t memory_bytes = 0;
@@ -33,7 +34,8 @@ struct ModelLimits {
 };
 
 // Reads by our own readers, or by merlin-import, whose result is then read as any mesh. Adds
-// normals; prints the notes. Errors: those of the readers, with the file's name.
+// normals; prints the notes. Errors: those of the readers, with the file's name; kInvalidArgument
+// (the memory does not suffice).
 Result<ImportedModel> loadModel(const std::string& path, const InputKind& kind,
                                 const ModelLimits& limits);
 

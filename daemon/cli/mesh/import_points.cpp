@@ -59,13 +59,17 @@ PointFacts pointFactsOf(const ForeignReport& report) {
   cloud.normals = report.text("normals");
   const char* axes[] = {"origin_x", "origin_y", "origin_z"};
   for (std::size_t k = 0; k < 3; ++k) cloud.origin[k] = report.number(axes[k]);
+  cloud.projection = report.text("projection");
   return cloud;
 }
 
 std::string aboutPoints(const PointFacts& cloud) {
+  std::string text;
   const auto& origin = cloud.origin;
-  if (origin == std::array<double, 3>{}) return {};
-  return fmt::format("points.origin={} {} {}\n", origin[0], origin[1], origin[2]);
+  if (!cloud.projection.empty()) text += fmt::format("map.projection={}\n", cloud.projection);
+  if (origin != render::mesh::Origin{})
+    text += fmt::format("points.origin={} {} {}\n", origin[0], origin[1], origin[2]);
+  return text;
 }
 
 }  // namespace merlin::cli

@@ -2,13 +2,13 @@
 // made.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "daemon/cli/arguments.h"
 #include "daemon/cli/foreign_import.h"
+#include "render/mesh/origin.h"
 #include "render/points/surface_guess.h"
 
 namespace merlin::cli {
@@ -29,9 +29,11 @@ class PointImport {
 struct PointFacts {
   std::size_t points = 0, trimmed = 0;  // triangles that were too far from all points
   render::points::SurfaceSettings used;
-  double spacing = 0;              // median distance to the fourth neighbour [the file's unit]
-  std::string normals;             // where they come from, for a person
-  std::array<double, 3> origin{};  // of the file's coordinates; the mesh is relative to it
+  double spacing = 0;   // median distance to the fourth neighbour [the file's unit]
+  std::string normals;  // where they come from, for a person
+  // Of the coordinates, in the mesh's unit: after --scale. The mesh is relative to it.
+  render::mesh::Origin origin{};
+  std::string projection;  // of the coordinates, as text; empty: unknown
 };
 
 // The file for importForeign(), with the surface's settings and the time that a surface takes.
@@ -41,8 +43,8 @@ ForeignFile pointFile(const std::string& input, const std::string& output,
 // What merlin-import said of a point cloud; what it did not say is 0 or empty.
 PointFacts pointFactsOf(const ForeignReport& report);
 
-// The mesh's (0, 0, 0) in the file's coordinates, for the model's text "about"; empty where it is
-// the same.
+// For the model's text "about": the mesh's (0, 0, 0) in the coordinates, in the mesh's unit, unless
+// it is the same; and the projection, if it is known.
 std::string aboutPoints(const PointFacts& cloud);
 
 }  // namespace merlin::cli

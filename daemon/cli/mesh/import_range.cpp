@@ -138,15 +138,7 @@ Result<Ok> addColours(const std::string& wanted, bool texture, range::RangeImage
 
 std::vector<FeatureFacts> factsOf(const range::RangeImage& image) {
   std::vector<FeatureFacts> facts;
-  for (const range::Plane& plane : image.planes) {
-    FeatureFacts f{plane.name, plane.unit, plane.dimension, plane.low, plane.high};
-    if (f.low == f.high && f.dimension == 1) {
-      const range::Ends ends = range::endsOf(valuesAtReturns(image, plane.values));
-      f.low = ends.low;
-      f.high = ends.high;
-    }
-    facts.push_back(std::move(f));
-  }
+  for (const range::Plane& plane : image.planes) facts.push_back(cli::factsOf(plane, image));
   return facts;
 }
 
@@ -238,6 +230,11 @@ void RangeImport::addRaw(Command command) {
                                "FITS file: the image to read, by its number (0 is the primary "
                                "one) or its EXTNAME; by default the first of two axes"))
       .typeName("N|NAME");
+  keep("--variable",
+       command.option("--variable", variable,
+                      "File of several maps (netCDF, HDF5, a TIFF file of several images): the one "
+                      "to read, by the name of its variable or by its number from 1"))
+      .typeName("NAME|N");
   keep("--raw", command.option("--raw", raw_,
                                "The input is raw binary: its size, its planes in their order and "
                                "their types (" +
@@ -304,6 +301,16 @@ std::string RangeImport::anyGiven() const {
   return {};
 }
 
+std::string RangeImport::givenForMesh() const {
+  constexpr std::string_view kForMesh[] = {"--max-edge", "--exaggerate", "--feature", "--colour-by",
+                                           "--border"};
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (arguments_[i].isGiven() && std::ranges::find(kForMesh, names_[i]) != std::end(kForMesh))
+      return names_[i];
+  }
+  return {};
+}
+
 std::string RangeImport::otherFileFor(const std::string& feature) const {
   return takes_features_ ? fmt::format("--feature {}=FILE", feature)
                          : "put it where the image names it";
@@ -337,6 +344,9 @@ Result<render::range::RangeOptions> RangeImport::fileOptions() const {
   options.scale = scale;
   if (!raw_.empty() && !hdu.empty())
     return Error{Errc::kInvalidArgument, "--hdu is for FITS files, --raw for others"};
+  if (!raw_.empty() && !variable.empty())
+    return Error{Errc::kInvalidArgument,
+                 "--variable is for netCDF and other files of maps, --raw for others"};
   if (raw_.empty() && (raw_header_ > 0 || raw_interleaved_))
     return Error{Errc::kInvalidArgument, "--raw-header and --raw-interleaved need --raw"};
   if (raw_.empty()) return options;
@@ -398,6 +408,17 @@ Result<Ok> filterRange(const std::string& path, const RangeImport& options, std:
   return Ok{};
 }
 
+void subtract(const render::mesh::Origin& origin, range::Geometry& geometry) {
+  for (std::size_t k = 0; k < 3; ++k) geometry.T_world_scanner[4 * k + 3] -= origin[k];
+}
+
+render::mesh::Origin takeOrigin(range::Geometry& geometry) {
+  const range::Pose& pose = geometry.T_world_scanner;
+  const render::mesh::Origin origin = render::mesh::originNear({pose[3], pose[7], pose[11]});
+  subtract(origin, geometry);
+  return origin;
+}
+
 Result<Ok> meshRange(const std::string& path, const RangeImport& options, const range::Work& work,
                      ImportedRange& imported) {
   range::RangeImage& image = imported.image;
@@ -405,6 +426,7 @@ Result<Ok> meshRange(const std::string& path, const RangeImport& options, const 
   if (const auto added = addColours(options.colour_by, !image.join_ends, image); !added)
     return added;
   imported.features = factsOf(image);
+  imported.origin = takeOrigin(image.geometry);
   const std::vector<float> points = range::pointsOf(image, range::partOf(work, 0, 0.2));
   imported.mesh = range::triangulate(image, points, imported.max_edge, range::partOf(work, 0.2, 1));
   range::RangeMesh& mesh = imported.mesh;

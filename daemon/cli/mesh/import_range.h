@@ -9,6 +9,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/cli/arguments.h"
+#include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/progress.h"
 #include "render/range/io/range_file.h"
 #include "render/range/triangulate.h"
@@ -24,6 +25,9 @@ class RangeImport {
   void addReadingTo(Command command);
   // The name of an option that was given, for a message that it does not fit; empty if none was.
   std::string anyGiven() const;
+  // The name of an option that was given and changes a mesh alone, so that it would do nothing to a
+  // range image that is written as one; empty if none was.
+  std::string givenForMesh() const;
   // A file name that the greedy --angles took, because it stood before the input.
   std::optional<std::string> takeInput();
 
@@ -37,6 +41,7 @@ class RangeImport {
 
   std::optional<double> scale;  // of any input
   std::string hdu;              // of a FITS file
+  std::string variable;         // of a file of several maps
   std::string colour_by, max_edge, spikes;
   std::vector<std::string> features;
   std::vector<double> between;
@@ -62,13 +67,6 @@ class RangeImport {
   std::vector<std::string> names_;
 };
 
-// What a feature of the mesh means, as far as it is known.
-struct FeatureFacts {
-  std::string name, unit;
-  std::size_t dimension = 1;
-  float low = 0, high = 0;  // as the file says, else of the values
-};
-
 // A range image and what was done to it.
 struct ImportedRange {
   render::range::RangeImage image;
@@ -80,6 +78,8 @@ struct ImportedRange {
   render::range::Threshold max_edge;
   std::string max_edge_text;  // for a person
   render::range::RangeMesh mesh;
+  // Of the camera transform's coordinates; the mesh is relative to it.
+  render::mesh::Origin origin{};
 };
 
 // Reads the file by the options; render::range::readRange() is one.
@@ -96,7 +96,14 @@ Result<ImportedRange> loadRange(const std::string& path, const RangeImport& opti
 Result<Ok> filterRange(const std::string& path, const RangeImport& options, std::size_t limit,
                        const render::range::Work& work, ImportedRange& range);
 
-// Makes the mesh. Errors: kMalformed if no triangle is within --max-edge.
+// Takes an origin near the scanner's place, which may be the coordinates of a map, from the camera
+// transform, and returns it.
+render::mesh::Origin takeOrigin(render::range::Geometry& geometry);
+// Takes this origin from the camera transform.
+void subtract(const render::mesh::Origin& origin, render::range::Geometry& geometry);
+
+// Makes the mesh, relative to range.origin, which takeOrigin() gives. Errors: kMalformed if no
+// triangle is within --max-edge.
 Result<Ok> meshRange(const std::string& path, const RangeImport& options,
                      const render::range::Work& work, ImportedRange& range);
 

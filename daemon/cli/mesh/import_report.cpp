@@ -38,6 +38,16 @@ nlohmann::ordered_json finiteOrNull(float value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
+void addOrigin(const render::mesh::Origin& origin, nlohmann::ordered_json& json) {
+  if (origin != render::mesh::Origin{}) json["origin"] = origin;
+}
+
+void printOrigin(const render::mesh::Origin& origin) {
+  if (origin != render::mesh::Origin{})
+    printOut("  origin    the mesh's (0, 0, 0) is at {}, {}, {}\n", origin[0], origin[1],
+             origin[2]);
+}
+
 void addRange(const ImportedRange& range, nlohmann::ordered_json& json) {
   using Json = nlohmann::ordered_json;
   Json features = Json::array();
@@ -63,6 +73,7 @@ void addRange(const ImportedRange& range, nlohmann::ordered_json& json) {
   const auto& geometry = range.image.geometry;
   if (!geometry.projection.empty()) json["projection"] = geometry.projection;
   if (geometry.origin) json["origin"] = *geometry.origin;
+  addOrigin(range.origin, json);
   json["notes"] = range.notes;
 }
 
@@ -104,18 +115,18 @@ void printTimes(const ImportedFile& written, const ImportTimes& times) {
 }
 
 nlohmann::ordered_json jsonOf(const PointFacts& cloud) {
-  return {{"points", cloud.points},    {"spacing", cloud.spacing},
-          {"depth", cloud.used.depth}, {"neighbours", cloud.used.neighbours},
-          {"trim", cloud.used.trim},   {"trimmed_triangles", cloud.trimmed},
-          {"normals", cloud.normals},  {"origin", cloud.origin}};
+  return {{"points", cloud.points},        {"spacing", cloud.spacing},
+          {"depth", cloud.used.depth},     {"neighbours", cloud.used.neighbours},
+          {"trim", cloud.used.trim},       {"trimmed_triangles", cloud.trimmed},
+          {"normals", cloud.normals},      {"origin", cloud.origin},
+          {"projection", cloud.projection}};
 }
 
 void printCloud(const std::string& format, const PointFacts& cloud) {
-  const auto& origin = cloud.origin;
   printOut("  read      {}, {} points, {:.6g} apart\n", format, cloud.points, cloud.spacing);
-  if (origin != std::array<double, 3>{})
-    printOut("  origin    the mesh's (0, 0, 0) is at {}, {}, {}\n", origin[0], origin[1],
-             origin[2]);
+  if (!cloud.projection.empty())
+    printOut("  map       projection {}\n", nameOfProjection(cloud.projection));
+  printOrigin(cloud.origin);
   printOut("  normals   {}\n", cloud.normals);
   if (cloud.used.trim > 0)
     printOut(
@@ -143,6 +154,7 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
   if (range.outside + range.spikes > 0)
     printOut("  removed   {} returns outside --between, {} spikes\n", range.outside, range.spikes);
   printMap(image.geometry);
+  printOrigin(range.origin);
   printFeatures(range);
   if (written.triangles > 0)
     printOut(
@@ -163,6 +175,7 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
       json["welded_edges"] = model.welded_edges;
       json["welded_vertices"] = model.welded_vertices;
     }
+    addOrigin(model.loaded.origin, json);
     if (model.cloud) json["cloud"] = jsonOf(*model.cloud);
     json["features"] = nlohmann::ordered_json::array();
     for (const auto& f : mesh.features)
@@ -175,6 +188,7 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
   }
   printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
   if (model.cloud) printCloud(model.format, *model.cloud);
+  printOrigin(model.loaded.origin);
   if (model.parts) printOut("  read      {}, {} parts\n", model.format, *model.parts);
   if (model.welded_vertices > 0)
     printOut("  welded    {} vertices of different parts, along {} common edges\n",

@@ -68,17 +68,22 @@ std::vector<Repair> oddities(const CloudInfo& cloud, const Inspection& is) {
           {"normals_not_unit", "normals that are not of length one", is.not_unit}};
 }
 
-nlohmann::ordered_json jsonOf(const CloudInfo& cloud, const Inspection& is) {
-  nlohmann::ordered_json json = {{"points", cloud.points}, {"origin", cloud.origin}};
+nlohmann::ordered_json jsonOf(const CloudInfo& cloud, const render::mesh::Origin& origin,
+                              const Inspection& is) {
+  nlohmann::ordered_json json = {{"points", cloud.points}, {"origin", origin}};
   for (const Repair& odd : oddities(cloud, is)) json[odd.key] = odd.count;
   return json;
 }
 
-void printCloud(const CloudInfo& cloud, const Inspection& is) {
-  const auto& origin = cloud.origin;
-  if (origin != std::array<double, 3>{})
+void printPlace(const FileInfo& info) {
+  const auto& origin = info.origin;
+  if (origin != render::mesh::Origin{})
     printOut("  origin    {}, {}, {}: the box is relative to it\n", origin[0], origin[1],
              origin[2]);
+  if (!info.projection.empty()) printOut("  map       projection {}\n", info.projection);
+}
+
+void printCloud(const CloudInfo& cloud, const Inspection& is) {
   for (const Repair& odd : oddities(cloud, is)) {
     if (odd.count > 0) printOut("  odd       {} {}\n", odd.count, odd.name);
   }
@@ -116,6 +121,7 @@ void printInfoJson(const FileInfo& info) {
                                  {"box", {{"low", is.box.low}, {"high", is.box.high}}},
                                  {"diagonal", is.box.diagonal()},
                                  {"unit", info.unit},
+                                 {"origin", info.origin},
                                  {"components", is.components},
                                  {"closed_components", is.closed},
                                  {"volume", is.volume},
@@ -127,7 +133,8 @@ void printInfoJson(const FileInfo& info) {
   if (!info.cloud)
     for (const Repair& odd : oddities(is)) json["odd"][odd.key] = odd.count;
   if (info.parts) json["parts"] = *info.parts;
-  if (info.cloud) json["cloud"] = jsonOf(*info.cloud, is);
+  if (info.cloud) json["cloud"] = jsonOf(*info.cloud, info.origin, is);
+  if (!info.projection.empty()) json["projection"] = info.projection;
   if (info.image) {
     json["image"] = {{"columns", info.image->width},
                      {"rows", info.image->height},
@@ -161,6 +168,7 @@ void printInfoText(const FileInfo& info) {
            box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
            box.diagonal());
   printOut("  unit      {}\n", info.unit.empty() ? "not known" : info.unit);
+  printPlace(info);
   if (info.cloud) printCloud(*info.cloud, info.is);
   if (info.triangles > 0) printSurface(info.is);
   if (!info.mended.empty()) printOut("  {}\n", info.mended);

@@ -1,7 +1,6 @@
 // The facts that `merlin mesh info` prints, and how.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "daemon/cli/mesh/mesh.h"
 #include "render/mesh/inspect.h"
+#include "render/mesh/origin.h"
 
 namespace merlin::cli {
 
@@ -25,7 +25,6 @@ struct ImageInfo {
 
 struct CloudInfo {
   std::size_t points = 0, coincident = 0;  // coincident: at the place of an earlier one
-  std::array<double, 3> origin{};          // of the file's coordinates; the box is relative to it
 };
 
 struct LevelInfo {
@@ -43,7 +42,9 @@ struct FileInfo {
   std::optional<std::size_t> parts{};  // of a foreign format
   std::vector<FeatureInfo> features{};
   std::size_t texture_bytes = 0;
-  std::string unit{};  // of the coordinates; empty if it is not known
+  std::string unit{};             // of the coordinates; empty if it is not known
+  render::mesh::Origin origin{};  // of the coordinates; the box is relative to it
+  std::string projection{};       // of the coordinates; empty if it is not known
   render::mesh::Inspection is{};
   std::vector<Repair> repairs{};  // that reading needed
   std::string mended{}, about{};

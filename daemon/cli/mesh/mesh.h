@@ -26,8 +26,9 @@ void addMeshScan(Command mesh, Run& run);
 void addMeshSegment(Command mesh, Run& run);
 
 // Opens a multiresolution model (.mrm), or reads a mesh and makes a dendrogram of one level from
-// it. Errors: those of the readers.
-Result<render::lod::Dendrogram> openModel(const std::string& path);
+// it. `origin`, if not null, receives that of its coordinates. Errors: those of the readers.
+Result<render::lod::Dendrogram> openModel(const std::string& path,
+                                          render::mesh::Origin* origin = nullptr);
 
 // Reads a mesh and adds normals if it has none; prints the reader's notes to stderr. Errors: those
 // of readMesh().

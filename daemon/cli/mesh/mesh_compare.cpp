@@ -115,12 +115,37 @@ void printTable(const CompareOptions& options, const Answer& answer) {
   }
 }
 
-Result<render::mesh::Mesh> openMesh(const std::string& path, const LevelChoice& choice) {
-  const auto model = openModel(path);
+struct PlacedMesh {
+  render::mesh::Mesh mesh;
+  render::mesh::Origin origin{};
+};
+
+Result<PlacedMesh> openMesh(const std::string& path, const LevelChoice& choice) {
+  PlacedMesh placed;
+  const auto model = openModel(path, &placed.origin);
   if (!model) return model.error();
   const auto level = choice.levelOf(*model, path);
   if (!level) return level.error();
-  return render::lod::extract(*model, *level);
+  placed.mesh = render::lod::extract(*model, *level);
+  return placed;
+}
+
+// Where only one of two has an origin: the other one is relative to the same if it lies near 0, as
+// after an export; else its coordinates are those of its file.
+render::mesh::Origin originOf(const PlacedMesh& placed, const render::mesh::Origin& others) {
+  const render::mesh::Origin none{};
+  const std::vector<float>& p = placed.mesh.positions;
+  if (placed.origin != none || p.empty()) return placed.origin;
+  return render::mesh::originNear({p[0], p[1], p[2]}) == none ? others : none;
+}
+
+// Moves the other mesh to the origin of the original.
+void moveTo(const PlacedMesh& original, PlacedMesh& other) {
+  const auto from = originOf(other, original.origin), to = originOf(original, other.origin);
+  if (from == to) return;
+  std::vector<float>& positions = other.mesh.positions;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    positions[i] = static_cast<float>(positions[i] + (from[i % 3] - to[i % 3]));
 }
 
 Result<render::compare::Comparison> compared(const CompareOptions& options,
@@ -145,18 +170,19 @@ Result<render::compare::Comparison> compared(const CompareOptions& options,
 int compareMeshes(const CompareOptions& options) {
   const auto original = openMesh(options.original, {});
   if (!original) return fail(original.error());
-  const auto other = openMesh(options.other, options.choice);
+  auto other = openMesh(options.other, options.choice);
   if (!other) return fail(other.error());
+  moveTo(*original, *other);
   Answer answer;
   if (!options.pictures.empty()) {  // before the comparison, because a failure shows sooner
     render::gl::prepareSoftwareGl(0);
-    const auto changed = writePictures(options.pictures, *original, *other, options.view);
+    const auto changed = writePictures(options.pictures, original->mesh, other->mesh, options.view);
     if (!changed) return fail(changed.error());
     answer.changed_percent = *changed;
   }
   const SystemClock clock;
   const Timestamp began = clock.now();
-  const auto comparison = compared(options, *original, *other, clock);
+  const auto comparison = compared(options, original->mesh, other->mesh, clock);
   if (!comparison) return fail(comparison.error());
   answer.comparison = *comparison;
   answer.seconds = toSeconds(clock.now() - began);

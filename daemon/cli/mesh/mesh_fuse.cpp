@@ -1,5 +1,6 @@
 // merlin mesh fuse: one surface of several range images with known poses.
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -35,6 +36,14 @@ struct MeshFuse {
   bool makesModel() const { return output.ends_with(".mrm"); }
 };
 
+// The scans, relative to a common origin, and what they say of the result.
+struct Scans {
+  std::vector<render::range::RangeImage> images;
+  render::mesh::Origin origin{};
+  std::vector<FeatureFacts> features;  // of one value, each once
+  bool in_metres = true;               // all of them
+};
+
 // What was written, and what it took.
 struct FusedFile {
   render::mesh::WrittenMesh mesh{};
@@ -42,11 +51,13 @@ struct FusedFile {
   double reading = 0, fusing = 0, writing = 0;
 };
 
-Result<render::range::RangeImage> readScan(const MeshFuse& options, std::size_t number) {
+Result<ImportedRange> readScan(const MeshFuse& options, std::size_t number) {
   const std::string& path = options.scans[number];
   const auto kind = options.range.isRaw() ? std::nullopt : inputKindOf(path);
-  auto loaded = loadRange(path, options.range, false,
-                          readerOf(kind, {{}, options.output, options.limit(), options.range.hdu}));
+  auto loaded = loadRange(
+      path, options.range, false,
+      readerOf(kind,
+               {{}, options.output, options.limit(), options.range.hdu, options.range.variable}));
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(fmt::format("{}: {}", path, note));
   if (options.range.filters()) {  // which check the memory of a mesh, and none is made here
@@ -61,20 +72,51 @@ Result<render::range::RangeImage> readScan(const MeshFuse& options, std::size_t 
   }
   if (const std::string fault = fuse::faultOf(loaded->image); !fault.empty())
     return Error{Errc::kInvalidArgument, path + ": " + fault};
-  return std::move(loaded->image);
+  return loaded;
 }
 
-Result<std::vector<render::range::RangeImage>> readScans(const MeshFuse& options) {
-  std::vector<render::range::RangeImage> scans;
+// Joins what the scans say of each feature; features without a value of their own have no range.
+void joinFacts(const MeshFuse& options, const std::vector<FeatureFacts>& all, Scans& scans) {
+  for (const FeatureFacts& one : all) {
+    if (std::ranges::find(scans.features, one.name, &FeatureFacts::name) != scans.features.end())
+      continue;
+    std::vector<FeatureFacts> same;
+    std::ranges::copy_if(all, std::back_inserter(same),
+                         [&](const FeatureFacts& f) { return f.name == one.name; });
+    bool differ = false;
+    scans.features.push_back(joined(same, differ));
+    if (differ)
+      printNote(
+          fmt::format("{}: the scans give the feature {} in different units; its unit is "
+                      "left out, its values are mixed as they stand",
+                      options.output, one.name));
+  }
+}
+
+// The first scan's place decides the origin of all: its coordinates may be those of a map.
+void placeScans(Scans& scans) {
+  scans.origin = takeOrigin(scans.images.front().geometry);
+  for (std::size_t i = 1; i < scans.images.size(); ++i)
+    subtract(scans.origin, scans.images[i].geometry);
+}
+
+Result<Scans> readScans(const MeshFuse& options) {
+  Scans scans;
+  std::vector<FeatureFacts> facts;
   for (std::size_t i = 0; i < options.scans.size(); ++i) {
     auto scan = readScan(options, i);
     if (!scan) return scan.error();
-    scans.push_back(*std::move(scan));
+    for (const render::range::Plane& plane : scan->image.planes)
+      if (plane.dimension == 1) facts.push_back(factsOf(plane, scan->image));
+    scans.in_metres = scans.in_metres && scan->in_metres;
+    scans.images.push_back(std::move(scan->image));
   }
-  const bool placed = std::any_of(scans.begin(), scans.end(), [](const auto& scan) {
+  joinFacts(options, facts, scans);
+  const bool placed = std::ranges::any_of(scans.images, [](const auto& scan) {
     return scan.geometry.T_world_scanner != render::range::kIdentity;
   });
-  if (!placed && scans.size() > 1)
+  placeScans(scans);
+  if (!placed && scans.images.size() > 1)
     return Error{Errc::kInvalidArgument,
                  options.scans.front() +
                      ": neither this scan nor the others have a camera transform; fusion needs to "
@@ -100,7 +142,8 @@ Result<fuse::Fused> fuseScans(MeshFuse& options,
   return fused;
 }
 
-Result<Ok> writeFused(const MeshFuse& options, const render::mesh::Mesh& mesh, FusedFile& file) {
+Result<Ok> writeFused(const MeshFuse& options, const Scans& scans, const render::mesh::Mesh& mesh,
+                      FusedFile& file) {
   if (!options.makesModel()) {
     auto written = render::mesh::writeMesh(options.output, mesh);
     if (!written) return written.error();
@@ -108,17 +151,45 @@ Result<Ok> writeFused(const MeshFuse& options, const render::mesh::Mesh& mesh, F
     return Ok{};
   }
   double reducing = 0;  // a part of writing
+  const std::string about = (scans.in_metres ? "unit=m\n" : "") + aboutOrigin(scans.origin) +
+                            aboutFeatures(scans.features);
   const auto coarsest = writeReduced(
-      {options.output, options.output, {}, options.limit(), options.threads}, mesh, reducing);
+      {options.output, options.output, about, options.limit(), options.threads}, mesh, reducing);
   if (!coarsest) return coarsest.error();
   file.coarsest = *coarsest;
   return Ok{};
 }
 
-void reportJson(const MeshFuse& options, const fuse::Fused& fused, const FusedFile& file) {
+const FeatureFacts* factsFor(const Scans& scans, const std::string& name) {
+  const auto found = std::ranges::find(scans.features, name, &FeatureFacts::name);
+  return found == scans.features.end() ? nullptr : &*found;
+}
+
+nlohmann::ordered_json featuresOf(const Scans& scans, const render::mesh::Mesh& mesh) {
   nlohmann::ordered_json features = nlohmann::ordered_json::array();
-  for (const auto& f : fused.mesh.features)
-    features.push_back({{"name", f.name}, {"dimension", f.dimension}});
+  for (const auto& f : mesh.features) {
+    nlohmann::ordered_json feature = {{"name", f.name}, {"dimension", f.dimension}};
+    if (const FeatureFacts* facts = factsFor(scans, f.name)) {
+      if (!facts->unit.empty()) feature["unit"] = facts->unit;
+      feature["range"] = {facts->low, facts->high};
+    }
+    features.push_back(std::move(feature));
+  }
+  return features;
+}
+
+void printFeatures(const Scans& scans, const render::mesh::Mesh& mesh) {
+  for (const auto& f : mesh.features) {
+    if (const FeatureFacts* facts = factsFor(scans, f.name))
+      printOut("  feature   {}, {:.6g} to {:.6g}{}{}\n", f.name, facts->low, facts->high,
+               facts->unit.empty() ? "" : " ", facts->unit);
+    else
+      printOut("  feature   {} x {}\n", f.name, f.dimension);
+  }
+}
+
+void reportJson(const MeshFuse& options, const Scans& scans, const fuse::Fused& fused,
+                const FusedFile& file) {
   nlohmann::ordered_json json = {
       {"scans", options.scans},
       {"output", options.output},
@@ -131,17 +202,19 @@ void reportJson(const MeshFuse& options, const fuse::Fused& fused, const FusedFi
       {"vertices_added", fused.split},
       {"blocks", fused.blocks},
       {"blocks_looked_at", fused.looked_at},
-      {"features", features},
+      {"features", featuresOf(scans, fused.mesh)},
       {"companion_files", file.mesh.companions},
       {"left_out", file.mesh.left_out},
       {"seconds", {{"reading", file.reading}, {"fusing", file.fusing}, {"writing", file.writing}}},
       {"peak_memory_mb", peakMemory() >> 20}};
   if (file.coarsest) json["triangles_coarsest"] = *file.coarsest;
+  if (scans.origin != render::mesh::Origin{}) json["origin"] = scans.origin;
   printJsonLine(json);
 }
 
-void report(const MeshFuse& options, const fuse::Fused& fused, const FusedFile& file) {
-  if (options.json) return reportJson(options, fused, file);
+void report(const MeshFuse& options, const Scans& scans, const fuse::Fused& fused,
+            const FusedFile& file) {
+  if (options.json) return reportJson(options, scans, fused, file);
   printOut("{}: {} triangles, {} vertices\n", options.output, fused.mesh.triangleCount(),
            fused.mesh.vertexCount());
   printOut("  read      {} scans\n", options.scans.size());
@@ -150,7 +223,10 @@ void report(const MeshFuse& options, const fuse::Fused& fused, const FusedFile& 
   const std::size_t inferred = fused.mesh.vertexCount() - fused.measured;
   if (options.settings.close)
     printOut("  closed    {} vertices that no scan saw (feature measured is 0)\n", inferred);
-  for (const auto& f : fused.mesh.features) printOut("  feature   {} x {}\n", f.name, f.dimension);
+  if (scans.origin != render::mesh::Origin{})
+    printOut("  origin    the mesh's (0, 0, 0) is at {}, {}, {}\n", scans.origin[0],
+             scans.origin[1], scans.origin[2]);
+  printFeatures(scans, fused.mesh);
   printWritten(file.mesh);
   if (file.coarsest) printOut("  levels    down to {} triangles\n", *file.coarsest);
   printOut("  {:.2f} s: reading {:.2f}, fusing {:.2f}, writing {:.2f}; peak memory {} MB\n",
@@ -191,18 +267,18 @@ int fuseFiles(MeshFuse& options) {
   const auto scans = readScans(options);
   if (!scans) return fail(scans.error());
   const Timestamp read = clock.now();
-  const auto fused = fuseScans(options, *scans);
+  const auto fused = fuseScans(options, scans->images);
   if (!fused) return fail(fused.error());
   if (fused->not_numbers > 0)
     printNote(fmt::format("{}: {} vertices have 0 in a feature that no scan has there",
                           options.output, fused->not_numbers));
   const Timestamp done = clock.now();
-  if (const auto written = writeFused(options, fused->mesh, file); !written)
+  if (const auto written = writeFused(options, *scans, fused->mesh, file); !written)
     return fail(written.error());
   file.reading = toSeconds(read - began);
   file.fusing = toSeconds(done - read);
   file.writing = toSeconds(clock.now() - done);
-  report(options, *fused, file);
+  report(options, *scans, *fused, file);
   return kExitDone;
 }
 

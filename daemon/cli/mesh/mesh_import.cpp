@@ -60,12 +60,7 @@ std::string aboutRange(const ImportedRange& range) {
   if (!geometry.projection.empty()) text += fmt::format("map.projection={}\n", geometry.projection);
   if (geometry.origin)
     text += fmt::format("map.origin={} {}\n", (*geometry.origin)[0], (*geometry.origin)[1]);
-  for (const FeatureFacts& f : range.features) {
-    if (f.dimension != 1) continue;
-    if (!f.unit.empty()) text += fmt::format("feature.{}.unit={}\n", f.name, f.unit);
-    text += fmt::format("feature.{}.range={} {}\n", f.name, f.low, f.high);
-  }
-  return text;
+  return text + aboutOrigin(range.origin) + aboutFeatures(range.features);
 }
 
 Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::Mesh& mesh,
@@ -113,12 +108,27 @@ Result<Ok> writeImage(const MeshImport& options, ImportedRange& range, ImportTim
   return Ok{};
 }
 
+// Errors: kInvalidArgument (an option that would do nothing to a range image that is written).
+Result<Ok> checkImageOptions(const MeshImport& options) {
+  if (!makesImage(options)) return Ok{};
+  const std::string option =
+      options.texture.empty() ? options.range.givenForMesh() : std::string("--texture");
+  if (option.empty()) return Ok{};
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: {} is for a mesh or a model; a range image (.pgm) has the ranges "
+                           "alone: leave the option out, or name another output, such as OUT.mrm",
+                           options.output, option)};
+}
+
 Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>& kind) {
+  if (const auto good = checkImageOptions(options); !good) return good;
   const SystemClock clock;
   Stopwatch watch(clock);
   ImportTimes times;
-  auto range = loadRange(options.input(), options.range, !options.texture.empty(),
-                         readerOf(kind, {{}, options.output, limitOf(options), options.range.hdu}));
+  auto range = loadRange(
+      options.input(), options.range, !options.texture.empty(),
+      readerOf(kind,
+               {{}, options.output, limitOf(options), options.range.hdu, options.range.variable}));
   if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
   times.reading = watch.lap();
@@ -169,6 +179,28 @@ Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKi
   return Ok{};
 }
 
+// Errors, with the file's name: kMalformed (coordinates beyond 10^18).
+Result<Ok> scale(const std::string& path, double factor, ImportedModel& model) {
+  const auto multiply = [factor](render::mesh::Origin& origin) {
+    for (double& x : origin) x *= factor;
+  };
+  render::mesh::Mesh& mesh = model.loaded.mesh;
+  for (float& x : mesh.positions) x = static_cast<float>(x * factor);
+  multiply(model.loaded.origin);
+  if (model.cloud) multiply(model.cloud->origin);
+  if (const auto valid = validate(mesh); !valid)
+    return Error{valid.error().code, path + ": scaled, " + valid.error().what};
+  return Ok{};
+}
+
+// The unit, and where the mesh lies, for the model's text "about".
+std::string aboutModel(const MeshImport& options, const InputKind& kind,
+                       const ImportedModel& model) {
+  const bool metres = options.range.scale || kind.unit() == "m";
+  return (metres ? "unit=m\n" : "") + aboutOrigin(model.loaded.origin) +
+         (model.cloud ? aboutPoints(*model.cloud) : std::string());
+}
+
 Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>& kind) {
   const SystemClock clock;
   Stopwatch watch(clock);
@@ -178,15 +210,11 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
       loadModel(options.input(), *kind, {options.output, limitOf(options), options.points.surface});
   if (!model) return model.error();
   render::mesh::Mesh& mesh = model->loaded.mesh;
-  for (float& x : mesh.positions) x = static_cast<float>(x * options.range.scale.value_or(1));
-  if (const auto valid = validate(mesh); !valid)
-    return Error{valid.error().code, options.input() + ": scaled, " + valid.error().what};
+  const auto scaled = scale(options.input(), options.range.scale.value_or(1), *model);
+  if (!scaled) return scaled.error();
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   times.reading = watch.lap();
-  const bool metres = options.range.scale || kind->unit() == "m";
-  const std::string about =
-      (metres ? "unit=m\n" : "") + (model->cloud ? aboutPoints(*model->cloud) : std::string());
-  const auto written = writeOutput(options, mesh, about, times);
+  const auto written = writeOutput(options, mesh, aboutModel(options, *kind, *model), times);
   if (!written) return written.error();
   times.writing = watch.lap() - times.reducing;
   if (!options.quiet) reportModel(namesOf(options), *model, *written, times);
@@ -267,7 +295,8 @@ void addMeshImport(Command mesh, Run& run) {
   command
       .option("-o", options->output,
               "The result: a model (.mrm), a mesh (.ply, .obj, .glb, .gltf, .stl, .iv), or the "
-              "filtered range image (.pgm)")
+              "filtered range image (.pgm: without features, and without the options that are for "
+              "meshes)")
       .required()
       .typeName("OUT");
   addImportOptions(command, *options);

@@ -10,6 +10,7 @@
 #include "daemon/base/printable_text.h"
 #include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/mesh/import_grid.h"
 #include "daemon/cli/mesh/import_model.h"
 #include "daemon/cli/mesh/import_range.h"
@@ -17,6 +18,7 @@
 #include "daemon/cli/mesh/input_kinds.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/print.h"
 #include "render/mesh/coincident.h"
 #include "render/points/io/cloud_file.h"
@@ -40,22 +42,6 @@ std::string meanwhile() {
   return ((error ? "/tmp" : folder) / "merlin-info").string();
 }
 
-// What a model's text "about" has behind `key` and "="; empty if it has no such line.
-std::string valueIn(std::string_view about, const std::string& key) {
-  for (std::size_t at = 0; at < about.size();) {
-    const std::size_t end = std::min(about.find('\n', at), about.size());
-    const std::string_view line = about.substr(at, end - at);
-    if (line.starts_with(key + "=")) return std::string(line.substr(key.size() + 1));
-    at = end + 1;
-  }
-  return {};
-}
-
-// The unit of a feature that a model's text "about" names.
-std::string unitIn(std::string_view about, const std::string& feature) {
-  return valueIn(about, fmt::format("feature.{}.unit", feature));
-}
-
 void addMesh(const render::mesh::Mesh& mesh, FileInfo& info) {
   info.triangles = mesh.triangleCount();
   info.vertices = mesh.vertexCount();
@@ -66,12 +52,13 @@ void addMesh(const render::mesh::Mesh& mesh, FileInfo& info) {
 
 void addFeatures(const render::mesh::Mesh& mesh, FileInfo& info) {
   for (const auto& f : mesh.features)
-    info.features.push_back({f.name, unitIn(info.about, f.name), f.dimension, rangeOf(f)});
+    info.features.push_back({f.name, featureIn(info.about, f.name).unit, f.dimension, rangeOf(f)});
 }
 
 void addLoaded(const render::mesh::LoadedMesh& loaded, FileInfo& info) {
   addMesh(loaded.mesh, info);
   addFeatures(loaded.mesh, info);
+  info.origin = loaded.origin;
   info.repairs = repairsOf(loaded);
   info.mended = mendedText(loaded);
 }
@@ -84,6 +71,7 @@ Result<FileInfo> infoOfModel(const std::string& path) {
   info.levels = {model->levels(), model->trianglesAt(last), model->errorAt(last)};
   info.about = model->arrays().about;
   info.unit = oneLine(valueIn(info.about, "unit"));
+  info.origin = originIn(info.about);
   const render::mesh::Mesh mesh = extract(*model, 0);
   addMesh(mesh, info);
   addFeatures(mesh, info);
@@ -92,7 +80,8 @@ Result<FileInfo> infoOfModel(const std::string& path) {
 }
 
 // As the file has it: no normals are added.
-Result<FileInfo> infoOfMesh(const std::string& path) {
+Result<FileInfo> infoOfMesh(const std::string& path, std::size_t limit) {
+  if (const auto fits = roomToRead(path, path, limit); !fits) return fits.error();
   const auto loaded = render::mesh::readMeshByContent(path);
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(note);
@@ -121,7 +110,9 @@ Result<FileInfo> infoOfPoints(const std::string& path) {
   std::size_t places = 0;  // the last point of a ring leads to its first
   for (std::uint32_t p = 0; p < next.size(); ++p) places += next[p] <= p;
   FileInfo info{path, cloud->format};
-  info.cloud = CloudInfo{cloud->size(), cloud->size() - places, cloud->origin};
+  info.cloud = CloudInfo{cloud->size(), cloud->size() - places};
+  info.origin = cloud->origin;
+  info.projection = cloud->projection;
   render::mesh::Mesh points;
   points.positions = std::move(cloud->positions);
   points.features = std::move(cloud->features);
@@ -142,8 +133,10 @@ void addPlanes(const ImportedRange& range, FileInfo& info) {
 }
 
 Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<InputKind>& kind) {
-  auto range = loadRange(options.file, options.range, false,
-                         readerOf(kind, {{}, meanwhile(), options.limit(), options.range.hdu}));
+  auto range = loadRange(
+      options.file, options.range, false,
+      readerOf(kind,
+               {{}, meanwhile(), options.limit(), options.range.hdu, options.range.variable}));
   if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.file + ": " + note);
   FileInfo info{options.file, range->format};
@@ -162,6 +155,7 @@ Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<Inp
   bar.finish();
   if (!meshed) printNote(meshed.error().what);
   if (meshed) addMesh(range->mesh.mesh, info);
+  info.origin = range->origin;
   return info;
 }
 
@@ -176,7 +170,7 @@ Result<FileInfo> infoOf(const InfoOptions& options) {
   if (kind && kind->isPoints()) return infoOfPoints(options.file);
   if (options.file.ends_with(".mrm")) return infoOfModel(options.file);
   return kind && kind->reader == InputReader::kForeign ? infoOfForeign(options, *kind)
-                                                       : infoOfMesh(options.file);
+                                                       : infoOfMesh(options.file, options.limit());
 }
 
 int info(const InfoOptions& options) {

@@ -1,5 +1,6 @@
 #include "daemon/cli/mesh/mesh_memory.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -42,18 +43,63 @@ Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSi
                   picture, sizeText(need), sizeText(limit))};
 }
 
+namespace {
+
+// Bytes of the decoded texture images; what cannot be decoded takes none.
+std::size_t bytesOf(const std::vector<std::string>& pictures) {
+  std::size_t sum = 0;
+  for (const std::string& path : pictures) {
+    const auto bytes = render::image::imageBytes(path);
+    sum += bytes ? *bytes : 0;
+  }
+  return sum;
+}
+
+std::size_t fileSize(const std::string& path) {
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  return unknown ? 0 : bytes;
+}
+
+// Peak memory of reading: the file with what is kept and what is there meanwhile, then the images,
+// of which several become one that is made beside them, then the repairs.
+std::size_t needToRead(const render::mesh::MeshFileSize& size, std::size_t file_bytes,
+                       std::size_t picture_bytes) {
+  const std::size_t kept = size.mesh.bytes();
+  const std::size_t images = size.pictures.size() > 1 ? 3 * picture_bytes : picture_bytes;
+  const std::size_t repairs = 36 * size.mesh.triangles + 5 * size.mesh.vertices;
+  return render::reduce::kProgramBytes + kept +
+         std::max(file_bytes + size.meanwhile + images, repairs);
+}
+
+}  // namespace
+
+Result<Ok> roomToRead(const std::string& path, const std::string& named, std::size_t limit) {
+  const auto found = render::mesh::meshFileSize(path);
+  if (!found) return Ok{};  // reading reports the fault
+  const std::size_t pictures = bytesOf(found->pictures);
+  const std::size_t need = needToRead(*found, fileSize(path), pictures);
+  if (need <= limit) return Ok{};
+  const std::string images =
+      pictures > 0 ? fmt::format(" and {} texture images", found->pictures.size()) : "";
+  return Error{Errc::kInvalidArgument,
+               fmt::format("{}: reading its {} vertices, {} triangles{} takes {}; the limit "
+                           "(--memory, by default the free memory) is {}: allow more, or divide "
+                           "the mesh",
+                           named, found->mesh.vertices, found->mesh.triangles, images,
+                           sizeText(need), sizeText(limit))};
+}
+
 Result<Ok> checkRoom(const std::string& path, const render::reduce::ReduceSettings& settings,
                      std::size_t limit) {
   auto found = render::mesh::meshFileSize(path);
   if (!found) return Ok{};  // loadMesh() reports the fault
   render::mesh::MeshSize& size = found->mesh;
   size.values += 3;  // loadMesh() adds normals
-  if (!found->picture.empty()) {
-    if (const auto fits = roomForPicture(found->picture, size, limit); !fits) return fits;
+  for (const std::string& picture : found->pictures) {
+    if (const auto fits = roomForPicture(picture, size, limit); !fits) return fits;
   }
-  std::error_code unknown;
-  const auto bytes = std::filesystem::file_size(path, unknown);
-  const auto room = roomForReduction(size, unknown ? 0 : bytes, settings, limit);
+  const auto room = roomForReduction(size, fileSize(path) + found->meanwhile, settings, limit);
   if (!room) return Error{room.error().code, path + ": " + room.error().what};
   return Ok{};
 }

@@ -1,4 +1,4 @@
-// Memory of `merlin mesh reduce`: checks that the command stays within a limit.
+// Memory of `merlin mesh import`, `info` and `reduce`: checks that a command stays within a limit.
 #pragma once
 
 #include <cstddef>
@@ -23,6 +23,12 @@ Result<std::size_t> roomForReduction(const render::mesh::MeshSize& mesh, std::si
 // reads it reports that.
 Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSize& mesh,
                           std::size_t limit);
+
+// Checks that a mesh file can be read within `limit` bytes, by meshFileSize(), before any of it is.
+// `named`: what the error names, the file itself or the one that it was made of. Errors:
+// kInvalidArgument, with the need and the limit. A file that cannot be read
+// or whose format tells no counts (an ASCII .stl) is not an error here.
+Result<Ok> roomToRead(const std::string& path, const std::string& named, std::size_t limit);
 
 // Makes the checks of roomForReduction() and roomForPicture() before the mesh is read, with the
 // sizes in the file's header. Errors: kInvalidArgument, with the file's name. A header that cannot

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "daemon/base/files.h"
+#include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
 #include "render/lod/finest_level.h"
@@ -15,10 +16,15 @@
 
 namespace merlin::cli {
 
-Result<render::lod::Dendrogram> openModel(const std::string& path) {
-  if (path.ends_with(".mrm")) return render::lod::readMrm(path);
+Result<render::lod::Dendrogram> openModel(const std::string& path, render::mesh::Origin* origin) {
+  if (path.ends_with(".mrm")) {
+    auto model = render::lod::readMrm(path);
+    if (model && origin) *origin = originIn(model->arrays().about);
+    return model;
+  }
   const auto loaded = loadMesh(path);
   if (!loaded) return loaded.error();
+  if (origin) *origin = loaded->origin;
   return render::lod::oneLevel(loaded->mesh);
 }
 

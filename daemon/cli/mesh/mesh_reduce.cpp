@@ -7,6 +7,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/mesh/reduction_step.h"
@@ -152,8 +153,9 @@ int reduceMesh(const ReduceOptions& options) {
     return fail(done.error());
   if (const auto named = render::lod::checkNames(loaded->mesh); !named)
     return fail({named.error().code, options.input + ": " + named.error().what});
-  const auto reduction = reduceLoaded(options, loaded->mesh, usage);
+  auto reduction = reduceLoaded(options, loaded->mesh, usage);
   if (!reduction) return fail(reduction.error());
+  reduction->log.about += aboutOrigin(loaded->origin);
   const auto written =
       render::lod::writeMrm(options.output, loaded->mesh, reduction->log, options.settings.threads);
   if (!written) return fail(written.error());

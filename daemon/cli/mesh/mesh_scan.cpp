@@ -7,12 +7,17 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/about_text.h"
+#include "daemon/cli/mesh/import_model.h"
+#include "daemon/cli/mesh/input_kinds.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/mesh/io/companion_files.h"
+#include "render/points/io/cloud_file.h"
 #include "render/range/colours.h"
 #include "render/range/geometry.h"
 #include "render/range/io/plane_file.h"
@@ -46,18 +51,48 @@ struct ScannedFiles {
   double angle_step = 0;
 };
 
-Result<render::mesh::Mesh> meshOf(const std::string& path) {
-  if (!path.ends_with(".mrm")) {
-    auto loaded = loadMesh(path);
-    if (!loaded) return loaded.error();
-    return std::move(loaded->mesh);
-  }
-  const auto model = render::lod::readMrm(path);
+// What is scanned, and what its file says of it.
+struct Model {
+  render::mesh::Mesh mesh;
+  // Of the file's coordinates, in which --camera and the written camera transform are.
+  render::mesh::Origin origin{};
+  std::string about;  // of a model (.mrm)
+};
+
+// Reads whatever merlin mesh import makes a mesh of without any option.
+Result<Model> readByContent(const MeshScan& options) {
+  const std::string& path = options.model;
+  if (const auto there = checkIsThere(path); !there) return there.error();
+  const auto kind = inputKindOf(path);
+  if (!kind)
+    return Error{Errc::kUnsupported,
+                 fmt::format("{}: is of no format of meshes that MERLIN reads; read are .mrm, {}, "
+                             "{}, {}",
+                             path, render::mesh::readableEndings(),
+                             render::points::readableClouds(), foreignFormats())};
+  if (kind->isGrid())
+    return Error{Errc::kUnsupported,
+                 fmt::format("{0}: is a range image or a map already; merlin mesh import {0} -o "
+                             "OUT.ply makes a mesh of it, which can be scanned",
+                             path)};
+  auto model = loadModel(path, *kind, {options.output, freeMemory()});
   if (!model) return model.error();
-  return render::lod::extract(*model, 0);
+  return Model{std::move(model->loaded.mesh),
+               model->cloud ? model->cloud->origin : model->loaded.origin,
+               {}};
 }
 
-Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box) {
+// A model's coordinates stay its own, though an origin was taken from those of its file.
+Result<Model> readModel(const MeshScan& options) {
+  if (!options.model.ends_with(".mrm")) return readByContent(options);
+  const auto model = render::lod::readMrm(options.model);
+  if (!model) return model.error();
+  return Model{render::lod::extract(*model, 0), {}, model->arrays().about};
+}
+
+// The scanner's pose relative to the origin.
+Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box,
+                           const render::mesh::Origin& origin) {
   const std::vector<double>& c = options.camera;
   if (c.empty())
     return scan::around(box, options.yaw_deg * kRadian, options.pitch_deg * kRadian,
@@ -65,6 +100,7 @@ Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box
   if (c.size() == 12) {
     range::Pose pose;
     std::copy(c.begin(), c.end(), pose.begin());
+    for (std::size_t k = 0; k < 3; ++k) pose[4 * k + 3] -= origin[k];
     return pose;
   }
   if (c.size() != 3 && c.size() != 6)
@@ -72,19 +108,22 @@ Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box
                  fmt::format("--camera: {} numbers are given; allowed are 3 (the scanner's place), "
                              "6 (and a point that it looks at) and 12 (a transform)",
                              c.size())};
-  const scan::Point from = {c[0], c[1], c[2]};
-  const scan::Point at = c.size() == 6 ? scan::Point{c[3], c[4], c[5]} : scan::centreOf(box);
+  const auto relative = [&](std::size_t at) {
+    return scan::Point{c[at] - origin[0], c[at + 1] - origin[1], c[at + 2] - origin[2]};
+  };
+  const scan::Point from = relative(0);
+  const scan::Point at = c.size() == 6 ? relative(3) : scan::centreOf(box);
   if (from == at)
     return Error{Errc::kInvalidArgument, "--camera: the scanner stands where it looks at"};
   return scan::lookAt(from, at);
 }
 
-Result<Ok> place(MeshScan& options, const render::mesh::Mesh& mesh) {
+Result<Ok> place(MeshScan& options, const Model& model) {
   range::Geometry& geometry = options.settings.geometry;
   geometry.scanner = *range::scannerOf(options.geometry);
   geometry.horizontal_rad = options.angles_deg[0] * kRadian;
   geometry.vertical_rad = options.angles_deg[1] * kRadian;
-  const auto pose = poseOf(options, render::mesh::boundingBox(mesh.positions));
+  const auto pose = poseOf(options, render::mesh::boundingBox(model.mesh.positions), model.origin);
   if (!pose) return pose.error();
   geometry.T_world_scanner = *pose;
   if (geometry.scanner != range::Scanner::kSpinning) return Ok{};
@@ -93,38 +132,59 @@ Result<Ok> place(MeshScan& options, const render::mesh::Mesh& mesh) {
   return Ok{};
 }
 
+Error nothingMet(const MeshScan& options, const Model& model, const std::string& what) {
+  const render::mesh::Box box = render::mesh::boundingBox(model.mesh.positions);
+  const auto corner = [&](const std::array<float, 3>& p) {
+    const auto& o = model.origin;
+    return fmt::format("({:.10g}, {:.10g}, {:.10g})", p[0] + o[0], p[1] + o[1], p[2] + o[2]);
+  };
+  return {Errc::kInvalidArgument,
+          fmt::format("{}: {}; it lies within {} and {}: leave --camera out, or look there",
+                      options.model, what, corner(box.low), corner(box.high))};
+}
+
+// The planes get what the model says of their features; labels are whole numbers without a range.
+void addFacts(const Model& model, range::RangeImage& image) {
+  for (range::Plane& plane : image.planes) {
+    if (plane.dimension != 1 || plane.name == "confidence") continue;
+    const FeatureFacts facts = featureIn(model.about, plane.name);
+    plane.unit = facts.unit;
+    plane.low = facts.low;
+    plane.high = facts.high;
+  }
+}
+
+// The range image, whose camera transform is in the coordinates of the model's file.
 Result<scan::Scan> scanModel(MeshScan& options) {
-  const auto mesh = meshOf(options.model);
-  if (!mesh) return mesh.error();
+  const auto model = readModel(options);
+  if (!model) return model.error();
+  const render::mesh::Mesh& mesh = model->mesh;
   const auto named = [&](const Error& error) {
     return Error{error.code, options.model + ": " + error.what};
   };
-  if (const auto placed = place(options, *mesh); !placed) return placed.error();
+  if (const auto placed = place(options, *model); !placed) return placed.error();
   std::optional<render::image::ImageFile> texture;
-  const render::mesh::Feature* texcoord = mesh->find("texcoord");
-  if (!mesh->texture.empty() && texcoord && texcoord->dimension == 2) {
-    auto decoded = render::image::decodeImage(mesh->texture);
+  const render::mesh::Feature* texcoord = mesh.find("texcoord");
+  if (!mesh.texture.empty() && texcoord && texcoord->dimension == 2) {
+    auto decoded = render::image::decodeImage(mesh.texture);
     if (!decoded) return named({decoded.error().code, "its texture: " + decoded.error().what});
     texture = *std::move(decoded);
   }
   const SystemClock clock;
   LateBar bar("scanning", options.settings.width * options.settings.height, clock);
-  auto scanned = scan::scan({*mesh, texture ? &*texture : nullptr}, options.settings,
+  auto scanned = scan::scan({mesh, texture ? &*texture : nullptr}, options.settings,
                             bar.work(options.threads));
-  if (!scanned && scanned.error().code == Errc::kMalformed) {
-    const render::mesh::Box box = render::mesh::boundingBox(mesh->positions);
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("{}: {}; it lies within ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, "
-                             "{:.6g}): leave --camera out, or look there",
-                             options.model, scanned.error().what, box.low[0], box.low[1],
-                             box.low[2], box.high[0], box.high[1], box.high[2])};
-  }
+  if (!scanned && scanned.error().code == Errc::kMalformed)
+    return nothingMet(options, *model, scanned.error().what);
   if (!scanned) return named(scanned.error());
   bar.finish();
   if (scanned->met == scanned->oblique + scanned->lost)
     return named({Errc::kInvalidArgument,
                   "all of its returns were lost (--drop-outs, "
                   "--max-incidence, --noise)"});
+  addFacts(*model, scanned->image);
+  for (std::size_t k = 0; k < 3; ++k)
+    scanned->image.geometry.T_world_scanner[4 * k + 3] += model->origin[k];
   return scanned;
 }
 
@@ -184,7 +244,7 @@ void report(const MeshScan& options, const scan::Scan& scanned, const ScannedFil
   printOut("{}: {} x {} pixels, {} with a return, {}\n", options.output, image.width, image.height,
            scanned.met - scanned.oblique - scanned.lost, range::nameOf(image.geometry.scanner));
   printOut(
-      "  scanner   at {:.6g} {:.6g} {:.6g}, {:.6g} degrees between pixels, which is {:.4g} at "
+      "  scanner   at {:.10g} {:.10g} {:.10g}, {:.6g} degrees between pixels, which is {:.4g} at "
       "the farthest range\n",
       pose[3], pose[7], pose[11], files.angle_step / kRadian,
       files.angle_step * double{files.ends.high});
@@ -242,7 +302,8 @@ void addScanner(Command command, MeshScan& options) {
           .option("--camera", options.camera,
                   "Where the scanner stands: its place, looking at the model's centre; its "
                   "place and a point that it looks at; or the transform of the key camera "
-                  "(render/range/io/README.md). By default far enough to see all of the model")
+                  "(render/range/io/README.md), in the coordinates of the model's file. By default "
+                  "far enough to see all of the model")
           .typeName("X Y Z [X Y Z]|12 NUMBERS")
           .expected(3, 12);
   Command turn = command.group("turn", "Turns the model before a scanner that is placed by itself");
@@ -291,7 +352,9 @@ void addMeshScan(Command mesh, Run& run) {
       "30 --noise 0.0005 --drop-outs 1 -o scan.pgm");
   command
       .option("model", options->model,
-              "The model (.mrm) or mesh (" + render::mesh::readableEndings() + ")")
+              "The model (.mrm), or whatever merlin mesh import makes a mesh of: a mesh (" +
+                  render::mesh::readableEndings() +
+                  "), a point cloud, a model of another program (through merlin-import)")
       .required()
       .typeName("MODEL");
   command

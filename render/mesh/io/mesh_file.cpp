@@ -31,6 +31,13 @@ Error inFile(const std::string& path, const Error& error) {
   return {error.code, path + ": " + error.what};
 }
 
+std::string noteOf(const Origin& origin) {
+  return fmt::format(
+      "its coordinates have more digits than a float keeps; they are taken relative to {}, {}, {}, "
+      "where the mesh has its (0, 0, 0)",
+      origin[0], origin[1], origin[2]);
+}
+
 constexpr std::array kReaders = {&kPlyReader, &kObjReader, &kOffReader, &kOmReader, &kStlReader};
 constexpr std::array kWriters = {&kPlyWriter,  &kObjWriter, &kGlbWriter,
                                  &kGltfWriter, &kStlWriter, &kInventorWriter};
@@ -148,7 +155,8 @@ std::string readableEndings() { return endingsOf(kReaders); }
 bool isReadable(const std::string& path) { return readerFor(path) != nullptr; }
 
 std::optional<MeshFileSize> meshFileSize(const std::string& path) {
-  const MeshReader* const reader = readerFor(path);
+  const MeshReader* reader = readerForContent(path);
+  if (!reader) reader = readerFor(path);
   if (!reader || !reader->size) return std::nullopt;
   const auto file = MappedFile::open(path);
   if (!file) return std::nullopt;
@@ -179,6 +187,7 @@ Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path)
   *file = MappedFile();  // unmap it: it is as large as the mesh
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   const TidyReport tidied = tidy(loaded->mesh);
+  if (loaded->origin != Origin{}) loaded->notes.push_back(noteOf(loaded->origin));
   const std::size_t in_file = loaded->tidied.degenerate;
   loaded->tidied = tidied;
   loaded->tidied.degenerate += in_file;

@@ -17,6 +17,9 @@
 //            file in the same folder: for a.obj, a.obj.png (or .jpg) and a.obj.mtl. Unusual
 //            characters of the name are escaped (plainName() in companion_files.h).
 //
+// Coordinates of a .ply whose x, y or z is a double, and of an .obj, are kept relative to
+// originNear() of the first vertex, which a note says; LoadedMesh::origin is what was subtracted.
+//
 // A returned mesh has passed validate(), tidy() and splitNonManifold(). Nothing throws, nothing is
 // printed. Reentrant.
 #pragma once
@@ -29,6 +32,7 @@
 #include "render/mesh/mesh.h"
 #include "render/mesh/mesh_size.h"
 #include "render/mesh/non_manifold.h"
+#include "render/mesh/origin.h"
 
 namespace merlin::render::mesh {
 
@@ -37,16 +41,20 @@ struct LoadedMesh {
   TidyReport tidied;
   SplitReport split;
   std::vector<std::string> notes;  // for the user: data left out, a missing texture image
+  Origin origin{};                 // of the file's coordinates; positions are relative to it
 };
 
 // Size of a mesh in a file.
 struct MeshFileSize {
-  MeshSize mesh;        // normals are not counted
-  std::string picture;  // path of the texture image; empty: none
+  MeshSize mesh;                        // normals are not counted
+  std::size_t meanwhile = 0;            // that reading takes besides [bytes], without the images
+  std::vector<std::string> pictures{};  // paths of the texture images; each once
 };
 
-// Mesh size as the file's header declares it. Nothing if the file cannot be opened, its format has
-// no counts, or it declares more elements than the file has bytes. Reads the header only.
+// How large the mesh in the file is, before any of it is kept: of .ply and .off as the header
+// declares it, and where faces of .ply may have more than three corners, as the file's size allows;
+// of .obj as its lines are counted. Nothing if the file cannot be opened, its format has no counts,
+// or it declares more elements than the file has bytes. Reads the header only, of .obj all lines.
 std::optional<MeshFileSize> meshFileSize(const std::string& path);
 
 // File endings that readMesh() supports, for messages and help: ".ply, .obj and .stl".

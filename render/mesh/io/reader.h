@@ -20,8 +20,8 @@ struct MeshReader {
   // files are looked for. The mesh need not be valid or tidy. Errors: kMalformed, kUnsupported,
   // without the file's name.
   Result<LoadedMesh> (*read)(std::string_view content, const std::string& folder);
-  // Mesh size that the file's header declares (not checked), so that it is known before the file is
-  // read; nothing if the header has no counts. May be null.
+  // Size of the mesh (not checked), so that it is known before any of it is kept; nothing if it
+  // cannot be told. May be null.
   std::optional<MeshFileSize> (*size)(std::string_view content,
                                       const std::string& folder) = nullptr;
   // Whether a file that begins like this is of the format; damage behind that is found by read().

@@ -9,16 +9,28 @@
 #include <fmt/format.h>
 
 #include "daemon/base/bytes.h"
+#include "render/points/io/las_projection.h"
 
 namespace merlin::render::points {
 namespace {
 
 struct PointFormat {
-  std::size_t bytes;   // least length of a record
-  std::size_t colour;  // where red, green and blue are; 0: none
+  std::size_t bytes = 0;   // least length of a record
+  std::size_t colour = 0;  // where red, green and blue are; 0: none
+  std::size_t time = 0;    // where the GPS time is; 0: none
+  bool infrared = false, waveforms = false;
 };
-constexpr PointFormat kFormats[] = {{20, 0}, {28, 0},  {26, 20}, {34, 28}, {57, 0}, {63, 28},
-                                    {30, 0}, {36, 30}, {38, 30}, {59, 0},  {67, 30}};
+constexpr PointFormat kFormats[] = {{20, 0, 0},
+                                    {28, 0, 20},
+                                    {26, 20, 0},
+                                    {34, 28, 20},
+                                    {57, 0, 20, false, true},
+                                    {63, 28, 20, false, true},
+                                    {30, 0, 22},
+                                    {36, 30, 22},
+                                    {38, 30, 22, true},
+                                    {59, 0, 22, false, true},
+                                    {67, 30, 22, true, true}};
 constexpr std::size_t kFirstLongFormat = 6;              // with a byte for the class
 constexpr std::size_t kLeastHeader[] = {227, 235, 375};  // of versions 1.2, 1.3, 1.4
 constexpr std::uint8_t kLowNoise = 7, kHighNoise = 18;
@@ -127,7 +139,7 @@ Result<LasHeader> parseLasHeader(std::string_view bytes) {
 class LasPoints {
  public:
   LasPoints(std::string_view bytes, const LasHeader& header)
-      : b_(bytes), h_(header), colour_at_(kFormats[header.format].colour) {}
+      : b_(bytes), h_(header), form_(kFormats[header.format]), colour_at_(form_.colour) {}
 
   PointCloud read() {
     const auto n = static_cast<std::size_t>(h_.points);
@@ -135,7 +147,7 @@ class LasPoints {
     intensity_.values.reserve(n);
     label_.values.reserve(n);
     if (colour_at_ > 0) colour_.values.reserve(3 * n);
-    cloud_.origin = originNear(positionOf(h_.start));
+    cloud_.origin = mesh::originNear(positionOf(h_.start));
     for (std::size_t p = 0; p < n; ++p) add(h_.start + p * h_.record);
     finish();
     return std::move(cloud_);
@@ -157,6 +169,7 @@ class LasPoints {
       ++(withheld ? withheld_ : noise_);
       return;
     }
+    look(at, is_long);
     const auto x = positionOf(at);
     for (std::size_t k = 0; k < 3; ++k)
       cloud_.positions.push_back(static_cast<float>(x[k] - cloud_.origin[k]));
@@ -164,6 +177,30 @@ class LasPoints {
     label_.values.push_back(kind);
     for (std::size_t k = 0; colour_at_ > 0 && k < 3; ++k)
       colour_.values.push_back(b_.u16(at + colour_at_ + 2 * k));
+  }
+
+  // Notes what the point has that becomes no feature.
+  void look(std::size_t at, bool is_long) {
+    const int returns = is_long ? b_.u8(at + 14) >> 4 : b_.u8(at + 14) >> 3 & 7;
+    timed_ = timed_ || (form_.time > 0 && b_.u64(at + form_.time) != 0);
+    returns_ = returns_ || returns > 1;
+    angles_ = angles_ || (is_long ? b_.u16(at + 18) != 0 : b_.u8(at + 16) != 0);
+  }
+
+  // The names of what look() found, and of what the point format has.
+  std::string leftOut() const {
+    std::string names;
+    const auto add = [&](bool there, const std::string& name) {
+      if (there) names += (names.empty() ? "" : ", ") + name;
+    };
+    add(timed_, "GPS time");
+    add(returns_, "return numbers");
+    add(angles_, "scan angles");
+    add(form_.infrared, "near infrared");
+    add(form_.waveforms, "waveforms");
+    const std::size_t extra = h_.record - form_.bytes;
+    add(extra > 0, fmt::format("{} extra bytes", extra));
+    return names;
   }
 
   // A feature that is 0 at every point was not recorded.
@@ -182,13 +219,18 @@ class LasPoints {
     if (withheld_ + noise_ > 0)
       cloud_.notes.push_back(fmt::format("left out: {} withheld points, {} points of noise classes",
                                          withheld_, noise_));
+    const std::string names = leftOut();
+    if (!names.empty())
+      cloud_.notes.push_back(fmt::format("left out of each point, as no feature: {}", names));
     cloud_.side = Side::kAbove;
     cloud_.format = fmt::format("LAS 1.{}, point format {}", h_.minor, h_.format);
   }
 
   LasBytes b_;
   const LasHeader& h_;
+  const PointFormat& form_;
   std::size_t colour_at_;
+  bool timed_ = false, returns_ = false, angles_ = false;
   PointCloud cloud_;
   mesh::Feature intensity_{"intensity", 1, {}}, label_{"label", 1, {}}, colour_{"colour", 3, {}};
   std::size_t withheld_ = 0, noise_ = 0;
@@ -201,7 +243,11 @@ bool isLas(std::string_view bytes) noexcept { return bytes.starts_with("LASF"); 
 Result<PointCloud> parseLas(std::string_view bytes) {
   const auto header = parseLasHeader(bytes);
   if (!header) return header.error();
-  return LasPoints(bytes, *header).read();
+  PointCloud cloud = LasPoints(bytes, *header).read();
+  LasProjection projection = lasProjection(bytes);
+  cloud.projection = std::move(projection.text);
+  if (!projection.note.empty()) cloud.notes.push_back(std::move(projection.note));
+  return cloud;
 }
 
 }  // namespace merlin::render::points

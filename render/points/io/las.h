@@ -13,9 +13,10 @@ namespace merlin::render::points {
 bool isLas(std::string_view bytes) noexcept;
 
 // The points with the features "intensity" (raw counts), "label" (the class) and "colour", where a
-// point has one. Left out: withheld points, points of the noise classes 7 and 18, the time, returns
-// and waveforms. Errors, with the field of the header: kMalformed; kUnsupported (LAZ, any other
-// version), each with the command that converts.
+// point has one, and the projection. Left out, as a note says: withheld points, points of the noise
+// classes 7 and 18, the GPS time, return numbers, scan angles, near infrared, waveforms and extra
+// bytes where there are any. Errors, with the field of the header: kMalformed; kUnsupported (LAZ,
+// any other version), each with the command that converts.
 Result<PointCloud> parseLas(std::string_view bytes);
 
 }  // namespace merlin::render::points

@@ -87,7 +87,7 @@ Result<PointCloud> parsePcdCloud(std::string_view bytes) {
   if (axes.size() != 3) return Error{Errc::kMalformed, "has no fields x, y and z"};
   PointCloud cloud;
   cloud.format = "PCD";
-  cloud.origin = originNear({(*axes[0])[0], (*axes[1])[0], (*axes[2])[0]});
+  cloud.origin = mesh::originNear({(*axes[0])[0], (*axes[1])[0], (*axes[2])[0]});
   cloud.positions.reserve(3 * header->points);
   for (std::size_t p = 0; p < header->points; ++p) {
     for (std::size_t k = 0; k < 3; ++k)

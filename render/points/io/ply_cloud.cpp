@@ -63,7 +63,7 @@ void readExactly(std::string_view bytes, PointCloud& cloud) {
       std::array<double, 3> point{};
       if (!nextRow(e, axes, body, point)) return;
       if (!vertices) continue;
-      if (row == 0) cloud.origin = originNear(point);
+      if (row == 0) cloud.origin = mesh::originNear(point);
       for (std::size_t k = 0; k < 3; ++k)
         cloud.positions[3 * row + k] = static_cast<float>(point[k] - cloud.origin[k]);
     }

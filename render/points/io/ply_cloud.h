@@ -12,7 +12,7 @@ namespace merlin::render::points {
 bool isPlyCloud(std::string_view bytes);
 
 // Each scalar vertex property becomes a feature, as of a mesh. Coordinates are read as doubles and
-// kept relative to originNear() of the first point. Errors: those of ply::parse().
+// kept relative to mesh::originNear() of the first point. Errors: those of ply::parse().
 Result<PointCloud> parsePlyCloud(std::string_view bytes);
 
 }  // namespace merlin::render::points

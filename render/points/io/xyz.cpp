@@ -68,7 +68,7 @@ class XyzReader {
                                                  oneLine(excerpt(row.fault)))};
     if (columns_ == 0) {
       columns_ = row.count;
-      cloud_.origin = originNear({row.numbers[0], row.numbers[1], row.numbers[2]});
+      cloud_.origin = mesh::originNear({row.numbers[0], row.numbers[1], row.numbers[2]});
     }
     if (row.count != columns_ || !isColumnCount(columns_))
       return Error{Errc::kMalformed,

@@ -41,7 +41,7 @@ double leftOfShift(double azimuth_rad, double turn_rad, std::size_t columns) {
 Result<Ok> parseAngleTable(std::string_view text, ImageHeader& header) {
   std::vector<Beam> beams;
   std::size_t columns = 0;
-  double turn_deg = 360;
+  double turn_deg = header.angles_deg ? (*header.angles_deg)[0] : 360;
   bool shifted = false;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view line = takeLine(text);

@@ -11,7 +11,8 @@ namespace merlin::render::range {
 // Sets geometry, angles, columns and beams of `header`. A line has the number of the row, its
 // altitude and the azimuth that is added to that of each column, or the altitude and the azimuth,
 // or the altitude alone; degrees. Comments begin with #; that with "columns: 1024 over 360 deg"
-// says how many columns there are and how far they turn (without it: the image's, 360), and if it
+// says how many columns there are and how far they turn (without it: the image's, and as far as the
+// header says, else 360), and if it
 // also has the word "destagger", then the rows of the image were shifted by whole columns against
 // their azimuth already, and only what is left of it is added. Errors, with the line: kMalformed.
 Result<Ok> parseAngleTable(std::string_view text, ImageHeader& header);

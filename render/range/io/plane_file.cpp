@@ -115,11 +115,19 @@ Result<Plane> readPng16(const std::string& name, const std::string& path,
   return planeOf(name, std::move(stored));
 }
 
-// The values that the stored 0 and the largest stored value stand for.
+// The values that the stored 0 and the largest stored value stand for, and the latter.
 struct StoredScale {
-  double minimum = 0, maximum = kLargest;
-  double step() const { return (maximum - minimum) / kLargest; }
+  double minimum = 0, maximum = kLargest, largest = kLargest;
+  double step() const { return (maximum - minimum) / largest; }
 };
+
+// Whole numbers within whole ends are kept exactly by a whole number of steps between them.
+StoredScale ofRange(double low, double high, bool whole) {
+  const double span = high - low;
+  const bool exact =
+      whole && low == std::round(low) && high == std::round(high) && span <= kLargest;
+  return {low, high, exact ? std::floor(kLargest / span) * span : kLargest};
+}
 
 StoredScale scaleOf(const Plane& plane, const RangeImage& image) {
   double low = plane.low, high = plane.high;
@@ -134,22 +142,22 @@ StoredScale scaleOf(const Plane& plane, const RangeImage& image) {
   }
   const double from = std::min(low, 0.0);
   if (whole && plane.low == plane.high && high - from <= kLargest) return {from, from + kLargest};
-  return {low, high > low ? high : low + 1};
+  return ofRange(low, high > low ? high : low + 1, whole);
 }
 
 Result<Ok> writeGrey(const std::string& path, const Plane& plane, const RangeImage& image) {
   const StoredScale scale = scaleOf(plane, image);
   ImageHeader header;
   header.unit = plane.unit;
-  if (scale.minimum != 0 || scale.maximum != kLargest) {
+  if (scale.minimum != 0 || scale.maximum != kLargest || plane.low < plane.high) {
     header.minimum = scale.minimum;
     header.maximum = scale.maximum;
   }
   std::string text = fmt::format("P5\n# feature of a range image, written by MERLIN\n{}{} {}\n{}\n",
-                                 linesOf(header, "# "), image.width, image.height, kLargest);
+                                 linesOf(header, "# "), image.width, image.height, scale.largest);
   for (std::size_t p = 0; p < image.pixels(); ++p) {
     const double value = isReturn(image.range[p]) ? plane.values[p] : scale.minimum;
-    const double stored = std::clamp((value - scale.minimum) / scale.step(), 0.0, kLargest);
+    const double stored = std::clamp((value - scale.minimum) / scale.step(), 0.0, scale.largest);
     appendBe16(text, static_cast<std::uint16_t>(std::lround(stored)));
   }
   return writeFile(path, text);

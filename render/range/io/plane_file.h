@@ -20,8 +20,9 @@ Result<Plane> readPlane(const std::string& name, const std::string& path, const 
 const char* endingOf(const Plane& plane);
 
 // Writes a plane so that readPlane() gives it back: colours (dimension 3, each 0..1) as PNG with 8
-// bits; one value per pixel as PGM with 16 bits, whose header has the scale and the unit. Whole
-// numbers that lie within 65535 of one another are kept exactly. Only pixels with a return count;
+// bits; one value per pixel as PGM with 16 bits, whose header has the unit and the scale: the
+// plane's range, widened to its values. Whole numbers that lie within 65535 of one another are kept
+// exactly, unless the range has ends that are not whole. Only pixels with a return count;
 // the others are written as the lowest value. Errors: those of writeFile(). REQUIRES: dimension 1
 // or 3, finite values.
 Result<Ok> writePlane(const std::string& path, const Plane& plane, const RangeImage& image);

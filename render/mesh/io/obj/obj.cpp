@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -102,25 +103,28 @@ class ObjParser {
     if (keyword == "v") return takeVertex(line);
     if (keyword == "vt") return takeTexcoord(line);
     if (keyword == "f") return takeFace(line);
+    if (keyword == "o") object_ = trimmed(line);
+    if (keyword == "g") group_ = trimmed(line);
+    if (keyword == "o" || keyword == "g") part_.reset();
     if (keyword == "usemtl") material_ = materialOf(std::string(trimmed(line)));
     if (keyword == "mtllib") surface_.libraries.emplace_back(trimmed(line));
     return Ok{};
   }
 
   // Reads all numbers of the line and stores the first eight of them; returns how many it stored.
-  Result<std::size_t> takeNumbers(std::string_view line, std::array<float, 8>& numbers) const {
+  Result<std::size_t> takeNumbers(std::string_view line, std::array<double, 8>& numbers) const {
     std::size_t count = 0;
     for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line)) {
       double value = 0;
       if (!readNumber(word, value)) return bad(word, "number");
-      if (count < numbers.size()) numbers[count++] = static_cast<float>(value);
+      if (count < numbers.size()) numbers[count++] = value;
     }
     return count;
   }
 
   // x y z, x y z w, or x y z r g b.
   Result<Ok> takeVertex(std::string_view line) {
-    std::array<float, 8> n{};
+    std::array<double, 8> n{};
     const auto count = takeNumbers(line, n);
     if (!count) return count.error();
     if (*count < 3) {
@@ -129,20 +133,22 @@ class ObjParser {
           fmt::format("line {}: a vertex needs 3 coordinates, this one has {}", line_, *count)};
     }
     Mesh& mesh = surface_.mesh;
-    mesh.positions.insert(mesh.positions.end(), n.begin(), n.begin() + 3);
-    if (*count >= 6) colours_.insert(colours_.end(), n.begin() + 3, n.begin() + 6);
+    if (mesh.positions.empty()) surface_.origin = originNear({n[0], n[1], n[2]});
+    for (std::size_t k = 0; k < 3; ++k)
+      mesh.positions.push_back(static_cast<float>(n[k] - surface_.origin[k]));
+    for (std::size_t k = 3; k < 6 && *count >= 6; ++k) colours_.push_back(static_cast<float>(n[k]));
     return Ok{};
   }
 
   Result<Ok> takeTexcoord(std::string_view line) {
-    std::array<float, 8> n{};
+    std::array<double, 8> n{};
     const auto count = takeNumbers(line, n);
     if (!count) return count.error();
     if (*count < 1) {
       return Error{Errc::kMalformed,
                    fmt::format("line {}: a texture coordinate has no numbers", line_)};
     }
-    surface_.texcoords.insert(surface_.texcoords.end(), n.begin(), n.begin() + 2);
+    for (std::size_t k = 0; k < 2; ++k) surface_.texcoords.push_back(static_cast<float>(n[k]));
     return Ok{};
   }
 
@@ -186,6 +192,13 @@ class ObjParser {
       surface_.corner_texcoord.push_back(c.texcoord);
     }
     surface_.triangle_material.push_back(material_);
+    if (!part_) part_ = partNumber();
+    surface_.triangle_part.push_back(*part_);
+  }
+
+  std::uint32_t partNumber() {
+    const auto number = static_cast<std::uint32_t>(part_numbers_.size());
+    return part_numbers_.emplace(object_ + '\0' + group_, number).first->second;
   }
 
   std::uint32_t materialOf(const std::string& name) {
@@ -206,6 +219,8 @@ class ObjParser {
     Mesh& mesh = surface_.mesh;
     if (!colours_.empty() && colours_.size() == mesh.positions.size())
       mesh.features.push_back({"colour", 3, std::move(colours_)});
+    surface_.parts = part_numbers_.size();
+    if (surface_.parts < 2) surface_.triangle_part = {};
     if (textured_ || surface_.materials.size() > 1) return;
     surface_.corner_texcoord = {};
     surface_.triangle_material = {};
@@ -218,6 +233,10 @@ class ObjParser {
   std::vector<float> colours_;
   std::unordered_map<std::string, std::uint32_t> material_numbers_{{"", 0}};
   std::uint32_t material_ = 0;
+  std::string object_, group_;
+  std::unordered_map<std::string, std::uint32_t> part_numbers_;
+  std::optional<std::uint32_t>
+      part_;  // of the object and the group; nothing until a triangle is there
   MaxIndex vertices_, texcoords_;
   bool textured_ = false;
 };

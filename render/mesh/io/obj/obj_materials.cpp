@@ -30,9 +30,10 @@ int wordsOf(std::string_view option) {
 
 class Library {
  public:
+  // opens  whether images are read; else only their paths are kept
   Library(const std::vector<std::string>& names, std::string folder,
-          std::vector<std::string>& notes)
-      : folder_(std::move(folder)), notes_(notes), materials_(names.size()) {
+          std::vector<std::string>& notes, bool opens)
+      : folder_(std::move(folder)), notes_(notes), materials_(names.size()), opens_(opens) {
     for (std::size_t i = 0; i < names.size(); ++i) numbers_.emplace(names[i], i);
   }
 
@@ -56,6 +57,12 @@ class Library {
   }
 
   std::vector<ObjMaterial> take() { return std::move(materials_); }
+
+  std::vector<std::string> paths() const {
+    std::vector<std::string> paths;
+    for (const auto& [path, picture] : pictures_) paths.push_back(path);
+    return paths;
+  }
 
  private:
   ObjMaterial* find(std::string_view name) {
@@ -98,6 +105,7 @@ class Library {
     const auto known = pictures_.find(path);
     if (known != pictures_.end()) return known->second;
     std::shared_ptr<const image::ImageFile> picture;
+    if (!opens_) return pictures_[path] = picture;
     if (auto read = reading_.read(path))
       picture = std::make_shared<const image::ImageFile>(*std::move(read));
     else
@@ -110,24 +118,40 @@ class Library {
   std::string folder_;
   std::vector<std::string>& notes_;
   std::vector<ObjMaterial> materials_;
+  bool opens_;
   TexturePictures reading_;
   std::map<std::string, std::shared_ptr<const image::ImageFile>> pictures_;
 };
+
+constexpr std::size_t kMostLibraries = 64;
+
+// Returns whether all were read.
+bool readAll(const std::vector<std::string>& libraries, Library& library) {
+  std::set<std::string_view> named;
+  for (const std::string& name : libraries) {
+    if (named.insert(name).second && named.size() <= kMostLibraries) library.read(name);
+  }
+  return named.size() <= kMostLibraries;
+}
 
 }  // namespace
 
 std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
                                        const std::vector<std::string>& libraries,
                                        const std::string& folder, std::vector<std::string>& notes) {
-  Library library(names, folder, notes);
-  constexpr std::size_t kMost = 64;
-  std::set<std::string_view> named;
-  for (const std::string& name : libraries) {
-    if (named.insert(name).second && named.size() <= kMost) library.read(name);
-  }
-  if (named.size() > kMost)
-    notes.push_back(fmt::format("only the first {} material libraries are read", kMost));
+  Library library(names, folder, notes, true);
+  if (!readAll(libraries, library))
+    notes.push_back(fmt::format("only the first {} material libraries are read", kMostLibraries));
   return library.take();
+}
+
+std::vector<std::string> picturesOf(const std::vector<std::string>& names,
+                                    const std::vector<std::string>& libraries,
+                                    const std::string& folder) {
+  std::vector<std::string> notes;
+  Library library(names, folder, notes, false);
+  readAll(libraries, library);
+  return library.paths();
 }
 
 }  // namespace merlin::render::mesh

@@ -31,4 +31,9 @@ std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
                                        const std::vector<std::string>& libraries,
                                        const std::string& folder, std::vector<std::string>& notes);
 
+// The paths of the images that readMaterials() would read, each once; none is opened.
+std::vector<std::string> picturesOf(const std::vector<std::string>& names,
+                                    const std::vector<std::string>& libraries,
+                                    const std::string& folder);
+
 }  // namespace merlin::render::mesh

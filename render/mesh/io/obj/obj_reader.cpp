@@ -1,8 +1,13 @@
 // Reads OBJ files and the texture images of their materials: a row of the table of readers.
 #include <algorithm>
+#include <functional>
 #include <iterator>
+#include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "render/mesh/io/obj/obj_parts.h"
 #include "render/mesh/io/obj/obj_texture.h"
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/text_lines.h"
@@ -15,14 +20,77 @@ Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   if (!surface) return surface.error();
   if (const auto valid = validate(surface->mesh); !valid) return valid.error();
   LoadedMesh loaded;
+  loaded.origin = surface->origin;
   std::vector<ObjMaterial> materials(surface->materials.size());
   if (!surface->corner_texcoord.empty()) {
     materials = readMaterials(surface->materials, surface->libraries, folder, loaded.notes);
   }
+  const std::vector<std::uint32_t> part_of = std::move(surface->triangle_part);
+  const std::size_t parts = surface->parts;
   TexturedSurface made = textured(*std::move(surface), materials);
   loaded.mesh = std::move(made.mesh);
+  if (!part_of.empty()) {
+    labelParts(part_of, loaded.mesh);
+    loaded.notes.push_back(fmt::format(
+        "its {} objects and groups become one mesh; the feature label has the number of each, from "
+        "0 in the order of the file",
+        parts));
+  }
   std::ranges::move(made.joined.notes(), std::back_inserter(loaded.notes));
   return loaded;
+}
+
+// Counts what an OBJ file has, line by line, and keeps nothing but names.
+class ObjCounts {
+ public:
+  explicit ObjCounts(std::string_view content) {
+    while (!content.empty()) count(takeLine(content));
+  }
+
+  // The corners of the triangles are kept twice meanwhile, and vectors grow to twice their size;
+  // vertices become several at the seams of a texture.
+  MeshFileSize size(const std::string& folder) const {
+    const bool dressed = texcoords_ > 0 || names_.size() > 1;
+    MeshFileSize size;
+    size.mesh.vertices = std::max(vertices_, texcoords_);
+    size.mesh.triangles = triangles_;
+    size.mesh.values = (coloured_ || names_.size() > 1 ? 3U : 0U) + (texcoords_ > 0 ? 2U : 0U);
+    size.meanwhile = 64 * triangles_ + 24 * vertices_ + 16 * texcoords_ +
+                     (dressed ? 20 * size.mesh.vertices : 0);
+    size.pictures = picturesOf({names_.begin(), names_.end()}, libraries_, folder);
+    return size;
+  }
+
+ private:
+  void count(std::string_view line) {
+    const std::string_view word = takeWord(line);
+    if (word == "v") {
+      coloured_ = coloured_ || (vertices_ == 0 && wordsIn(line) >= 6);
+      ++vertices_;
+    } else if (word == "vt") {
+      ++texcoords_;
+    } else if (word == "f") {
+      triangles_ += std::max(wordsIn(line), std::size_t{2}) - 2;
+    } else if (word == "usemtl") {
+      names_.emplace(trimmed(line.substr(0, line.find('#'))));
+    } else if (word == "mtllib") {
+      libraries_.emplace_back(trimmed(line.substr(0, line.find('#'))));
+    }
+  }
+  static std::size_t wordsIn(std::string_view line) {
+    std::size_t words = 0;
+    while (!takeWord(line).empty()) ++words;
+    return words;
+  }
+
+  std::size_t vertices_ = 0, texcoords_ = 0, triangles_ = 0;
+  bool coloured_ = false;
+  std::set<std::string, std::less<>> names_{""};
+  std::vector<std::string> libraries_;
+};
+
+std::optional<MeshFileSize> size(std::string_view content, const std::string& folder) {
+  return ObjCounts(content).size(folder);
 }
 
 // Whether a line of a file can stand in an OBJ file, as far as its first word tells.
@@ -53,6 +121,6 @@ const MeshReader kObjReader = {
     "obj",
     "colours; texture coordinates, and the texture images (PNG, JPEG) of its "
     "materials",
-    read, nullptr, isObj};
+    read, size, isObj};
 
 }  // namespace merlin::render::mesh

@@ -172,7 +172,7 @@ Result<LoadedMesh> read(std::string_view content, const std::string&) {
 std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
   OffFile file(content);
   if (!file.header()) return std::nullopt;
-  return MeshFileSize{file.size(), {}};
+  return MeshFileSize{file.size()};
 }
 
 bool isOff(std::string_view content) {

@@ -23,6 +23,7 @@ struct Column {
   std::size_t offset = 0;
   float scale = 1;
   bool whole = false;  // the property has an integer type
+  double origin = 0;   // is subtracted
 
   bool isOf(const Column& o) const { return values == o.values && offset == o.offset; }
 };
@@ -223,9 +224,11 @@ class Reader {
   Result<Ok> readVertices(const Element& e) {
     if (!mesh().positions.empty()) return Error{Errc::kMalformed, "two vertex elements"};
     if (const auto room = checkRoom(e); !room) return room;
-    const auto columns = planColumns(e);
+    auto columns = planColumns(e);
     if (!columns) return columns.error();
+    std::array<double, 3> first{};
     for (std::uint64_t row = 0; row < e.count; ++row) {
+      if (row == 1) setOrigin(e, first, *columns);
       for (std::size_t i = 0; i < e.properties.size(); ++i) {
         const Property& p = e.properties[i];
         const Column& c = (*columns)[i];
@@ -236,12 +239,26 @@ class Reader {
           return brokenAt(e, row, p);
         }
         if (!c.values) continue;
-        const auto kept = static_cast<float>(value);
+        if (row == 0 && c.values == &mesh().positions) first[c.offset] = value;
+        const auto kept = static_cast<float>(value - c.origin);
         if (c.whole && static_cast<double>(kept) != value) ++rounded_;
         (*c.values)[row * c.stride + c.offset] = kept * c.scale;
       }
     }
     return Ok{};
+  }
+
+  // Coordinates that are doubles become relative to an origin near the first vertex, which has been
+  // read and is moved.
+  void setOrigin(const Element& e, const std::array<double, 3>& first,
+                 std::vector<Column>& columns) {
+    const Origin near = originNear(first);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      Column& c = columns[i];
+      if (c.values != &mesh().positions || e.properties[i].type != Scalar::kFloat64) continue;
+      c.origin = loaded_.origin[c.offset] = near[c.offset];
+      mesh().positions[c.offset] = static_cast<float>(first[c.offset] - c.origin);
+    }
   }
 
   Result<Ok> readFaces(const Element& e) {

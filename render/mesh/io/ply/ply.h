@@ -26,8 +26,9 @@ struct FaceTextures {
 };
 
 // `bytes` is a whole file. Faces with more than three corners become triangle fans. The mesh is
-// neither validated nor tidied. Errors: kMalformed, kUnsupported, without the file's name.
-// textures  receives what the file says of texture images; null: that is left out
+// neither validated nor tidied; coordinates that are doubles are relative to its origin. Errors:
+// kMalformed, kUnsupported, without the file's name. textures  receives what the file says of
+// texture images; null: that is left out
 Result<LoadedMesh> parse(std::string_view bytes, FaceTextures* textures = nullptr);
 
 }  // namespace merlin::render::mesh::ply

@@ -97,6 +97,40 @@ bool isNormal(const std::string& property) {
   return property == "nx" || property == "ny" || property == "nz";
 }
 
+std::size_t wordsIn(std::string_view text) {
+  std::size_t words = 0;
+  bool blank = true;
+  for (const char c : text) {
+    const bool is_blank = c == ' ' || c == '\n' || c == '\r' || c == '\t';
+    words += blank && !is_blank;
+    blank = is_blank;
+  }
+  return words;
+}
+
+// The triangles of faces with any number of corners: what the file has beside its other numbers are
+// the corners. Nothing where there are other lists, whose lengths are not known.
+std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Header& header) {
+  const bool ascii = header.form == ply::Form::kAscii;
+  std::size_t left = ascii ? wordsIn(content.substr(header.size)) : content.size() - header.size;
+  std::size_t faces = 0, corner = 0;  // bytes, or one word
+  for (const ply::Element& e : header.elements) {
+    std::size_t fixed = 0;
+    for (const ply::Property& p : e.properties) {
+      if (p.list && (corner > 0 || e.name != "face")) return std::nullopt;
+      fixed += ascii ? 1 : ply::sizeOf(p.list ? p.count_type : p.type);
+      if (!p.list) continue;
+      corner = ascii ? 1 : ply::sizeOf(p.type);
+      faces = e.count;
+    }
+    if (fixed > 0 && e.count > left / fixed) return std::nullopt;  // is cut
+    left -= e.count * fixed;
+  }
+  if (corner == 0) return std::nullopt;
+  const std::size_t corners = left / corner;
+  return corners > 2 * faces ? corners - 2 * faces : 0;
+}
+
 std::optional<MeshFileSize> size(std::string_view content, const std::string& folder) {
   const auto header = ply::parseHeader(content);
   if (!header) return std::nullopt;
@@ -108,8 +142,13 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
     for (const auto& p : element.properties)
       found.mesh.values += !p.list && !isPosition(p.name) && !isNormal(p.name);
   }
-  if (header->pictures.size() == 1 && ply::hasTexcoord(*header))
-    found.picture = pathBeside(folder, header->pictures.front());
+  const auto triangles = trianglesIn(content, *header);
+  found.mesh.triangles = std::max(found.mesh.triangles, triangles.value_or(0));
+  if (header->pictures.empty()) return found;
+  constexpr std::size_t kTextured = 40;  // coordinates and the texture's number, of a triangle
+  found.meanwhile = kTextured * found.mesh.triangles;
+  for (const std::string& name : header->pictures)
+    if (name.find('\0') == std::string::npos) found.pictures.push_back(pathBeside(folder, name));
   return found;
 }
 

@@ -1,0 +1,44 @@
+// The lines "key=value" of a model's text "about" that say what its numbers mean: its unit, where
+// it lies, and unit and range of its features.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/mesh/origin.h"
+#include "render/range/range_image.h"
+
+namespace merlin::cli {
+
+// What a feature of the mesh means, as far as it is known.
+struct FeatureFacts {
+  std::string name, unit;
+  std::size_t dimension = 1;
+  float low = 0, high = 0;  // as the file says, else of the values; equal: unknown
+};
+
+// What stands behind `key` and "="; empty if there is no such line.
+std::string valueIn(std::string_view about, const std::string& key);
+
+// "mesh.origin=X Y Z" and a line feed; empty for 0 0 0.
+std::string aboutOrigin(const render::mesh::Origin& origin);
+// What aboutOrigin() wrote, or "points.origin=" of a point cloud; 0 0 0 if there is no such line,
+// or it is damaged.
+render::mesh::Origin originIn(std::string_view about);
+
+// "feature.NAME.unit=" and "feature.NAME.range=", a line each, of features of one value.
+std::string aboutFeatures(const std::vector<FeatureFacts>& features);
+// What aboutFeatures() wrote of this feature; without a unit or a range where there is none.
+FeatureFacts featureIn(std::string_view about, const std::string& name);
+
+// Of a plane of one value, the range that its file gives, else that of the pixels with a return.
+FeatureFacts factsOf(const render::range::Plane& plane, const render::range::RangeImage& image);
+
+// What is known of the feature in several images: the unit of those that have one, and the range of
+// all. `differ` receives whether two have different units; then there is none. REQUIRES: at least
+// one.
+FeatureFacts joined(const std::vector<FeatureFacts>& same_name, bool& differ);
+
+}  // namespace merlin::cli

@@ -1,0 +1,68 @@
+#include "render/mesh/io/obj/obj_parts.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace merlin::render::mesh {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+using Labels = std::vector<std::uint32_t>;
+// The vertex that a part has of its own in place of another one; kNone until it is made.
+using Twins = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
+
+Labels lowestParts(const std::vector<std::uint32_t>& part_of, const Mesh& mesh) {
+  Labels labels(mesh.vertexCount(), kNone);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    std::uint32_t& label = labels[mesh.triangles[i]];
+    label = std::min(label, part_of[i / 3]);
+  }
+  return labels;
+}
+
+// The first corner of each triangle of which no corner has its part's label.
+Twins needed(const std::vector<std::uint32_t>& part_of, const Mesh& mesh, const Labels& labels) {
+  Twins twins;
+  for (std::size_t t = 0; t < part_of.size(); ++t) {
+    const std::uint32_t* corners = &mesh.triangles[3 * t];
+    const bool own =
+        std::any_of(corners, corners + 3, [&](std::uint32_t v) { return labels[v] == part_of[t]; });
+    if (!own) twins.emplace(std::pair(corners[0], part_of[t]), kNone);
+  }
+  return twins;
+}
+
+std::uint32_t addTwin(std::uint32_t v, Mesh& mesh) {
+  const auto copy = [v](std::vector<float>& values, std::size_t dimension) {
+    for (std::size_t k = 0; k < dimension; ++k) values.push_back(values[v * dimension + k]);
+  };
+  copy(mesh.positions, 3);
+  for (Feature& f : mesh.features) copy(f.values, f.dimension);
+  return static_cast<std::uint32_t>(mesh.vertexCount() - 1);
+}
+
+}  // namespace
+
+void labelParts(const std::vector<std::uint32_t>& part_of, Mesh& mesh) {
+  Labels labels = lowestParts(part_of, mesh);
+  Twins twins = needed(part_of, mesh, labels);
+  for (std::size_t i = 0; i < mesh.triangles.size() && !twins.empty(); ++i) {
+    const auto found = twins.find({mesh.triangles[i], part_of[i / 3]});
+    if (found == twins.end()) continue;
+    if (found->second == kNone) {
+      found->second = addTwin(mesh.triangles[i], mesh);
+      labels.push_back(part_of[i / 3]);
+    }
+    mesh.triangles[i] = found->second;
+  }
+  Feature label{"label", 1, {}};
+  label.values.reserve(labels.size());
+  for (const std::uint32_t part : labels)
+    label.values.push_back(part == kNone ? 0.0F : static_cast<float>(part));
+  mesh.features.push_back(std::move(label));
+}
+
+}  // namespace merlin::render::mesh
