@@ -4,7 +4,9 @@ namespace merlin {
 
 void describePanel(GpioSettings& g, SettingsVisitor& v) {
   v.text("chip", g.chip,
-         "GPIO chip of the control panel: gpiochip0 or /dev/gpiochip0. Empty: there is no panel.");
+         "GPIO chip of the control panel: gpiochip0, /dev/gpiochip0, or its label as gpiodetect "
+         "prints it, which an adapter keeps when it is plugged in again while its number changes. "
+         "Empty: there is no panel.");
   v.integer("projector_line", g.projector_line, {-1, 1023},
             "Number of the GPIO line that merlind sets high to power the projectors; -1: no such "
             "line.");

@@ -8,7 +8,7 @@
 namespace merlin {
 
 struct GpioSettings {
-  std::string chip;  // "gpiochip0" or "/dev/gpiochip0"; empty: there is no panel
+  std::string chip;  // "gpiochip0", "/dev/gpiochip0" or a label; empty: there is no panel
   // Numbers of the chip's lines; -1: there is none.
   int projector_line = -1;  // high: power
   int video_line = -1;      // low: A, high: B

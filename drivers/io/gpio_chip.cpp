@@ -31,10 +31,15 @@ class ChipLines final : public GpioLines {
 
   Result<Ok> add(int number, bool output) {
     if (number < 0) return Ok{};
+    if (static_cast<unsigned>(number) >= ::gpiod_chip_num_lines(chip_))
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("{} has no line {}; it has {}, from 0 on", name_, number,
+                               ::gpiod_chip_num_lines(chip_))};
     gpiod_line* line = ::gpiod_chip_get_line(chip_, static_cast<unsigned>(number));
     const int done = !line    ? -1
                      : output ? ::gpiod_line_request_output(line, kConsumer, 0)
                               : ::gpiod_line_request_both_edges_events(line, kConsumer);
+    if (done != 0 && line && errno == EBUSY) return held(line, number);
     if (done != 0) return chipError(name_, fmt::format("line {}", number));
     lines_[number] = line;
     if (!output) input_ = line;
@@ -58,7 +63,7 @@ class ChipLines final : public GpioLines {
     timespec limit{timeout / std::chrono::seconds(1), (timeout % std::chrono::seconds(1)).count()};
     if (!input_) {
       ::nanosleep(&limit, nullptr);
-      return Ok{};
+      return answers();
     }
     const int ready = ::gpiod_line_event_wait(input_, &limit);
     gpiod_line_event event{};
@@ -68,18 +73,43 @@ class ChipLines final : public GpioLines {
   }
 
  private:
+  Error held(gpiod_line* line, int number) const {
+    const char* const by = ::gpiod_line_update(line) == 0 ? ::gpiod_line_consumer(line) : nullptr;
+    return {Errc::kBusy, fmt::format("{}: another program or a driver holds line {}{}{}", name_,
+                                     number, by ? ": " : "", by ? by : "")};
+  }
+
+  // An output alone does not tell that its chip is gone until it is written. Asks the kernel, not
+  // the chip: some cannot read.
+  Result<Ok> answers() const {
+    if (lines_.empty() || ::gpiod_line_update(lines_.begin()->second) == 0) return Ok{};
+    return chipError(name_, fmt::format("line {}", lines_.begin()->first));
+  }
+
   gpiod_chip* chip_;
   std::string name_;
   std::map<int, gpiod_line*> lines_;
   gpiod_line* input_ = nullptr;
 };
 
+// Names the chips that there are. A chip that was unplugged may have another number afterwards.
+Error noChip(const std::string& chip) {
+  std::string others;
+  gpiod_chip_iter* const all = ::gpiod_chip_iter_new();
+  while (gpiod_chip* other = all ? ::gpiod_chip_iter_next(all) : nullptr)
+    others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", ::gpiod_chip_name(other),
+                          ::gpiod_chip_label(other));
+  if (all) ::gpiod_chip_iter_free(all);
+  return {Errc::kNotFound, fmt::format("there is no GPIO chip {}; this machine has {}", chip,
+                                       others.empty() ? "none" : others)};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<GpioLines>> openGpioChip(const std::string& chip,
                                                 const std::vector<int>& outputs, int input) {
   gpiod_chip* opened = ::gpiod_chip_open_lookup(chip.c_str());
-  if (!opened) return chipError(chip, "open");
+  if (!opened) return errno == ENOENT ? noChip(chip) : chipError(chip, "open");
   auto lines = std::make_unique<ChipLines>(opened, chip);
   for (const int line : outputs) {
     if (const auto added = lines->add(line, true); !added) return added.error();

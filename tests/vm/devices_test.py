@@ -24,7 +24,8 @@ SLOT, MT_X, MT_Y, TRACKING_ID, REL_X, BTN_LEFT = 47, 53, 54, 57, 0, 272
 BALL = {"driver": "usb-serial", "id": "ball", "chardev": "ball-line"}
 
 
-def setUpModule():
+def setUpModule(modules=()):
+    """The emulators and the machine, with further modules of its kernel."""
     global MACHINE
     lines = f"{OPTIONS.work}/lines"
     os.makedirs(lines, exist_ok=True)
@@ -39,7 +40,7 @@ def setUpModule():
              "-device", "qemu-xhci,id=usb", "-device", "usb-serial,id=ball,chardev=ball-line"]
     try:
         MACHINE = vm.Vm(f"{OPTIONS.work}/machine", "640x480", memory_mb=512, extra=extra,
-                        modules=("xhci-pci", "ftdi_sio", "uinput", "evdev"))
+                        modules=("xhci-pci", "ftdi_sio", "uinput", "evdev", *modules))
     except vm.Missing as missing:
         print(f"test-vm: skipped: {missing}")
         raise unittest.SkipTest(str(missing)) from missing
@@ -61,9 +62,9 @@ def entry(name, port):
     return {"name": name, "driver": DRIVERS[name], "port": port}
 
 
-def start(*devices):
+def start(*devices, **settings):
     """Starts merlind with these devices, and waits until it is ready; returns its process id."""
-    config = {"run_directory": "/run/merlin", "devices": list(devices)}
+    config = {"run_directory": "/run/merlin", "devices": list(devices), **settings}
     with open(f"{MACHINE.shared}/devices.json", "w", encoding="utf-8") as file:
         json.dump(config, file)
     pid = int(MACHINE.run("merlind --role devices --config /mnt/devices.json >/run/log 2>&1 & echo $!"))

@@ -242,6 +242,18 @@ class Package(unittest.TestCase):
         vm.until(lambda: status()["frames"] > frames + 6, "the wall goes on")
         self.assertEqual([pid("merlin-wall"), state("merlin-devices")], [before, "active"])
 
+    def test_4c_a_reload_that_needs_a_start_keeps_process_and_picture(self):
+        starts = lambda: int(MACHINE.run("journalctl -u merlin-wall -o cat --no-pager | grep -c ready"))
+        before, count, devices = pid("merlin-wall"), starts(), pid("merlin-devices")
+        MACHINE.run("mkdir -p /etc/merlin/conf.d; echo '{\"wall\": {\"snapshots_kept\": 999}}' "
+                    ">/etc/merlin/conf.d/90-test.json; systemctl reload merlin-devices merlin-wall")
+        least, _ = shown_until(lambda: starts() > count)
+        self.assertGreater(least, 0.03, "a display was dark")
+        self.assertEqual([pid("merlin-wall"), pid("merlin-devices"), state("merlin-wall")], [before, devices, "active"])
+        vm.until(lambda: status()["frames"] > 2, "frames after the start")
+        MACHINE.run("rm /etc/merlin/conf.d/90-test.json; systemctl reload merlin-wall")
+        vm.until(lambda: starts() > count + 1, "the wall starts again")
+
     def test_5_a_broken_configuration_starts_with_the_last_good_one(self):
         MACHINE.run("cp /etc/merlin/merlin.json /root/good.json; echo '{' >/etc/merlin/merlin.json")
         MACHINE.run("systemctl restart merlin-devices merlin-wall")

@@ -26,15 +26,19 @@ def merlin(*arguments):
 
 
 def setUpModule():
-    """The wall with a model that an emulated machine soon has in full detail: then no frame is drawn any more."""
     wall.setUpModule()
+    wall.write_config("wall", small_wall())
+    wall.start_wall()
+
+
+def small_wall():
+    """The wall with a model that an emulated machine soon has in full detail: then no frame is drawn any more."""
     small = f"{wall.OPTIONS.work}/small"
     merlin("mesh", "export", f"{wall.OPTIONS.work}/model.mrm", "--percent", "2", "-o", f"{small}.ply")
     merlin("mesh", "reduce", f"{small}.ply", "-o", f"{small}.mrm")
     config = wall.read_config("wall")
     config["wall"]["model"] = f"{small}.mrm"
-    wall.write_config("wall", config)
-    wall.start_wall()
+    return config
 
 
 def tearDownModule():

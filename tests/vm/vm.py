@@ -26,6 +26,16 @@ class Missing(Exception):
     """What a virtual machine needs cannot be had here."""
 
 
+def fetch(packages, folder):
+    """Downloads Debian packages into `folder`, and returns their files."""
+    os.makedirs(folder, exist_ok=True)
+    fetched = subprocess.run(["apt-get", "-q", "-o", "APT::Sandbox::User=root", "download", *packages],
+                             cwd=folder, capture_output=True, text=True)
+    if fetched.returncode:
+        raise Missing(f"not fetched: {' '.join(packages)}: {fetched.stderr.strip().splitlines()[0]}")
+    return glob.glob(f"{folder}/*.deb")
+
+
 def kernel(cache):
     """(kernel, folder of modules) of Debian's stock kernel, unpacked from its package into `cache`."""
     if not glob.glob(f"{cache}/boot/vmlinuz-*"):
@@ -33,21 +43,19 @@ def kernel(cache):
         named = re.search(r"Depends: (linux-image-\S+)", depends.stdout)
         if not named:
             raise Missing("apt knows no package linux-image-amd64; is `apt-get update` needed?")
-        os.makedirs(cache, exist_ok=True)
-        fetched = subprocess.run(["apt-get", "-q", "-o", "APT::Sandbox::User=root", "download", named[1]],
-                                 cwd=cache, capture_output=True, text=True)
-        if fetched.returncode:
-            raise Missing(f"the package {named[1]} was not fetched: {fetched.stderr.strip()}")
-        package = glob.glob(f"{cache}/linux-image-*.deb")[0]
+        [package] = fetch([named[1]], cache)
         subprocess.run(["dpkg-deb", "-x", package, cache], check=True)
         os.unlink(package)
     return glob.glob(f"{cache}/boot/vmlinuz-*")[0], glob.glob(f"{cache}/lib/modules/*")[0]
 
 
 def module_files(folder, wanted):
-    """Files of the modules `wanted` and of what they need, in the order in which they are loaded."""
-    files = {os.path.basename(path)[:-3].replace("-", "_"): path
-             for path in glob.glob(f"{folder}/**/*.ko", recursive=True)}
+    """Files of the modules `wanted` and of what they need, in the order in which they are loaded.
+
+    `wanted`: names of modules in `folder`, or paths of others.
+    """
+    paths = glob.glob(f"{folder}/**/*.ko", recursive=True) + [name for name in wanted if "/" in name]
+    files = {os.path.basename(path)[:-3].replace("-", "_"): path for path in paths}
     order = []
 
     def add(name):
@@ -63,7 +71,7 @@ def module_files(folder, wanted):
         order.append(path)
 
     for name in wanted:
-        add(name)
+        add(os.path.basename(name).removesuffix(".ko"))
     return order
 
 
@@ -168,7 +176,8 @@ class Vm:
     def __init__(self, folder, mode, memory_mb=1536, root=None, modules=(), extra=()):
         """`folder`: for the machine's files; FOLDER/shared is its /mnt. `mode`: "640x480".
 
-        `modules`: of the kernel, beside MODULES. `extra`: arguments of QEMU; a further serial port is /dev/ttyS1.
+        `modules`: of the kernel, beside MODULES, or paths of others. `extra`: arguments of QEMU; a further
+        serial port is /dev/ttyS1.
 
         `root`: a Debian of its own with systemd, which the machine writes to; None: the host's, read-only.
         """

@@ -25,7 +25,8 @@ MACHINE = None
 PID = None  # of merlind in the machine
 
 
-def setUpModule():
+def setUpModule(modules=()):
+    """The machine, with further modules of its kernel, and the wall's configuration."""
     global MACHINE
     model = f"{OPTIONS.work}/model.mrm"
     os.makedirs(OPTIONS.work, exist_ok=True)
@@ -33,7 +34,7 @@ def setUpModule():
                     f"{vm.HERE}/../../config/models/ankylosaurus.ply", "-o", model], check=True,
                    stdout=subprocess.DEVNULL)
     try:
-        MACHINE = vm.Vm(f"{OPTIONS.work}/machine", f"{MODE[0]}x{MODE[1]}")
+        MACHINE = vm.Vm(f"{OPTIONS.work}/machine", f"{MODE[0]}x{MODE[1]}", modules=modules)
     except vm.Missing as missing:
         print(f"test-vm: skipped: {missing}")
         raise unittest.SkipTest(str(missing)) from missing
