@@ -9,7 +9,8 @@
 namespace merlin::wall {
 
 Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
-                                    const render::out::PictureSize& size, ThreadTeam& team,
+                                    const render::out::PictureSize& size,
+                                    render::correct::SignalParts parts, ThreadTeam& team,
                                     render::correct::CorrectionPass& pass) {
   const render::correct::CorrectionSettings& settings = output.correction;
   std::shared_ptr<render::correct::MeasuredCorrection> measured;  // used by `make` and its copies
@@ -18,10 +19,10 @@ Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
     if (!read) return read.error();
     measured = std::make_shared<render::correct::MeasuredCorrection>(*std::move(read));
   }
-  const auto make = [size, measured, &team,
+  const auto make = [size, parts, measured, &team,
                      &pass](const render::correct::CorrectionSettings& wanted) {
     auto map = render::correct::makeCorrectionMap(wanted, size.width, size.height, measured.get(),
-                                                  Threads(threadsOr(0)));
+                                                  Threads(threadsOr(0)), parts);
     return std::unique_ptr<render::frame::Correction>(
         std::make_unique<render::correct::OutputCorrection>(std::move(map),
                                                             Threads(threadsOr(0), team), &pass));

@@ -10,10 +10,11 @@
 namespace merlin::wall {
 
 // Returns an output that can be aligned; its `make` builds corrections, which are applied on the
-// wall's thread, by `pass` or by the threads of `team`. Both must outlive it. Errors: those of
-// readMeasured().
+// wall's thread, by `pass` or by the threads of `team`. Both must outlive it. `parts`: the pictures
+// in its signal, of `size` together. Errors: those of readMeasured().
 Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
-                                    const render::out::PictureSize& size, ThreadTeam& team,
+                                    const render::out::PictureSize& size,
+                                    render::correct::SignalParts parts, ThreadTeam& team,
                                     render::correct::CorrectionPass& pass);
 
 }  // namespace merlin::wall

@@ -64,6 +64,17 @@ RunKind kindOf(const CorrectionMap& map, std::size_t first, bool all) {
   return !shown ? RunKind::kNothing : changed ? RunKind::kLight : RunKind::kGeometry;
 }
 
+// The settings for a picture that the projector stretches so many times.
+CorrectionSettings squeezed(CorrectionSettings s, SignalParts parts) {
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    s.corners[2 * corner] /= parts.columns;
+    s.corners[2 * corner + 1] /= parts.rows;
+  }
+  for (double* const width : {&s.blend.left, &s.blend.right}) *width /= parts.columns;
+  for (double* const height : {&s.blend.top, &s.blend.bottom}) *height /= parts.rows;
+  return s;
+}
+
 CorrectionMap emptyMap(int width, int height) {
   CorrectionMap map;
   map.width = map.source_width = width;
@@ -75,6 +86,56 @@ CorrectionMap emptyMap(int width, int height) {
   map.gain.assign(entries, 0);
   map.black.assign(entries, 0);
   map.runs.assign(entries / kRun, RunKind::kNothing);
+  return map;
+}
+
+// The same map for each part of the signal.
+CorrectionMap repeated(const CorrectionMap& part, SignalParts parts, bool all) {
+  CorrectionMap map = emptyMap(part.width * parts.columns, part.height * parts.rows);
+  map.light = part.light;
+  for (int y = 0; y < map.height; ++y) {
+    const auto to = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.stride);
+    const auto from =
+        static_cast<std::size_t>(y % part.height) * static_cast<std::size_t>(part.stride);
+    const int below = y / part.height * part.height;
+    for (int x = 0; x < map.width; ++x) {
+      const std::size_t i = to + static_cast<std::size_t>(x);
+      const std::size_t k = from + static_cast<std::size_t>(x % part.width);
+      map.source_x[i] = part.source_x[k] + x / part.width * part.width * CorrectionMap::kOne;
+      map.source_y[i] = part.source_y[k] + below * CorrectionMap::kOne;
+      map.gain[i] = part.gain[k];
+      map.black[i] = part.black[k];
+    }
+    for (std::size_t x = 0; x < static_cast<std::size_t>(map.stride); x += kRun)
+      map.runs[(to + x) / kRun] = kindOf(map, to + x, all);
+  }
+  return map;
+}
+
+CorrectionMap makeMap(const CorrectionSettings& settings, int width, int height,
+                      const MeasuredCorrection* measured, Threads threads, bool all) {
+  CorrectionMap map = emptyMap(width, height);
+  map.light = lightOf(settings, measured);
+  const std::vector<Place> places =
+      Warp(settings, width, height, measured ? &measured->warp : nullptr).places(threads);
+  const Shares shares = sharesOf(settings, width, height, places, measured);
+  forBlocks(threads, static_cast<std::size_t>(height), [&](std::size_t y) {
+    const std::size_t from = y * static_cast<std::size_t>(width);
+    const std::size_t to = y * static_cast<std::size_t>(map.stride);
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+      const Place p = places[from + x];
+      if (std::isnan(p.u) || std::isnan(p.v)) continue;
+      const double at_x = static_cast<double>(p.u) * width - 0.5;
+      const double at_y = static_cast<double>(p.v) * height - 0.5;
+      const double covered = coverage(at_x, width) * coverage(at_y, height);
+      map.source_x[to + x] = fixed(at_x, width);
+      map.source_y[to + x] = fixed(at_y, height);
+      map.gain[to + x] = share(std::sqrt(covered * static_cast<double>(shares.gain[from + x])));
+      map.black[to + x] = share(covered * static_cast<double>(shares.black[from + x]));
+    }
+    for (std::size_t x = 0; x < static_cast<std::size_t>(map.stride); x += kRun)
+      map.runs[(to + x) / kRun] = kindOf(map, to + x, all);
+  });
   return map;
 }
 
@@ -107,31 +168,13 @@ Shares sharesOf(const CorrectionSettings& s, int width, int height, std::span<co
 }
 
 CorrectionMap makeCorrectionMap(const CorrectionSettings& settings, int width, int height,
-                                const MeasuredCorrection* measured, Threads threads) {
-  CorrectionMap map = emptyMap(width, height);
-  map.light = lightOf(settings, measured);
-  const std::vector<Place> places =
-      Warp(settings, width, height, measured ? &measured->warp : nullptr).places(threads);
-  const Shares shares = sharesOf(settings, width, height, places, measured);
+                                const MeasuredCorrection* measured, Threads threads,
+                                SignalParts parts) {
   const bool all = !settings.colour.isOff() || !settings.black.isOff();
-  forBlocks(threads, static_cast<std::size_t>(height), [&](std::size_t y) {
-    const std::size_t from = y * static_cast<std::size_t>(width);
-    const std::size_t to = y * static_cast<std::size_t>(map.stride);
-    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
-      const Place p = places[from + x];
-      if (std::isnan(p.u) || std::isnan(p.v)) continue;
-      const double at_x = static_cast<double>(p.u) * width - 0.5;
-      const double at_y = static_cast<double>(p.v) * height - 0.5;
-      const double covered = coverage(at_x, width) * coverage(at_y, height);
-      map.source_x[to + x] = fixed(at_x, width);
-      map.source_y[to + x] = fixed(at_y, height);
-      map.gain[to + x] = share(std::sqrt(covered * static_cast<double>(shares.gain[from + x])));
-      map.black[to + x] = share(covered * static_cast<double>(shares.black[from + x]));
-    }
-    for (std::size_t x = 0; x < static_cast<std::size_t>(map.stride); x += kRun)
-      map.runs[(to + x) / kRun] = kindOf(map, to + x, all);
-  });
-  return map;
+  if (parts == SignalParts{}) return makeMap(settings, width, height, measured, threads, all);
+  const CorrectionMap part = makeMap(squeezed(settings, parts), width / parts.columns,
+                                     height / parts.rows, measured, threads, all);
+  return repeated(part, parts, all);
 }
 
 }  // namespace merlin::render::correct

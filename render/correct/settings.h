@@ -73,6 +73,13 @@ struct CorrectionSettings {
   bool isOff() const;
 };
 
+// Pictures of equal size in one signal, each of which the projector stretches over the whole
+// screen: those of both eyes.
+struct SignalParts {
+  int columns = 1, rows = 1;
+  bool operator==(const SignalParts&) const = default;
+};
+
 // Limits of the values; the configuration schema has the same ones.
 inline constexpr double kMostCornerOffset = 16384;  // [px]
 inline constexpr int kMostMeshSide = 64;            // points

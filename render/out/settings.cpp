@@ -13,21 +13,6 @@ namespace {
 
 constexpr std::size_t kLongestName = 23;
 
-struct Rectangle {
-  int x = 0, y = 0, width = 0, height = 0;
-  bool overlaps(const Rectangle& o) const {
-    return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
-  }
-};
-
-Rectangle placeOf(const PlacedTile& placed, const tiles::TileSettings& tile,
-                  const tiles::TilesSettings& all) {
-  Rectangle r{placed.x, placed.y, tile.width > 0 ? tile.width : all.tile_width,
-              tile.height > 0 ? tile.height : all.tile_height};
-  if (placed.turn == Turn::k90 || placed.turn == Turn::k270) std::swap(r.width, r.height);
-  return r;
-}
-
 void checkTiles(const OutputSettings& o, const tiles::TilesSettings& tiles, const std::string& at,
                 SettingFaults& faults) {
   if (o.kind == OutputKind::kSharedMemory && !o.tiles.empty()) {
@@ -120,6 +105,14 @@ void checkDisplays(const std::vector<OutputSettings>& outputs, SettingFaults& fa
 }
 
 }  // namespace
+
+Rectangle placeOf(const PlacedTile& placed, const tiles::TileSettings& tile,
+                  const tiles::TilesSettings& all) {
+  Rectangle r{placed.x, placed.y, tile.width > 0 ? tile.width : all.tile_width,
+              tile.height > 0 ? tile.height : all.tile_height};
+  if (placed.turn == Turn::k90 || placed.turn == Turn::k270) std::swap(r.width, r.height);
+  return r;
+}
 
 std::optional<PictureSize> pictureSize(const OutputSettings& o, const tiles::TilesSettings& tiles) {
   if (o.tiles.empty()) return PictureSize{tiles.frame_width, tiles.frame_height};

@@ -53,6 +53,18 @@ struct OutputSettings {
   std::string shownName() const { return name.empty() ? nameOf(kind) : name; }
 };
 
+// Part of a picture [px].
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Rectangle&) const = default;
+  bool overlaps(const Rectangle& o) const {
+    return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
+  }
+};
+// Where the tile is in the output's picture. `tile`: that which `placed` names, one of `all`.
+Rectangle placeOf(const PlacedTile& placed, const tiles::TileSettings& tile,
+                  const tiles::TilesSettings& all);
+
 // Size of the picture that an output is sent; a correction does not change it.
 struct PictureSize {
   int width = 0, height = 0;  // [px]

@@ -1,6 +1,7 @@
 #include "render/stereo/eye_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <string>
 #include <utility>
@@ -146,6 +147,39 @@ std::vector<out::PlacedTile> placedOn(const StereoSettings& stereo,
   return all;
 }
 
+// Where an output's tiles are in its signal, by the eye that they are for.
+struct PlacesByEye {
+  std::vector<out::Rectangle> left, right;
+  bool of_both = false;  // a tile that is for both eyes
+
+  // Whether the right eye's tiles are `by` from the left one's, whose half ends there.
+  bool areHalves(int width, int height, std::array<int, 2> by) const {
+    if (left.size() != right.size() || width % 2 != 0 || height % 2 != 0) return false;
+    const int right_end = by[0] > 0 ? by[0] : width, bottom_end = by[1] > 0 ? by[1] : height;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const out::Rectangle &l = left[i], &r = right[i];
+      if (l.x + l.width > right_end || l.y + l.height > bottom_end) return false;
+      if (r != out::Rectangle{l.x + by[0], l.y + by[1], l.width, l.height}) return false;
+    }
+    return true;
+  }
+};
+
+PlacesByEye placesByEye(const out::OutputSettings& output, const tiles::TilesSettings& tiles) {
+  PlacesByEye places;
+  const auto add = [&](const tiles::TileSettings& tile, const out::Rectangle& at) {
+    if (tile.eye == tiles::Eye::kLeft) places.left.push_back(at);
+    if (tile.eye == tiles::Eye::kRight) places.right.push_back(at);
+    places.of_both |= tile.eye == tiles::Eye::kMiddle;
+  };
+  for (const tiles::TileSettings& tile : tiles.tiles) {
+    if (output.tiles.empty()) add(tile, out::placeOf({tile.name, tile.x, tile.y}, tile, tiles));
+    for (const out::PlacedTile& placed : output.tiles)
+      if (placed.tile == tile.name) add(tile, out::placeOf(placed, tile, tiles));
+  }
+  return places;
+}
+
 }  // namespace
 
 EyeTiles eyeTiles(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
@@ -177,16 +211,17 @@ EyeTiles eyeTiles(const StereoSettings& stereo, const tiles::TilesSettings& tile
   return eyes;
 }
 
-bool showsBothEyes(const out::OutputSettings& output, const tiles::TilesSettings& tiles) {
-  if (output.kind == out::OutputKind::kSharedMemory) return false;  // it is not corrected
-  const auto shows = [&](tiles::Eye eye) {
-    return std::ranges::any_of(tiles.tiles, [&](const tiles::TileSettings& t) {
-      return t.eye == eye && (output.tiles.empty() ||
-                              std::ranges::find(output.tiles, t.name, &out::PlacedTile::tile) !=
-                                  output.tiles.end());
-    });
-  };
-  return shows(tiles::Eye::kLeft) && shows(tiles::Eye::kRight);
+std::optional<correct::SignalParts> signalParts(const out::OutputSettings& output,
+                                                const tiles::TilesSettings& tiles) {
+  constexpr correct::SignalParts kOne{1, 1}, kBeside{2, 1}, kBelow{1, 2};
+  if (output.kind == out::OutputKind::kSharedMemory) return kOne;  // it is not corrected
+  const PlacesByEye places = placesByEye(output, tiles);
+  const auto size = out::pictureSize(output, tiles);
+  if (!size || places.left.empty() || places.right.empty()) return kOne;
+  if (places.of_both) return std::nullopt;
+  if (places.areHalves(size->width, size->height, {size->width / 2, 0})) return kBeside;
+  if (places.areHalves(size->width, size->height, {0, size->height / 2})) return kBelow;
+  return std::nullopt;
 }
 
 std::string pointerInSettings(const EyeTiles& eyes, const std::string& pointer) {

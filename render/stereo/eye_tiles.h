@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "render/out/settings.h"
@@ -34,9 +35,11 @@ struct EyeTiles {
 EyeTiles eyeTiles(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
                   const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
 
-// Whether the output's signal has a picture of each eye in it, each in a place of its own: then a
-// correction of the signal fits neither. Both as in EyeTiles.
-bool showsBothEyes(const out::OutputSettings& output, const tiles::TilesSettings& tiles);
+// The parts of the output's signal that have a picture each: two if the halves of the signal are
+// the left and the right eye's, with the same arrangement. Nothing if the pictures of both eyes are
+// in other places: no correction fits them. Output and tiles as in EyeTiles.
+std::optional<correct::SignalParts> signalParts(const out::OutputSettings& output,
+                                                const tiles::TilesSettings& tiles);
 
 // Pointer of a fault of EyeTiles::outputs, as their validate() gives it, in the settings that the
 // outputs were made from.

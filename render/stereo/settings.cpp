@@ -71,10 +71,11 @@ SettingFaults faultsOfFigures(const StereoSettings& s) {
   const bool none = s.eyes_direction == std::array<double, 3>{};
   if (!none && !(Vector3d(s.eyes_direction.data()).norm() > 1e-3 &&
                  within(s.eyes_direction, -kLargest_m, kLargest_m))) {
-    faults.push_back({"/stereo/eyes_direction",
-                      fmt::format("is {}, which is no direction; give x, y and z from the left to "
-                                  "the right eye, such as 1, 0, 0",
-                                  fmt::join(s.eyes_direction, ", "))});
+    faults.push_back(
+        {"/stereo/eyes_direction",
+         fmt::format("is {}, which is not a direction; give x, y and z from the left to "
+                     "the right eye, such as 1, 0, 0",
+                     fmt::join(s.eyes_direction, ", "))});
   }
   return faults;
 }
@@ -187,17 +188,18 @@ bool dependsOnPlace(const correct::CorrectionSettings& c) {
          c.blend.hasRamp() || !c.black.isOff();
 }
 
-// A correction is of the whole signal, in which each eye's picture is only a part.
+// A correction is of the whole signal, or of each half of it. Both eyes' pictures may be elsewhere.
 SettingFaults faultsOfCorrections(const StereoSettings& s, const EyeTiles& eyes) {
   SettingFaults faults;
   for (std::size_t i = 0; i < eyes.outputs.size(); ++i) {
     const out::OutputSettings& output = eyes.outputs[i];
-    if (!showsBothEyes(output, eyes.tiles) || !dependsOnPlace(output.correction)) continue;
+    if (signalParts(output, eyes.tiles) || !dependsOnPlace(output.correction)) continue;
     faults.push_back(
         {fmt::format("/outputs/{}/correction", i),
-         fmt::format("has corners, a mesh, ramps or a black level, which would apply to the whole "
-                     "signal, and in stereo mode {} that has a picture of each eye in it; use "
-                     "mode two_outputs or anaglyph, or only colour",
+         fmt::format("has corners, a mesh, ramps or a black level, which apply to each eye's half "
+                     "of the signal, and in stereo mode {} the eyes' pictures of this output are "
+                     "not its halves; let it show one tile (tiles), use mode two_outputs or "
+                     "anaglyph, or only colour",
                      nameOf(s.mode))});
   }
   return faults;

@@ -63,12 +63,12 @@ struct StereoSettings {
 // Finds stereo that no wall can show: eyes further apart than their screen is away, an eye that
 // does not see a screen from the front, a tile that cannot be halved or whose name has no room for
 // the eye's, an output that shows a tile in a way that the mode has not, one whose correction would
-// move or cover parts of both eyes' pictures as if they were one, two_outputs without two outputs;
-// eyes without a line; axes of the tracker that are not a right-handed permutation, figures that
-// are not numbers. Pointers are relative to /wall: "/stereo/mode",
-// "/outputs/0/tiles/1". What else is wrong with the resulting tiles and outputs, their own
-// validate() finds. Pure. tiles             those of the wall without stereo, without faults
-// wall_distance_m   of the screens of tiles that have none, unless `stereo` says more
+// move or cover parts of both eyes' pictures where these are not the halves of the signal,
+// two_outputs without two outputs; eyes without a line; axes of the tracker that are not a
+// right-handed permutation, figures that are not numbers. Pointers are relative to /wall:
+// "/stereo/mode", "/outputs/0/tiles/1". What else is wrong with the resulting tiles and outputs,
+// their own validate() finds. Pure. `tiles`: those of the wall without stereo, without faults;
+// `wall_distance_m`: of the screens of tiles that have none, unless `stereo` says more.
 SettingFaults validate(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
                        const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
 

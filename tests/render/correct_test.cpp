@@ -12,6 +12,7 @@
 #include "render/correct/output_correction.h"
 #include "render/frame/correction_chain.h"
 #include "render/frame/tile_arrangement.h"
+#include "render/out/settings.h"
 #include "tests/support/corrections.h"
 
 namespace merlin::render {
@@ -30,6 +31,17 @@ std::vector<std::uint8_t> corrected(const correct::CorrectionSettings& s,
                                        1);
   const out::Signal signal = correction.apply({kWidth, kHeight, picture});
   return {signal.pixels.begin(), signal.pixels.end()};
+}
+
+// The part of an RGBA picture of `width` pixels in a row.
+std::vector<std::uint8_t> partOf(const std::vector<std::uint8_t>& picture, int width,
+                                 const out::Rectangle& part) {
+  std::vector<std::uint8_t> pixels;
+  for (int y = part.y; y < part.y + part.height; ++y) {
+    const auto first = picture.begin() + 4 * (std::ptrdiff_t{y} * width + part.x);
+    pixels.insert(pixels.end(), first, first + 4 * std::ptrdiff_t{part.width});
+  }
+  return pixels;
 }
 
 // The formula of correction_map.h in double precision; the result, 0..255, is not yet rounded.
@@ -374,6 +386,31 @@ TEST(Correct, AChainCorrectsThePictureThatTheTilesMake) {
   const out::Signal signal = chain.apply({2 * kWidth, kHeight, canvas});
   EXPECT_EQ(signal.width, kWidth);
   EXPECT_TRUE(std::ranges::equal(signal.pixels, expected));
+}
+
+// Both eyes' pictures in one signal: each is corrected as the picture of an output of its own.
+TEST(CorrectionMap, EachPartOfASignalHasTheWholeCorrection) {
+  const std::vector<std::uint8_t> picture = noise(kWidth, kHeight);
+  for (const correct::SignalParts parts : {correct::SignalParts{2, 1}, {1, 2}}) {
+    const int width = kWidth / parts.columns, height = kHeight / parts.rows;
+    correct::OutputCorrection both(
+        correct::makeCorrectionMap(everything(), kWidth, kHeight, nullptr, 1, parts), 1);
+    const auto whole = both.apply({kWidth, kHeight, picture}).pixels;
+    const std::vector<std::uint8_t> signal(whole.begin(), whole.end());
+    correct::CorrectionSettings squeezed = everything();
+    for (std::size_t k = 0; k < 8; ++k)
+      squeezed.corners[k] /= k % 2 == 0 ? parts.columns : parts.rows;
+    squeezed.blend.left /= parts.columns, squeezed.blend.right /= parts.columns;
+    squeezed.blend.top /= parts.rows, squeezed.blend.bottom /= parts.rows;
+    correct::OutputCorrection alone(correct::makeCorrectionMap(squeezed, width, height, nullptr, 1),
+                                    1);
+    for (const int part : {0, 1}) {
+      const out::Rectangle at{part * (kWidth - width), part * (kHeight - height), width, height};
+      const auto expected = alone.apply({width, height, partOf(picture, kWidth, at)}).pixels;
+      EXPECT_TRUE(std::ranges::equal(partOf(signal, kWidth, at), expected))
+          << parts.columns << " x " << parts.rows << ", part " << part;
+    }
+  }
 }
 
 }  // namespace

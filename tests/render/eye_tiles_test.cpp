@@ -193,6 +193,25 @@ TEST(EyeTiles, HaveEyesAlongTheMiddleTile) {
   EXPECT_TRUE(Vector3d(eyesOf(stereo, tiles).tiles.eyes_m.data()).isApprox(Vector3d(0, 0.06, 0)));
 }
 
+TEST(EyeTiles, ASignalHasAPartForEachEyeIfTheyAreItsHalves) {
+  const auto partsOf = [](stereo::StereoMode mode, const std::vector<out::PlacedTile>& tiles) {
+    const stereo::EyeTiles eyes = eyesOf(inMode(mode), oneTile(), {picture("a", tiles)});
+    return stereo::signalParts(eyes.outputs[0], eyes.tiles);
+  };
+  using correct::SignalParts;
+  EXPECT_EQ(partsOf(stereo::StereoMode::kSideBySide, {{"wall"}}), (SignalParts{2, 1}));
+  EXPECT_EQ(partsOf(stereo::StereoMode::kTopBottom, {{"wall"}}), (SignalParts{1, 2}));
+  EXPECT_EQ(partsOf(stereo::StereoMode::kTopBottom, {{"wall.L"}, {"wall.R", 640}}),
+            (SignalParts{2, 1}))
+      << "as they are placed";
+  EXPECT_EQ(partsOf(stereo::StereoMode::kSideBySide, {{"wall.R"}}), (SignalParts{1, 1}));
+  EXPECT_EQ(partsOf(stereo::StereoMode::kSideBySide, {{"operator"}}), (SignalParts{1, 1}));
+  EXPECT_EQ(partsOf(stereo::StereoMode::kAnaglyph, {{"wall"}}), (SignalParts{1, 1}));
+  EXPECT_EQ(partsOf(stereo::StereoMode::kSideBySide, {{"operator"}, {"wall", 640}}), std::nullopt);
+  EXPECT_EQ(partsOf(stereo::StereoMode::kSideBySide, {{"wall", 100}}), std::nullopt)
+      << "the left eye's picture is not a half";
+}
+
 // A mirrored tile: each eye's picture is mirrored, and the left one stays on the left.
 TEST(EyeTiles, ArePackedOnOutputsThatShowTheirTile) {
   const std::vector<out::OutputSettings> outputs = {
@@ -335,7 +354,8 @@ const Fault kFaults[] = {
        w.stereo.eyes_direction = {1e-4, 0, 0};
      },
      "/stereo/eyes_direction",
-     "is 0.0001, 0, 0, which is no direction; give x, y and z from the left to the right eye, such "
+     "is 0.0001, 0, 0, which is not a direction; give x, y and z from the left to the right eye, "
+     "such "
      "as 1, 0, 0"},
     {"AHeadAtNoStation", [](Wall& w) { w.stereo.head.station = 5; }, "/stereo/head/station",
      "is 5; a tracker has stations 1 to 4, 0 is none"},
@@ -398,22 +418,22 @@ const Fault kFaults[] = {
      "not on its side; place wall.L and wall.R each on its own"},
     {"ARampOverBothEyes",
      [](Wall& w) {
-       w.outputs = {picture("a", {{"wall"}})};
+       w.outputs = {picture("a", {{"operator"}, {"wall", 640}})};
        w.outputs[0].correction.blend.right = 40;
      },
      "/outputs/0/correction",
-     "has corners, a mesh, ramps or a black level, which would apply to the whole signal, and in "
-     "stereo mode side_by_side that has a picture of each eye in it; use mode two_outputs or "
-     "anaglyph, or only colour"},
+     "has corners, a mesh, ramps or a black level, which apply to each eye's half of the signal, "
+     "and in stereo mode side_by_side the eyes' pictures of this output are not its halves; let it "
+     "show one tile (tiles), use mode two_outputs or anaglyph, or only colour"},
     {"ACornerOfTheWholeFrame",
      [](Wall& w) {
        w.outputs = {picture("a", {})};
        w.outputs[0].correction.corners[0] = 1;
      },
      "/outputs/0/correction",
-     "has corners, a mesh, ramps or a black level, which would apply to the whole signal, and in "
-     "stereo mode side_by_side that has a picture of each eye in it; use mode two_outputs or "
-     "anaglyph, or only colour"},
+     "has corners, a mesh, ramps or a black level, which apply to each eye's half of the signal, "
+     "and in stereo mode side_by_side the eyes' pictures of this output are not its halves; let it "
+     "show one tile (tiles), use mode two_outputs or anaglyph, or only colour"},
     {"TwoOutputsThatShowBothEyes",
      [](Wall& w) {
        w.stereo.mode = stereo::StereoMode::kTwoOutputs;
