@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -77,23 +78,35 @@ class EglContext final : public GlContext {
     if (display_ == EGL_NO_DISPLAY) return eglError("no display without a window system");
     if (!eglInitialize(display_, nullptr, nullptr)) return eglError("initialisation");
     if (!eglBindAPI(EGL_OPENGL_API)) return eglError("no desktop OpenGL");
-    const EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                  3,
-                                  EGL_CONTEXT_MINOR_VERSION,
-                                  3,
-                                  EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                  EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                  EGL_NONE};
-    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes);
-    if (context_ == EGL_NO_CONTEXT) return eglError("no OpenGL 3.3 core context");
+    const bool tells_of_reset = createContext(true);
+    if (!tells_of_reset && !createContext(false)) return eglError("no OpenGL 3.3 core context");
     if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
       return eglError("no context without a surface");
     }
     auto api = loadApi([](const char* name) { return eglGetProcAddress(name); });
     if (!api) return api.error();
     api_ = *api;
+    if (tells_of_reset) {
+      api_.GetGraphicsResetStatus = reinterpret_cast<PFNGLGETGRAPHICSRESETSTATUSPROC>(
+          eglGetProcAddress("glGetGraphicsResetStatus"));
+    }
     info_ = rendererOf(api_, "EGL");
     return Ok{};
+  }
+
+  // Not every driver tells of a reset of the GPU.
+  bool createContext(bool tells_of_reset) {
+    std::vector<EGLint> attributes = {
+        EGL_CONTEXT_MAJOR_VERSION,       3,
+        EGL_CONTEXT_MINOR_VERSION,       3,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+    if (tells_of_reset) {
+      attributes.push_back(EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY);
+      attributes.push_back(EGL_LOSE_CONTEXT_ON_RESET);
+    }
+    attributes.push_back(EGL_NONE);
+    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    return context_ != EGL_NO_CONTEXT;
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;

@@ -100,6 +100,8 @@ struct GlApi {
 #define MERLIN_GL_MEMBER(type, name) type name = nullptr;
   MERLIN_GL_FUNCTIONS(MERLIN_GL_MEMBER)
 #undef MERLIN_GL_MEMBER
+  // Null unless the context tells of a reset of its GPU.
+  PFNGLGETGRAPHICSRESETSTATUSPROC GetGraphicsResetStatus = nullptr;
 };
 
 }  // namespace merlin::render::gl

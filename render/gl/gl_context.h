@@ -24,6 +24,12 @@ class GlContext {
   // "EGL, llvmpipe (LLVM 15.0.6, 256 bits)"; for a person.
   std::string renderer() const { return info_.library + ", " + info_.name; }
 
+  // Whether the GPU was reset, by a driver that gave up on it: the context and all that it holds
+  // are lost, and frames stay black. False where the driver does not tell.
+  bool wasReset() const {
+    return api_.GetGraphicsResetStatus && api_.GetGraphicsResetStatus() != 0;
+  }
+
   // Creates another context by the same renderer, current on the calling thread, which must be
   // another one than this context's. Mesa's software renderers of one EGL display draw one after
   // the other, so theirs gets a display of its own where there is one. Errors: kUnsupported.

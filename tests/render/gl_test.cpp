@@ -366,5 +366,22 @@ INSTANTIATE_TEST_SUITE_P(Backends, GlOf,
                            return backend.param == gl::GlBackend::kEgl ? "Egl" : "Osmesa";
                          });
 
+// A context of a GPU that its driver has reset.
+class LostContext final : public gl::GlContext {
+ public:
+  LostContext() {
+    api_.GetGraphicsResetStatus = []() -> GLenum { return GL_INNOCENT_CONTEXT_RESET; };
+  }
+  Result<std::unique_ptr<GlContext>> makeFurther() const override {
+    return Error{Errc::kUnsupported, "none"};
+  }
+};
+
+TEST(GlContext, SaysWhetherItsGpuWasReset) {
+  EXPECT_TRUE(LostContext().wasReset());
+  EXPECT_FALSE((*gl::makeGlContext(gl::GlBackend::kEgl))->wasReset());
+  EXPECT_FALSE((*gl::makeGlContext(gl::GlBackend::kOsmesa))->wasReset());
+}
+
 }  // namespace
 }  // namespace merlin::render
