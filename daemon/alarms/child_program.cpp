@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -42,12 +43,20 @@ Result<UniqueFd> fileOf(const std::string& text) {
 
 }  // namespace
 
+Result<Ok> checkProgram(const std::string& path) {
+  struct stat status {};
+  const char* why = nullptr;
+  if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), X_OK) != 0)
+    why = std::strerror(errno);
+  else if (!S_ISREG(status.st_mode))
+    why = "it is not a file";
+  if (!why) return Ok{};
+  return Error{Errc::kNotFound, fmt::format("{}: cannot be executed: {}", path, why)};
+}
+
 Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
                                          const std::string& input, Timestamp deadline) {
-  if (::access(run.front().c_str(), X_OK) != 0) {
-    return Error{Errc::kNotFound,
-                 fmt::format("{}: cannot be executed: {}", run.front(), std::strerror(errno))};
-  }
+  if (const auto usable = checkProgram(run.front()); !usable) return usable.error();
   const auto file = fileOf(input);
   if (!file) return file.error();
   std::vector<char*> arguments;

@@ -13,6 +13,10 @@
 
 namespace merlin::alarms {
 
+// Whether this process may execute the program now. Errors, a sentence that begins with the path:
+// kNotFound (there is no such file, it is none, or may not be executed).
+Result<Ok> checkProgram(const std::string& path);
+
 // Thread-bound. Never waits, except for the destructor, which ends the program.
 class ChildProgram {
  public:

@@ -15,6 +15,8 @@ namespace merlin::cli {
 namespace {
 
 constexpr std::size_t kShortest = 4;  // what is shorter stands in every text by chance
+// An argument that is shorter is rather an option or a name than a token.
+constexpr std::size_t kShortestArgument = 12;
 constexpr std::size_t kMostFileBytes = 65536;
 
 }  // namespace
@@ -26,6 +28,11 @@ KnownSecrets::KnownSecrets(const Settings& settings, const std::vector<std::stri
   }
   for (const std::string& path : others) {
     if (fileStamp(path)) addFile(path);
+  }
+  for (const AlarmSettings& alarm : settings.alarms) {
+    for (std::size_t i = 1; i < alarm.run.size(); ++i) {
+      if (alarm.run[i].size() >= kShortestArgument) add(alarm.run[i]);
+    }
   }
   sortByLength();
 }

@@ -16,7 +16,8 @@ class KnownSecrets {
  public:
   // Reads the files that the settings name, and `others` that exist, as far as this user may. The
   // name of a file that does not exist counts as a secret, since somebody may have written the
-  // secret there.
+  // secret there. So does an argument of an alarm's program, from 12 characters on: it may be a
+  // token.
   KnownSecrets(const Settings& settings, const std::vector<std::string>& others);
   explicit KnownSecrets(const std::vector<std::string>& texts);
 

@@ -31,7 +31,21 @@ using std::chrono::seconds;
 constexpr std::size_t kMega = 1 << 20;
 constexpr std::size_t kMostFlightBytes = 2 * kMega;  // of one recording
 constexpr const char* kUnits[] = {"merlin-devices.service", "merlin-wall.service",
-                                  "merlin-page.service", "merlin-rfb.service", "merlin.target"};
+                                  "merlin-page.service",    "merlin-alarms.service",
+                                  "merlin-rfb.service",     "merlin.target"};
+
+// The settings without what may be a secret in them. Of an alarm's program only its path stays,
+// also where somebody wrote arguments behind it.
+Settings forStrangers(Settings settings) {
+  for (AlarmSettings& alarm : settings.alarms) {
+    for (std::size_t i = 1; i < alarm.run.size(); ++i) alarm.run[i] = kSecretLeftOut;
+    if (alarm.run.empty()) continue;
+    std::string& program = alarm.run.front();
+    if (const auto blank = program.find_first_of(" \t\n"); blank != std::string::npos)
+      program = program.substr(0, blank + 1) + kSecretLeftOut;
+  }
+  return settings;
+}
 
 std::string changesText(const Settings& settings) {
   std::string text;
@@ -45,8 +59,9 @@ std::string changesText(const Settings& settings) {
 void collectConfiguration(const ReportSubject& subject, PartFolder& folder) {
   const LoadedSettings& loaded = subject.loaded;
   folder.put("findings.txt", findingsText(subject.config, loaded));
-  folder.put("settings.json", settingsText(loaded.settings, Secrets::kLeftOut));
-  folder.put("changes.txt", changesText(loaded.settings));
+  const Settings settings = forStrangers(loaded.settings);
+  folder.put("settings.json", settingsText(settings, Secrets::kLeftOut));
+  folder.put("changes.txt", changesText(settings));
   const std::string state = state::findStateFile(loaded.settings.state_file, subject.instance);
   folder.put("state.json", state::StateFolder(state).read());
 }

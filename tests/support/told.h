@@ -1,0 +1,20 @@
+// Events as sentences, to be compared in a test: "fault: output left failed: unplugged".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/base/event_kinds.h"
+
+namespace merlin::test {
+
+using Sentences = std::vector<std::string>;
+
+inline Sentences told(const std::vector<Event>& events) {
+  Sentences sentences;
+  for (const Event& event : events)
+    sentences.push_back((event.is_fault ? "fault: " : "") + event.what);
+  return sentences;
+}
+
+}  // namespace merlin::test
