@@ -8,6 +8,7 @@
 
 #include "config/device_checks.h"
 #include "config/devices.h"
+#include "config/needs.h"
 #include "daemon/base/commands.h"
 #include "daemon/base/tcp_address.h"
 #include "render/room/room_tiles.h"
@@ -181,6 +182,7 @@ void checkTogether(LoadedSettings& loaded) {
   checkSnapshots(s.wall, loaded);
   checkPanel(s.wall, loaded);
   checkBindings(s, loaded);
+  checkNeeds(loaded);
 }
 
 }  // namespace merlin

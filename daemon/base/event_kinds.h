@@ -1,9 +1,20 @@
-// Kinds of events: what the topic "event" tells of, and which of them alarms can be for.
+// Events: a sentence each, and their kinds: what the topic "event" tells of, and which of them
+// alarms can be for.
 #pragma once
 
 #include <array>
+#include <string>
+#include <utility>
 
 namespace merlin {
+
+// What has happened. A fault becomes a warning in the log; a recovery, and what people did, do not.
+struct Event {
+  std::string what;  // a sentence
+  bool is_fault;
+};
+inline Event faultEvent(std::string what) { return {std::move(what), true}; }
+inline Event newsEvent(std::string what) { return {std::move(what), false}; }
 
 struct EventKind {
   const char* name;

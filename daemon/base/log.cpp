@@ -1,9 +1,11 @@
 #include "daemon/base/log.h"
 
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -28,12 +30,12 @@ spdlog::level::level_enum toSpdlog(LogLevel level) {
 
 std::string_view syslogPriority(LogLevel level) {
   switch (level) {
-    case LogLevel::kDebug: return "<7>";
-    case LogLevel::kInfo: return "<6>";
-    case LogLevel::kWarning: return "<4>";
-    case LogLevel::kError: return "<3>";
+    case LogLevel::kDebug: return "7";
+    case LogLevel::kInfo: return "6";
+    case LogLevel::kWarning: return "4";
+    case LogLevel::kError: return "3";
   }
-  return "<6>";
+  return "6";
 }
 
 // Writes to standard error without blocking: a stopped pager or a hanging reader of the log must
@@ -71,9 +73,23 @@ class PatientSink final : public spdlog::sinks::base_sink<std::mutex> {
   std::uint64_t lost_ = 0;
 };
 
-bool underJournal() {
-  static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
-  return journal;
+// Set by initLog(), before any thread starts.
+struct Target {
+  bool has_priority = std::getenv("JOURNAL_STREAM") != nullptr;  // at the beginning of a line
+  std::optional<Journal> journal;
+};
+Target& target() {
+  static Target the_target;
+  return the_target;
+}
+
+bool sendToJournal(LogLevel level, std::string_view line, const LogFields& fields) {
+  const std::array<JournalField, 5> all{{{"PRIORITY", syslogPriority(level)},
+                                         {"SYSLOG_IDENTIFIER", program_invocation_short_name},
+                                         {"MERLIN_KIND", fields.kind},
+                                         {"MERLIN_ROLE", fields.role},
+                                         {"MESSAGE", line}}};
+  return target().journal->send(journalDatagram(all));
 }
 
 }  // namespace
@@ -84,20 +100,24 @@ void openStandardStreams() {
   }
 }
 
-void initLog(LogLevel lowest) {
+void initLog(LogLevel lowest, const char* journal) {
+  if (isJournalStream(STDERR_FILENO, std::getenv("JOURNAL_STREAM")))
+    target().journal.emplace(journal);
   auto logger = std::make_shared<spdlog::logger>("merlin", std::make_shared<PatientSink>());
-  logger->set_pattern(underJournal() ? "%v" : "%H:%M:%S.%e %l: %v");
+  logger->set_pattern(target().has_priority ? "%v" : "%H:%M:%S.%e %l: %v");
   logger->set_level(toSpdlog(lowest));
   logger->flush_on(spdlog::level::debug);
   spdlog::set_default_logger(std::move(logger));
 }
 
-void logLine(LogLevel level, std::string_view text) {
-  if (underJournal()) {
-    spdlog::log(toSpdlog(level), "{}{}", syslogPriority(level), oneLine(text));
-  } else {
-    spdlog::log(toSpdlog(level), "{}", oneLine(text));
-  }
+void logLine(LogLevel level, std::string_view text, const LogFields& fields) {
+  if (!spdlog::should_log(toSpdlog(level))) return;
+  const std::string line = oneLine(text);
+  if (target().journal && sendToJournal(level, line, fields)) return;
+  if (target().has_priority)
+    spdlog::log(toSpdlog(level), "<{}>{}", syslogPriority(level), line);
+  else
+    spdlog::log(toSpdlog(level), "{}", line);
 }
 
 }  // namespace merlin

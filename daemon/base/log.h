@@ -1,8 +1,10 @@
-// Logging: one line per event to stderr, in a form that systemd's journal understands.
+// Logging: one line per event, to systemd's journal or to stderr.
 //
-// Under the journal (JOURNAL_STREAM is set) a line starts with its syslog priority, "<4>", and has
-// no time; in a terminal it starts with the time of day. Pure folders do not log: they return
-// Results, and the composition root logs them.
+// Where stderr is the journal, a line is sent there with the fields PRIORITY, MESSAGE,
+// SYSLOG_IDENTIFIER and those of LogFields. If the journal takes it not that way, and where
+// JOURNAL_STREAM is set but stderr leads elsewhere, a line on stderr starts with its syslog
+// priority, "<4>", and has no time; in a terminal it starts with the time of day. Pure folders do
+// not log: they return Results, and the composition root logs them.
 #pragma once
 
 #include <cstdio>
@@ -11,15 +13,24 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/journal.h"
+
 namespace merlin {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-// To be called once, before any thread starts. Lines below `lowest` are dropped.
-void initLog(LogLevel lowest);
+// What the journal can be searched for, as in `journalctl MERLIN_KIND=device`; empty: unknown.
+struct LogFields {
+  std::string_view kind;  // MERLIN_KIND: EventKind::name
+  std::string_view role;  // MERLIN_ROLE: "devices", "wall"
+};
 
-// Thread-safe.
-void logLine(LogLevel level, std::string_view text);
+// To be called once, before any thread starts. Lines below `lowest` are dropped. `journal`: path of
+// the journal's socket.
+void initLog(LogLevel lowest, const char* journal = Journal::kSocket);
+
+// Thread-safe. Never waits for whoever reads the log.
+void logLine(LogLevel level, std::string_view text, const LogFields& fields = {});
 
 template <typename... Args>
 void logInfo(fmt::format_string<Args...> format, Args&&... args) {

@@ -59,6 +59,10 @@ class DevicesRole {
   const shm::DeviceSlots& slots() const { return slots_; }
   // Null if no panel is configured. Thread-safe.
   gpio::PanelLoop* panel() { return panel_.get(); }
+  // Null if no panel is configured.
+  const shm::SeqSlot<DeviceHealth>* panelHealth() const {
+    return panel_ ? &segment_->gpio_health : nullptr;
+  }
   // Null if no projector is configured, at the panel or by PJLink. Thread-safe, as it says.
   Projectors* projectors() { return projectors_.get(); }
   // The projectors at the panel's line, as a projector named "panel"; nothing if there are none.

@@ -34,9 +34,9 @@ void FlightRecorder::expectEnd(std::size_t device) {
   if (entry != entries_.end()) entry->was_well = false;
 }
 
-std::vector<std::string> FlightRecorder::check() {
+std::vector<Event> FlightRecorder::check() {
   const std::lock_guard lock(mutex_);
-  std::vector<std::string> sentences;
+  std::vector<Event> events;
   for (Entry& entry : entries_) {
     const auto health = segment_.health[entry.device].read();
     if (!health) continue;
@@ -45,10 +45,11 @@ std::vector<std::string> FlightRecorder::check() {
     entry.was_well = well;
     if (!fell) continue;
     const auto file = write(entry, health->reason);
-    sentences.push_back(file ? fmt::format("the last bytes of {} are in {}", entry.name, *file)
-                             : file.error().what);
+    events.push_back(
+        file ? newsEvent(fmt::format("the last bytes of {} are in {}", entry.name, *file))
+             : faultEvent(file.error().what));
   }
-  return sentences;
+  return events;
 }
 
 Result<std::vector<std::string>> FlightRecorder::dump() {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/event_kinds.h"
 #include "daemon/devices/flight_ring.h"
 #include "daemon/shm/layout.h"
 
@@ -29,7 +30,7 @@ class FlightRecorder {
   void expectEnd(std::size_t device);
 
   // Dumps each device that has stopped working since the last call; returns a sentence for each.
-  std::vector<std::string> check();
+  std::vector<Event> check();
 
   // Dumps every device and returns the files' names. Errors: kIo.
   Result<std::vector<std::string>> dump();

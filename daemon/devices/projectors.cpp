@@ -105,8 +105,9 @@ std::optional<bool> Projectors::due() {
     person = !point || point->at > now;
   }
   if (person) wanted = by_person_->on;
-  notices_.push_back(fmt::format("projectors: switched {} {}", *wanted ? "on" : "off",
-                                 person ? "again, as by a person before" : "by the schedule"));
+  notices_.push_back(
+      newsEvent(fmt::format("projectors: switched {} {}", *wanted ? "on" : "off",
+                            person ? "again, as by a person before" : "by the schedule")));
   return wanted;
 }
 
@@ -132,8 +133,8 @@ std::vector<pjlink::ProjectorState> Projectors::states() const {
   return states;
 }
 
-std::vector<std::string> Projectors::takeEvents() {
-  std::vector<std::string> events;
+std::vector<Event> Projectors::takeEvents() {
+  std::vector<Event> events;
   {
     const std::lock_guard lock(mutex_);
     events = std::exchange(notices_, {});
@@ -147,7 +148,7 @@ std::vector<std::string> Projectors::takeEvents() {
                     state.reason.empty() ? "" : fmt::format(" ({})", state.reason));
     if (sentence == entry->last) continue;
     entry->last = sentence;
-    events.push_back(std::move(sentence));
+    events.push_back({std::move(sentence), state.health != pjlink::Health::kOk});
   }
   return events;
 }

@@ -12,6 +12,7 @@
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/base/watched_thread.h"
 #include "drivers/pjlink/projector_loop.h"
 #include "drivers/pjlink/schedule.h"
@@ -75,7 +76,7 @@ class Projectors {
 
   // What has happened since the last call, a sentence each: "projector left: warming, ok",
   // "projectors: switched off by the schedule". For one thread.
-  std::vector<std::string> takeEvents();
+  std::vector<Event> takeEvents();
 
  private:
   struct Entry {
@@ -97,7 +98,7 @@ class Projectors {
   mutable std::mutex mutex_;                // guards all below; held while the panel is switched
   std::optional<bool> panel_wanted_;        // what the panel has refused so far
   std::optional<PersonsSwitch> by_person_;  // the last one
-  std::vector<std::string> notices_;
+  std::vector<Event> notices_;
 };
 
 }  // namespace merlin::devices

@@ -50,23 +50,23 @@ ServerHealth ServerKeeper::health() const {
   return health;
 }
 
-std::vector<std::string> ServerKeeper::takeEvents(Timestamp now) {
-  std::vector<std::string> events;
+std::vector<Event> ServerKeeper::takeEvents(Timestamp now) {
+  std::vector<Event> events;
   const std::lock_guard lock(mutex_);
   if (!server_ && next_try_ == Timestamp{}) return events;  // not tried yet
   if (!told_ || failure_ != told_failure_) {
     if (!failure_.empty())
-      events.push_back(fmt::format("{}: failed ({}); retried every {:.0f} s", name_, failure_,
-                                   toSeconds(kRetry)));
+      events.push_back(faultEvent(fmt::format("{}: failed ({}); retried every {:.0f} s", name_,
+                                              failure_, toSeconds(kRetry))));
     else
-      events.push_back(name_ + ": running");
+      events.push_back(newsEvent(name_ + ": running"));
     told_ = true;
     told_failure_ = failure_;
   }
   if (server_ && now - told_at_ >= kTellAgain) {
     if (auto sentence = sentAwaySentence(server_->report(), told_sent_away_); !sentence.empty()) {
       told_at_ = now;
-      events.push_back(std::move(sentence));
+      events.push_back(faultEvent(std::move(sentence)));
     }
   }
   return events;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/base/result.h"
 #include "daemon/net/connection_server.h"
 
@@ -46,7 +47,7 @@ class ServerKeeper {
 
   // Changes since the last call, as sentences: that it failed and why, that it runs again, and, at
   // most every five seconds, how many connections were refused or closed.
-  std::vector<std::string> takeEvents(Timestamp now);
+  std::vector<Event> takeEvents(Timestamp now);
 
  private:
   std::string name_;

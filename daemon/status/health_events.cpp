@@ -1,6 +1,8 @@
 #include "daemon/status/health_events.h"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -9,9 +11,18 @@
 #include "daemon/status/documents.h"
 
 namespace merlin::status {
+namespace {
 
-std::vector<std::string> HealthEvents::take(Timestamp now) {
-  std::vector<std::string> events;
+// Whether a device is absent as it should be.
+bool isIntended(std::string_view reason) {
+  constexpr std::string_view kReasons[] = {"not configured", "not opened yet", "stopped"};
+  return std::ranges::find(kReasons, reason) != std::end(kReasons);
+}
+
+}  // namespace
+
+std::vector<Event> HealthEvents::take(Timestamp now) {
+  std::vector<Event> events;
   for (std::size_t i = 0; i < devices_.health.size(); ++i) {
     const auto& [device, slot] = devices_.health[i];
     const auto health = slot->read();
@@ -24,20 +35,21 @@ std::vector<std::string> HealthEvents::take(Timestamp now) {
     std::string sentence = fmt::format("{}: {} ({})", device, state, why);
     if (sentence == last_[i]) continue;
     last_[i] = sentence;
-    events.push_back(std::move(sentence));
+    const bool works = state == "ok" && health->reason[0] == '\0';
+    events.push_back({std::move(sentence), !works && !isIntended(health->reason)});
   }
   return events;
 }
 
-std::vector<std::string> HealthEvents::takeGestures() {
-  std::vector<std::string> events;
+std::vector<Event> HealthEvents::takeGestures() {
+  std::vector<Event> events;
   for (std::size_t i = 0; i < devices_.hands.size(); ++i) {
     const auto gesture = devices_.hands[i].gesture->read();
     if (!gesture || gesture->counter == last_gestures_[i]) continue;
     last_gestures_[i] = gesture->counter;
     if (gesture->counter > 0)
       events.push_back(
-          fmt::format("{}: gesture {}", devices_.hands[i].name, textIn(gesture->name)));
+          newsEvent(fmt::format("{}: gesture {}", devices_.hands[i].name, textIn(gesture->name))));
   }
   return events;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/shm/device_slots.h"
 
 namespace merlin::status {
@@ -21,9 +22,10 @@ class HealthEvents {
 
   // The changes since the last call: "glove: ok (CyberGlove, 22 sensors)", "tracker: absent
   // (/run/merlin/t: No such file)". A device that is retried with the same result is reported once.
-  std::vector<std::string> take(Timestamp now);
+  // Faults are those of a device that is not ok, or complains.
+  std::vector<Event> take(Timestamp now);
   // The gestures since the last call, of each hand the last one: "hand: gesture swipe_left".
-  std::vector<std::string> takeGestures();
+  std::vector<Event> takeGestures();
 
  private:
   shm::DeviceSlots devices_;

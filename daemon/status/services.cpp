@@ -16,12 +16,12 @@ void Services::set(const std::string& service, std::string reason) {
   const bool fresh = found == services_.end();
   if (fresh) found = services_.insert(found, {service, {}});
   if (found->reason == reason) return;
-  events_.push_back(reason.empty() ? fmt::format("{}: works again", service)
-                                   : fmt::format("{}: failed ({})", service, reason));
+  events_.push_back(reason.empty() ? newsEvent(fmt::format("{}: works again", service))
+                                   : faultEvent(fmt::format("{}: failed ({})", service, reason)));
   found->reason = std::move(reason);
 }
 
-std::vector<std::string> Services::takeEvents() {
+std::vector<Event> Services::takeEvents() {
   const std::lock_guard lock(mutex_);
   return std::exchange(events_, {});
 }

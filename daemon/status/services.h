@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 
 namespace merlin::status {
 
@@ -18,7 +19,7 @@ class Services {
   void failed(const std::string& service, const std::string& reason) { set(service, reason); }
 
   // The changes since the last call, a sentence each.
-  std::vector<std::string> takeEvents();
+  std::vector<Event> takeEvents();
 
   // Returns `document`, a JSON object, with the member "services" added if there are any:
   // {"samples": {"health": "failed", "reason": "..."}}.
@@ -32,7 +33,7 @@ class Services {
 
   mutable std::mutex mutex_;
   std::vector<Service> services_;
-  std::vector<std::string> events_;
+  std::vector<Event> events_;
 };
 
 }  // namespace merlin::status

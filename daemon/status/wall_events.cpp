@@ -11,47 +11,49 @@
 
 namespace merlin::status {
 
-std::vector<std::string> WallEvents::take() {
-  std::vector<std::string> events;
+std::vector<Event> WallEvents::take() {
+  std::vector<Event> events;
   const auto s = segment_.stats.read();
   if (!s) return events;
   if (const auto was = std::exchange(operator_coarser_, s->operator_coarser);
       was != operator_coarser_) {
     events.push_back(operator_coarser_ != 0
-                         ? "the operator's view is coarser: there is too little time"
-                         : "the operator's view is as fine as the wall again");
+                         ? faultEvent("the operator's view is coarser: there is too little time")
+                         : newsEvent("the operator's view is as fine as the wall again"));
   }
   if (const auto was = std::exchange(scale_, s->scale_divisor); was != scale_) {
-    events.push_back(scale_ > 1 ? "tiles at half size while moving: even the coarsest level of "
-                                  "detail takes too long"
-                                : "tiles at full size again: the coarsest level of detail is fast "
-                                  "enough");
+    events.push_back(
+        scale_ > 1
+            ? faultEvent("tiles at half size while moving: even the coarsest level of detail "
+                         "takes too long")
+            : newsEvent("tiles at full size again: the coarsest level of detail is fast "
+                        "enough"));
   }
   if (const auto was = std::exchange(divisor_, s->rate_divisor); was != divisor_) {
     events.push_back(
         was < divisor_
-            ? fmt::format("frame rate reduced to {:.3g} of {:.3g} Hz: even the coarsest level of "
-                          "detail takes too long",
-                          s->rate_now_hz, s->rate_asked_hz)
-            : fmt::format(
-                  "frame rate raised to {:.3g} of {:.3g} Hz: the coarsest level of detail is "
-                  "fast enough",
-                  s->rate_now_hz, s->rate_asked_hz));
+            ? faultEvent(fmt::format("frame rate reduced to {:.3g} of {:.3g} Hz: even the coarsest "
+                                     "level of detail takes too long",
+                                     s->rate_now_hz, s->rate_asked_hz))
+            : newsEvent(fmt::format("frame rate raised to {:.3g} of {:.3g} Hz: the coarsest level "
+                                    "of detail is fast enough",
+                                    s->rate_now_hz, s->rate_asked_hz)));
   }
   if (const auto was = std::exchange(held_, s->held_cost); was != held_) {
-    events.push_back(held_ != 0 ? fmt::format("{} {} while moving, set by hand", held_,
-                                              std::string_view(s->cost_unit))
-                                : "detail chosen by the governor again");
+    events.push_back(newsEvent(held_ != 0 ? fmt::format("{} {} while moving, set by hand", held_,
+                                                        std::string_view(s->cost_unit))
+                                          : "detail chosen by the governor again"));
   }
   if (const auto was = std::exchange(asked_hz_, s->rate_asked_hz); was != asked_hz_ && was != 0)
-    events.push_back(fmt::format("the desired frame rate is {:.3g} Hz now", asked_hz_));
+    events.push_back(newsEvent(fmt::format("the desired frame rate is {:.3g} Hz now", asked_hz_)));
   if (const auto was = std::exchange(returned_, s->returned); was != returned_)
-    events.push_back("the start view has returned: no tile of the wall showed any of the content");
+    events.push_back(
+        newsEvent("the start view has returned: no tile of the wall showed any of the content"));
   takeOutputs(events);
   return events;
 }
 
-void WallEvents::takeOutputs(std::vector<std::string>& events) {
+void WallEvents::takeOutputs(std::vector<Event>& events) {
   const auto all = segment_.outputs.read();
   if (!all) return;
   const std::size_t count = std::min<std::size_t>(all->count, std::size(all->outputs));
@@ -61,14 +63,14 @@ void WallEvents::takeOutputs(std::vector<std::string>& events) {
     std::string fault(textIn(o.fault));
     if (fault == faults_[i]) continue;
     const std::string_view name = textIn(o.name);
-    events.push_back(fault.empty() ? fmt::format("output {} works again", name)
-                                   : fmt::format("output {} failed: {}", name, fault));
+    events.push_back(fault.empty() ? newsEvent(fmt::format("output {} works again", name))
+                                   : faultEvent(fmt::format("output {} failed: {}", name, fault)));
     faults_[i] = std::move(fault);
   }
 }
 
-std::vector<std::string> WallEvents::takePictures() {
-  std::vector<std::string> events;
+std::vector<Event> WallEvents::takePictures() {
+  std::vector<Event> events;
   const auto all = segment_.outputs.read();
   if (!all) return events;
   const std::size_t count = std::min<std::size_t>(all->count, std::size(all->outputs));
@@ -80,11 +82,12 @@ std::vector<std::string> WallEvents::takePictures() {
     if (wrong == was) continue;
     const std::string_view name = textIn(o.name);
     if (!wrong.empty())
-      events.push_back(fmt::format("output {} {}", name, wrong));
+      events.push_back(faultEvent(fmt::format("output {} {}", name, wrong)));
     else if (o.picture != 0)
-      events.push_back(fmt::format("output {} shows what was meant again", name));
+      events.push_back(newsEvent(fmt::format("output {} shows what was meant again", name)));
     else
-      events.push_back(fmt::format("output {} shows no picture that could be read back", name));
+      events.push_back(
+          faultEvent(fmt::format("output {} shows no picture that could be read back", name)));
   }
   return events;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/event_kinds.h"
 #include "daemon/shm/layout.h"
 
 namespace merlin::status {
@@ -15,13 +16,14 @@ class WallEvents {
   explicit WallEvents(const shm::WallSegment& segment) : segment_(segment) {}
 
   // The changes since the last call, such as "frame rate reduced to 15 of 30 Hz: ...".
-  std::vector<std::string> take();
+  // Degradations and failures are faults.
+  std::vector<Event> take();
   // The same of what the outputs were found to show, such as "output left is black instead of ...".
   // What fails anyway has had its event.
-  std::vector<std::string> takePictures();
+  std::vector<Event> takePictures();
 
  private:
-  void takeOutputs(std::vector<std::string>& events);
+  void takeOutputs(std::vector<Event>& events);
 
   const shm::WallSegment& segment_;
   std::uint32_t divisor_ = 1, scale_ = 1, operator_coarser_ = 0, held_ = 0, returned_ = 0;

@@ -35,7 +35,8 @@ ModelWatch::ModelWatch(std::vector<Watched> files, Make make, MissingContents& m
   for (const Watched& file : files_) {
     replaced_.emplace_back(file.shown);
     if (!file.fault.empty()) {
-      report(fmt::format("{} is left out until it can be read: {}", file.path, file.fault));
+      report(faultEvent(
+          fmt::format("{} is left out until it can be read: {}", file.path, file.fault)));
     }
   }
   gone_.resize(files_.size());
@@ -99,7 +100,7 @@ void ModelWatch::readAsked(Progress& progress) {
       offer(*std::move(ready));
       continue;
     }
-    report(fmt::format("what was asked for cannot be shown: {}", ready.error().what));
+    report(faultEvent(fmt::format("what was asked for cannot be shown: {}", ready.error().what)));
     ReadyModel nothing;
     nothing.place = asked.place;
     nothing.is_slide = asked.place != kNoPlace;
@@ -152,14 +153,14 @@ void ModelWatch::handOver(std::size_t place, Result<ReadyModel> ready) {
   if (missing && ready) return offer(*std::move(ready));
   if (missing) {
     if (missing_.faultOf(place) != ready.error().what)
-      report(fmt::format("{} is still left out: {}", file.path, ready.error().what));
+      report(faultEvent(fmt::format("{} is still left out: {}", file.path, ready.error().what)));
     return missing_.set(place, ready.error().what);
   }
   if (!ready) {
-    return report(
+    return report(faultEvent(
         fmt::format("the {0}'s file was replaced by one that cannot be shown ({1}); the {0} "
                     "that was read before stays",
-                    file.what, ready.error().what));
+                    file.what, ready.error().what)));
   }
   ready->was_replaced = true;
   const std::lock_guard lock(mutex_);
@@ -177,10 +178,11 @@ void ModelWatch::noteWhetherThere(std::size_t place, bool there) {
   if (is_gone == was_gone) return;
   const std::string& path = files_[place].path;
   const std::string& what = files_[place].what;
-  report(is_gone ? fmt::format("the {0}'s file {1} is gone or is no longer a regular file; the {0} "
-                               "read from it is still shown, and a restart would not find it",
-                               what, path)
-                 : fmt::format("the {}'s file {} is there again", what, path));
+  report(is_gone ? faultEvent(fmt::format(
+                       "the {0}'s file {1} is gone or is no longer a regular file; the {0} "
+                       "read from it is still shown, and a restart would not find it",
+                       what, path))
+                 : newsEvent(fmt::format("the {}'s file {} is there again", what, path)));
 }
 
 std::optional<ReadyModel> ModelWatch::take() {
@@ -191,12 +193,12 @@ std::optional<ReadyModel> ModelWatch::take() {
   return first;
 }
 
-void ModelWatch::report(std::string sentence) {
+void ModelWatch::report(Event event) {
   const std::lock_guard lock(mutex_);
-  events_.push_back(std::move(sentence));
+  events_.push_back(std::move(event));
 }
 
-std::vector<std::string> ModelWatch::takeEvents() {
+std::vector<Event> ModelWatch::takeEvents() {
   const std::lock_guard lock(mutex_);
   return std::exchange(events_, {});
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/base/files.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/wall/missing_contents.h"
@@ -93,9 +94,9 @@ class ModelWatch {
   // Adds a content that is ready.
   void offer(ReadyModel ready);
   // Adds an event.
-  void report(std::string sentence);
+  void report(Event event);
   // Returns the events since the last call, one sentence each.
-  std::vector<std::string> takeEvents();
+  std::vector<Event> takeEvents();
 
  private:
   void run(const std::stop_token& stop, Progress& progress);
@@ -124,7 +125,7 @@ class ModelWatch {
   std::mutex mutex_;  // protects all up to thread_
   std::condition_variable_any asked_changed_;
   std::vector<ReadyModel> ready_;
-  std::vector<std::string> events_;
+  std::vector<Event> events_;
   std::vector<Asked> asked_;
   std::vector<std::pair<std::size_t, Watched>> offered_;  // files to look at from now on, by place
   WatchedThread thread_;

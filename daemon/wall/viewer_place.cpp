@@ -7,7 +7,7 @@
 namespace merlin::wall {
 
 ViewerPlace::ViewerPlace(render::stereo::Head head, int station, render::tiles::TilePlan& plan,
-                         std::function<void(std::string)> report)
+                         std::function<void(Event)> report)
     : head_(std::move(head)), station_(station), plan_(plan), report_(std::move(report)) {}
 
 bool ViewerPlace::update(const std::optional<TrackerSample>& sample, Timestamp now) {
@@ -16,10 +16,10 @@ bool ViewerPlace::update(const std::optional<TrackerSample>& sample, Timestamp n
   if (!view.moving) return false;
   const bool placed = render::tiles::placeViewer(plan_, view.viewer);
   if (std::exchange(is_placed_, placed) && !placed) {
-    report_(
+    report_(faultEvent(
         fmt::format("tracker station {} says that the viewer's eyes are on or behind a screen, or "
                     "almost touch one: the wall is drawn for their position before that",
-                    station_));
+                    station_)));
   }
   return true;
 }
@@ -29,11 +29,12 @@ void ViewerPlace::reportTracking(bool tracked, Timestamp now) {
   const bool waits = !tracked_ && !tracked && now - *began_ < kPatience;
   if (waits || tracked_ == tracked) return;
   tracked_ = tracked;
-  report_(tracked
-              ? fmt::format("the wall is drawn for the viewer's head, tracker station {}", station_)
-              : fmt::format("tracker station {} on the viewer's head is missing: the wall is drawn "
-                            "for the configured place of the viewer",
-                            station_));
+  report_(tracked ? newsEvent(fmt::format(
+                        "the wall is drawn for the viewer's head, tracker station {}", station_))
+                  : faultEvent(fmt::format("tracker station {} on the viewer's head is missing: "
+                                           "the wall is drawn for the configured place of the "
+                                           "viewer",
+                                           station_)));
 }
 
 }  // namespace merlin::wall

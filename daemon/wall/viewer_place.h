@@ -3,9 +3,9 @@
 
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "render/stereo/head.h"
 #include "render/tiles/tile_plan.h"
 
@@ -14,11 +14,10 @@ namespace merlin::wall {
 // Thread-bound to the wall's thread.
 class ViewerPlace {
  public:
-  // `plan`: the tile plan used for drawing; must outlive this object. `report` is called with a
-  // sentence for a person when the tracker station `station` begins or ceases to deliver the head's
-  // pose.
+  // `plan`: the tile plan used for drawing; must outlive this object. `report` is called with an
+  // event when the tracker station `station` begins or ceases to deliver the head's pose.
   ViewerPlace(render::stereo::Head head, int station, render::tiles::TilePlan& plan,
-              std::function<void(std::string)> report);
+              std::function<void(Event)> report);
 
   // To be called once a frame, while nothing is drawn: updates the plan's frusta. Returns true
   // while the head moves.
@@ -34,7 +33,7 @@ class ViewerPlace {
   render::stereo::Head head_;
   int station_;
   render::tiles::TilePlan& plan_;
-  std::function<void(std::string)> report_;
+  std::function<void(Event)> report_;
   std::optional<Timestamp> began_;
   std::optional<bool> tracked_;  // last reported state; nullopt before the first report
   bool is_placed_ = true;        // the frusta fit the head's current position

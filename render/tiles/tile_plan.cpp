@@ -171,35 +171,37 @@ Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vec
   return m;
 }
 
-Look parallelLook(TileCamera camera, float aspect, const Eigen::Vector3f& centre, float radius) {
+TileMatrices parallelMatrices(TileCamera camera, float aspect, const Eigen::Vector3f& centre,
+                              float radius) {
   // Of the picture in eye coordinates: right and up; what is left is towards the camera.
   Eigen::Vector3f right = Eigen::Vector3f::UnitX(), up = Eigen::Vector3f::UnitY();
   if (camera == TileCamera::kTop) up = -Eigen::Vector3f::UnitZ();
   if (camera == TileCamera::kSide) right = -Eigen::Vector3f::UnitZ();
-  Look look{Eigen::Matrix4f::Identity(), Eigen::Matrix4f::Identity()};
-  look.view.block<1, 3>(0, 0) = right.transpose();
-  look.view.block<1, 3>(1, 0) = up.transpose();
-  look.view.block<1, 3>(2, 0) = right.cross(up).transpose();
-  look.view.block<3, 1>(0, 3) = -look.view.topLeftCorner<3, 3>() * centre;
-  look.projection(0, 0) = std::min(1.0F, 1 / aspect) / radius;
-  look.projection(1, 1) = std::min(1.0F, aspect) / radius;
+  TileMatrices matrices{Eigen::Matrix4f::Identity(), Eigen::Matrix4f::Identity()};
+  matrices.view.block<1, 3>(0, 0) = right.transpose();
+  matrices.view.block<1, 3>(1, 0) = up.transpose();
+  matrices.view.block<1, 3>(2, 0) = right.cross(up).transpose();
+  matrices.view.block<3, 1>(0, 3) = -matrices.view.topLeftCorner<3, 3>() * centre;
+  matrices.projection(0, 0) = std::min(1.0F, 1 / aspect) / radius;
+  matrices.projection(1, 1) = std::min(1.0F, aspect) / radius;
   // A little more depth than the sphere has, so that nothing of it is clipped.
-  look.projection(2, 2) = -1 / (1.05F * radius);
-  return look;
+  matrices.projection(2, 2) = -1 / (1.05F * radius);
+  return matrices;
 }
 
-Look lookOf(const Tile& tile, const Eigen::Vector3f& centre, float radius) {
+TileMatrices matricesOf(const Tile& tile, const Eigen::Vector3f& centre, float radius) {
   if (tile.kind == TileKind::kOperator)
     return {tile.projection, operatorView(tile.projection, centre, radius)};
   if (!tile.isFitted()) return {tile.projection, tile.view};
-  return parallelLook(tile.camera, static_cast<float>(tile.width) / static_cast<float>(tile.height),
-                      centre, radius);
+  return parallelMatrices(tile.camera,
+                          static_cast<float>(tile.width) / static_cast<float>(tile.height), centre,
+                          radius);
 }
 
-Look lookAround(const Tile& tile) {
-  Look look{tile.projection, tile.view};
-  look.view.block<3, 1>(0, 3).setZero();
-  return look;
+TileMatrices panoramaMatrices(const Tile& tile) {
+  TileMatrices matrices{tile.projection, tile.view};
+  matrices.view.block<3, 1>(0, 3).setZero();
+  return matrices;
 }
 
 bool placeViewer(TilePlan& plan, const Viewer& viewer) {

@@ -33,7 +33,7 @@ struct Tile {
   std::array<double, 9> screen_m{};  // as in TileSettings; all 0: none
 
   bool followsWall() const { return kind == TileKind::kWall && camera == TileCamera::kWall; }
-  // Whether its view follows from the content: see lookOf().
+  // Whether its view follows from the content: see matricesOf().
   bool isFitted() const {
     return kind == TileKind::kOperator ||
            (camera != TileCamera::kWall && camera != TileCamera::kFree);
@@ -83,21 +83,24 @@ Eigen::Matrix4f offAxis(float left, float right, float lower, float upper, float
 Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vector3f& centre,
                              float radius);
 
+// With which a tile draws.
+struct TileMatrices {
+  Eigen::Matrix4f projection, view;
+};
+
 // A parallel projection of a sphere (centre and radius in eye coordinates, metres), along an axis
 // of the wall: the sphere fits into the tile, wherever it is. From above the person is at the lower
 // edge, from the right at the left one. REQUIRES: `camera` is kTop, kSide or kFront.
-struct Look {
-  Eigen::Matrix4f projection, view;
-};
-Look parallelLook(TileCamera camera, float aspect, const Eigen::Vector3f& centre, float radius);
+TileMatrices parallelMatrices(TileCamera camera, float aspect, const Eigen::Vector3f& centre,
+                              float radius);
 
 // What a tile shows of a content with this bounding sphere (eye coordinates, metres): the sphere
 // decides where the tile is fitted to it, otherwise the plan.
-Look lookOf(const Tile& tile, const Eigen::Vector3f& centre, float radius);
+TileMatrices matricesOf(const Tile& tile, const Eigen::Vector3f& centre, float radius);
 
 // What a tile shows of a panorama, in whose centre the eye is, wherever that is: the plan's frustum
 // and direction. A tile that is fitted to other contents looks straight ahead.
-Look lookAround(const Tile& tile);
+TileMatrices panoramaMatrices(const Tile& tile);
 
 // Whether any part of a box may be visible in a tile that follows the wall or has a free camera:
 // false if, for each of them, the whole box is outside one plane of the frustum, or if its matrix

@@ -9,6 +9,7 @@
 #include "drivers/gpio/panel.h"
 #include "tests/support/emulated_connection.h"
 #include "tests/support/fake_clock.h"
+#include "tests/support/told.h"
 
 namespace merlin::devices {
 namespace {
@@ -74,7 +75,7 @@ struct Wall {
       panel.step(false, clock.now());
       projectors.tend();
       projectors.round();
-      for (const std::string& event : projectors.takeEvents()) {
+      for (const std::string& event : test::told(projectors.takeEvents())) {
         if (event.starts_with("projectors: ")) table += time() + " " + event + "\n";
       }
       if (const std::string now = powers(); now != last) {
@@ -254,11 +255,12 @@ TEST(Projectors, EventsNameProjectorPowerAndHealth) {
   Wall w(8 * 60);
   w.right_gone = true;
   w.projectors.round();
-  EXPECT_EQ(w.projectors.takeEvents(),
-            (std::vector<std::string>{
-                "projector left: off, ok",
-                "projector right: unknown, unreachable (tcp://10.0.0.8:4352: Connection timed "
-                "out)"}));
+  EXPECT_EQ(
+      test::told(w.projectors.takeEvents()),
+      (test::Sentences{
+          "projector left: off, ok",
+          "fault: projector right: unknown, unreachable (tcp://10.0.0.8:4352: Connection timed "
+          "out)"}));
   w.projectors.round();
   EXPECT_TRUE(w.projectors.takeEvents().empty()) << "nothing has changed";
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,6 +29,22 @@ std::string deviceDetail(const Json& d) {
   if (d.value("health", "") != "ok") return reason;
   return fmt::format("{:5.1f} Hz  {}{}", d.value("rate_hz", 0.0), d.value("identity", ""),
                      reason.empty() ? "" : "; " + reason);
+}
+
+bool isFailed(const Json& service) {
+  return service.is_object() && service.value("health", "") != "ok";
+}
+
+// A text for each service that has failed. `format` takes its name, health and reason.
+std::string failedServices(const Json& s, const char* format) {
+  const Json services = s.value("services", Json::object());
+  std::string text;
+  for (const auto& [name, service] : services.items()) {
+    if (isFailed(service))
+      text += fmt::format(fmt::runtime(format), name, service.value("health", ""),
+                          service.value("reason", ""));
+  }
+  return text;
 }
 
 std::string pictureWord(const Json& s) {
@@ -98,6 +115,19 @@ std::string outputLines(const Json& s) {
   return text;
 }
 
+// Both roles may have a service of the same name, in a process each: one that has failed must not
+// be hidden by the other role's.
+void mergeServices(Json& both) {
+  Json merged = Json::object();
+  for (const Json& role : both["roles"]) {
+    for (const auto& [name, service] : role["services"].items()) {
+      if (isFailed(service) || !merged.contains(name)) merged[name] = service;
+    }
+  }
+  both.erase("services");
+  if (!merged.empty()) both["services"] = std::move(merged);
+}
+
 }  // namespace
 
 // Combines two buckets per line; omits the empty lines before the first and after the last frame.
@@ -134,7 +164,11 @@ void mergeStatus(Json& both, const std::string& document) {
     json.erase(key);
   }
   json.erase("role");
+  common["services"] = Json::object();
+  if (json.contains("services")) common["services"] = json["services"];
+  json.erase("services");
   both.update(json, true);  // merges recursively: both roles have "servers"
+  mergeServices(both);
 }
 
 Result<Json> askStatus(const std::string& instance) {
@@ -172,7 +206,7 @@ std::string serverLines(const Json& s) {
   return text;
 }
 
-// A line for each hand whose gestures are recognised: its last one.
+// A line for each content that cannot be shown yet.
 std::string missingLines(const Json& s) {
   const Json missing = s.value("missing_contents", Json::object());
   std::string text;
@@ -181,6 +215,7 @@ std::string missingLines(const Json& s) {
   return text;
 }
 
+// A line for each hand whose gestures are recognised: its last one.
 std::string gestureLines(const Json& s) {
   std::string text;
   if (!s.contains("gestures")) return text;
@@ -232,13 +267,14 @@ std::string statusTable(const Json& s) {
         100 * s.value("head_room", 0.0));
     text += paceLines(s) + rendererLine(s) + outputLines(s) + missingLines(s);
   }
-  if (!s.contains("devices")) return text + serverLines(s);
+  const std::string servers = serverLines(s) + failedServices(s, "service  {:14} {:8} {}\n");
+  if (!s.contains("devices")) return text + servers;
   const std::string posture = s.value("posture", "");
   text += fmt::format("posture  {}\n", posture.empty() ? "-" : posture) + gestureLines(s);
   for (const auto& [name, device] : s["devices"].items()) {
     text += fmt::format("{:16} {:8} {}\n", name, device.value("health", ""), deviceDetail(device));
   }
-  return text + projectorLines(s) + serverLines(s);
+  return text + projectorLines(s) + servers;
 }
 
 std::string statusLine(const Json& s) {
@@ -248,12 +284,12 @@ std::string statusLine(const Json& s) {
                        s.value("rate_held", 0.0), s.value("rate_asked", 0.0), detailCost(s),
                        costUnit(s), s.value("late_percent", 0.0), pictureWord(s));
   }
-  if (!s.contains("devices")) return line;
+  if (!s.contains("devices")) return line + failedServices(s, "  {} {}: {}");
   const std::string posture = s.value("posture", "");
   line += fmt::format("  posture {:8}", posture.empty() ? "-" : posture);
   for (const auto& [name, device] : s["devices"].items())
     line += fmt::format("  {} {}", name, device.value("health", ""));
-  return line;
+  return line + failedServices(s, "  {} {}: {}");
 }
 
 }  // namespace merlin::cli

@@ -20,7 +20,8 @@ Result<nlohmann::ordered_json> askStatus(const std::string& instance);
 Result<nlohmann::ordered_json> askStatus(const DaemonAddress& daemon);
 
 // Merges one role's status document into `both`, the object of both roles. A document that is not a
-// JSON object is ignored.
+// JSON object is ignored. The services of each role are kept in "roles"/ROLE/"services"; "services"
+// has those of both roles, and of two with the same name the one that has failed.
 void mergeStatus(nlohmann::ordered_json& both, const std::string& document);
 
 // The status as a table of several lines.
@@ -31,7 +32,8 @@ std::string statusTable(const nlohmann::ordered_json& status);
 // were no frames.
 std::string histogramChart(const std::vector<std::uint32_t>& buckets);
 
-// The status as one line: desired and actual rate, triangles, late frames, posture, devices.
+// The status as one line: desired and actual rate, triangles, late frames, posture, devices, and
+// the services that have failed.
 std::string statusLine(const nlohmann::ordered_json& status);
 
 }  // namespace merlin::cli

@@ -167,6 +167,17 @@ Row outputRow(const std::string& name, const Json& o) {
       fmt::format("{}, {} % late", text(o, "kind"), figure(number(o, "late_percent"), 2)));
 }
 
+// A row for each service that has failed: configuration, state, shared memory and the like.
+std::vector<Row> serviceRows(const Json& s) {
+  Json failed = Json::object();
+  for (const auto& [name, service] : object(s, "services").items())
+    if (service.is_object() && text(service, "health") != "ok") failed[name] = service;
+  return table(Json{{"services", failed}}, "services", "services",
+               [](const std::string& name, const Json& service) {
+                 return healthRow(name, text(service, "health"), "", text(service, "reason"));
+               });
+}
+
 std::string upTime(const Json& s) {
   double most = 0;
   for (const auto& [role, common] : object(s, "roles").items()) {
@@ -247,8 +258,9 @@ CellGrid layOut(const WatchedState& state, const ScreenSize& size, bool blocks) 
   addTitle(page, state);
   std::vector<Row> rows = wallRows(state.status);
   const bool has_wall = !rows.empty();
-  for (const auto& more : {table(state.status, "devices", "devices", deviceRow),
-                           table(state.status, "outputs", "outputs", outputRow)})
+  for (const auto& more :
+       {table(state.status, "devices", "devices", deviceRow),
+        table(state.status, "outputs", "outputs", outputRow), serviceRows(state.status)})
     rows.insert(rows.end(), more.begin(), more.end());
   const auto all = static_cast<int>(rows.size());
   const int shown = all <= page.left() ? all : std::max(page.left() - 1, 0);

@@ -29,10 +29,10 @@ struct ScreenSize {
   int rows = 24, columns = 80;
 };
 
-// Lays out title, wall, devices, outputs, chart and last events, as far as there is room: chart and
-// events get the rows that the others leave. Where not even those fit, the last row says how many
-// rows are missing. While `absent` is not empty, the last state stays visible, but dim. Values of
-// the wrong type in the status are shown as "-".
+// Lays out title, wall, devices, outputs, failed services, chart and last events, as far as there
+// is room: chart and events get the rows that the others leave. Where not even those fit, the last
+// row says how many rows are missing. While `absent` is not empty, the last state stays visible,
+// but dim. Values of the wrong type in the status are shown as "-".
 CellGrid layOut(const WatchedState& state, const ScreenSize& size, bool blocks);
 
 }  // namespace merlin::cli

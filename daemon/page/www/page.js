@@ -6,6 +6,7 @@ import {FrameChart, drawHistogram} from "./chart.js";
 import {Contents} from "./contents.js";
 import {showIdle, showProjectors} from "./idle.js";
 import {makePhone} from "./phone.js";
+import {failedServices} from "./services.js";
 
 const byId = id => document.getElementById(id);
 const wait = ms => new Promise(done => setTimeout(done, ms));
@@ -45,6 +46,7 @@ function showBanners() {
     if (wallStatus() && wallStatus().notice) banners.push(["note", wallStatus().notice]);
     if (roles.devices && !roles.devices.running && !devicesOfWall())
       banners.push(["bad", "The role devices does not run: no merlind reads glove, tracker and ball."]);
+    for (const sentence of failedServices(roles)) banners.push(["bad", sentence]);
   }
   const text = JSON.stringify(banners), box = byId("banners");
   if (box.dataset.text === text) return;
@@ -223,13 +225,8 @@ function showOutputs(wall) {
            o.reason || o.picture_reason || (o.kind === name ? "" : o.kind))));
 }
 
-// The least detail that the wall takes while it moves: of pictures that of the coarsest step, each of
-// which has half of the one before; of models /wall/rate/min_triangles, whose default this is.
-const kLeastTriangles = 500, kLeastArgument = 4;
-function leastCost(detail) {
-  const least = detail.unit === "triangles" ? kLeastTriangles : detail.full_cost / 2 ** (detail.steps - 1);
-  return Math.max(kLeastArgument, Math.min(least, detail.full_cost));
-}
+const kLeastArgument = 4;  // of the command
+const leastCost = detail => Math.max(kLeastArgument, Math.min(detail.least_cost, detail.full_cost));
 
 // The slider of the cost has a logarithmic scale from the least to all of it.
 const range = detail => Math.max(detail.full_cost / leastCost(detail), 1.001);
@@ -493,7 +490,7 @@ async function repeat(read, period) {
 
 const alignment = new Alignment(run);
 const contents = new Contents(byId("contents"), showContent);
-const shownDetail = () => wallStatus() && wallStatus().detail || {unit: "triangles", full_cost: kLeastTriangles};
+const shownDetail = () => wallStatus() && wallStatus().detail || {unit: "triangles", full_cost: kLeastArgument, least_cost: kLeastArgument};
 
 async function begin() {
   takeTokenFromAddress();

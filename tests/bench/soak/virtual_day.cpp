@@ -185,7 +185,10 @@ void VirtualDay::takeEvents(Timestamp now) {
   add("devices", kFlightEvent, parts_.devices.flight().check());
   add("wall", kWallEvent, wall_events_.take());
   add("wall", kPictureEvent, wall_events_.takePictures());
-  add("wall", kStateEvent, keeper_.takeNotices());
+  std::vector<Event> notices;
+  for (std::string& notice : keeper_.takeNotices())
+    notices.push_back(faultEvent(std::move(notice)));
+  add("wall", kStateEvent, notices);
   add("wall", kServiceEvent, services_.takeEvents());
   for (const page::LoggedEvent& event : log_.after(told_)) {
     told_ = event.number;
@@ -194,11 +197,10 @@ void VirtualDay::takeEvents(Timestamp now) {
   }
 }
 
-void VirtualDay::add(const char* role, const EventKind& kind,
-                     const std::vector<std::string>& sentences) {
-  for (const std::string& sentence : sentences) {
-    log_.addDocument(role, status::event(kind.name, sentence, parts_.clock.now()));
-    board_.add(parts_.clock.now(), sentence);
+void VirtualDay::add(const char* role, const EventKind& kind, const std::vector<Event>& events) {
+  for (const Event& event : events) {
+    log_.addDocument(role, status::event(kind.name, event.what, parts_.clock.now()));
+    board_.add(parts_.clock.now(), event.what);
   }
 }
 

@@ -118,7 +118,7 @@ class VirtualDay {
 
   void mainThread(const std::stop_token& stop);
   void takeEvents(Timestamp now);
-  void add(const char* role, const EventKind& kind, const std::vector<std::string>& sentences);
+  void add(const char* role, const EventKind& kind, const std::vector<Event>& events);
   void judge(const page::LoggedEvent& event);
   void tend(Timestamp now);
 

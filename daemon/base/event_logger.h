@@ -1,0 +1,55 @@
+// EventLogger: writes events to the log, faults as warnings, and leaves out what is repeated too
+// often.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
+#include "daemon/base/log.h"
+#include "daemon/base/token_bucket.h"
+
+namespace merlin {
+
+// A device with a loose plug, or a program that connects again and again, must not fill the
+// journal. The same sentence (figures do not count) is logged kSentences times at once and then
+// once a minute; events of one kind kEvents times at once and then once in ten seconds. What was
+// left out is counted, and a line says how many, as soon as a line may be written again.
+// Thread-bound.
+class EventLogger {
+ public:
+  using Write = std::function<void(LogLevel, std::string_view text, const LogFields&)>;
+
+  // `role`: the role whose events these are; must outlive this object.
+  explicit EventLogger(std::string_view role, Write write = logLine)
+      : role_(role), write_(std::move(write)) {}
+
+  void log(const EventKind& kind, const Event& event, Timestamp now);
+  // To be called from time to time: writes how many lines were left out.
+  void tellLeftOut(Timestamp now);
+
+  static constexpr int kSentences = 30, kEvents = 240;
+  static constexpr std::size_t kMostSubjects = 256;  // sentences that are counted at one time
+
+ private:
+  // What is limited: a sentence of a kind, or a kind.
+  struct Subject {
+    EventKind kind;
+    std::string sentence;  // the last one; empty: a kind
+    bool is_fault = false;
+    TokenBucket bucket;
+    int left_out = 0;
+    Timestamp used{};
+  };
+  Subject& subject(const EventKind& kind, const Event& event, Timestamp now);
+  void forgetOldest();
+
+  std::string_view role_;
+  Write write_;
+  std::map<std::string, Subject> sentences_, kinds_;
+};
+
+}  // namespace merlin

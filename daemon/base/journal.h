@@ -1,0 +1,39 @@
+// systemd's journal: lines with fields. Its native protocol is spoken here, and not
+// sd_journal_send() of libsystemd called, because that waits while the journal hangs, and a log
+// must never stop the daemon. Source: https://systemd.io/JOURNAL_NATIVE_PROTOCOL
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "daemon/base/unique_fd.h"
+
+namespace merlin {
+
+// Name, of A-Z and _, and value.
+using JournalField = std::pair<std::string_view, std::string_view>;
+
+// Whether the descriptor is the stream to the journal whose "DEVICE:INODE" systemd puts into the
+// environment variable JOURNAL_STREAM (systemd.exec(5)); null: it is not set.
+bool isJournalStream(int fd, const char* journal_stream);
+
+// A datagram of the protocol. Fields with an empty value are left out.
+std::string journalDatagram(std::span<const JournalField> fields);
+
+// Thread-safe.
+class Journal {
+ public:
+  static constexpr const char* kSocket = "/run/systemd/journal/socket";
+
+  explicit Journal(std::string socket_path = kSocket);
+  // Returns whether the journal has taken the datagram. Never waits.
+  bool send(std::string_view datagram) const;
+
+ private:
+  std::string path_;
+  UniqueFd socket_;
+};
+
+}  // namespace merlin

@@ -1,0 +1,59 @@
+// merlin status and the lines of merlin watch: what becomes of the documents of both roles.
+#include "daemon/cli/wall/status_text.h"
+
+#include <gtest/gtest.h>
+
+namespace merlin::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* const kFull = "state.json: No space left on device";
+
+// A status document of a role whose service "state" has that reason; empty: it works.
+std::string document(const std::string& role, const std::string& reason) {
+  const Json service = {{"health", reason.empty() ? "ok" : "failed"}, {"reason", reason}};
+  Json status = {{"role", role}, {"pid", 7}, {"services", {{"state", service}}}};
+  if (role == "devices") status["devices"] = {{"glove", {{"health", "ok"}}}};
+  return status.dump();
+}
+
+TEST(StatusText, AServiceThatHasFailedHasALineWithItsReason) {
+  for (const char* role : {"devices", "wall"}) {
+    Json both = Json::object();
+    mergeStatus(both, document(role, kFull));
+    EXPECT_NE(
+        statusTable(both).find("service  state          failed   state.json: No space left on "
+                               "device\n"),
+        std::string::npos)
+        << statusTable(both);
+    EXPECT_TRUE(statusLine(both).ends_with("  state failed: state.json: No space left on device"))
+        << statusLine(both);
+    mergeStatus(both, document(role, ""));
+    EXPECT_EQ(statusTable(both).find("service"), std::string::npos);
+    EXPECT_EQ(statusLine(both).find("state"), std::string::npos);
+  }
+}
+
+TEST(StatusText, AFailedServiceIsNotHiddenByTheOtherRolesOfTheSameName) {
+  for (const char* failed : {"devices", "wall"}) {
+    Json both = Json::object();
+    for (const char* role : {"devices", "wall"})
+      mergeStatus(both, document(role, role == std::string(failed) ? kFull : ""));
+    EXPECT_EQ(both["services"]["state"]["reason"], kFull) << failed;
+    EXPECT_EQ(both["roles"].size(), 2U);
+    mergeStatus(both, document(failed, ""));
+    EXPECT_EQ(both["services"]["state"]["health"], "ok") << "it works again";
+  }
+}
+
+TEST(StatusText, ARoleThatWasRestartedLeavesNoServiceBehind) {
+  Json both = Json::object();
+  mergeStatus(both, document("wall", kFull));
+  mergeStatus(both, R"({"role": "wall", "pid": 8})");
+  EXPECT_FALSE(both.contains("services"));
+  EXPECT_EQ(statusLine(both), "");
+}
+
+}  // namespace
+}  // namespace merlin::cli
