@@ -28,6 +28,10 @@ void describeServe(ServeSettings& s, SettingsVisitor& v) {
          "as tcp://*:7402. Empty: not at all.");
   v.text("devices_endpoint", s.devices_endpoint,
          "The same of the devices, at a port of its own, such as tcp://*:7403.");
+  v.text("wall_topics_endpoint", s.wall_topics_endpoint,
+         "Address at which other machines follow the wall's topics (status, metrics, event), "
+         "encrypted, such as tcp://*:7404. Empty: not at all. Those of the devices are at "
+         "samples_endpoint.");
   v.secretFile("commands_keys", s.commands_keys,
                "File with this machine's key pair for these addresses, written by `merlin keys -o "
                "FILE`.");
@@ -35,8 +39,8 @@ void describeServe(ServeSettings& s, SettingsVisitor& v) {
          "File with the public keys of those who may send commands to these addresses, one per "
          "line.");
   v.path("commands_readers", s.commands_readers,
-         "File with the public keys of those who may only read status and events there, one per "
-         "line.");
+         "File with the public keys of those who may only read status, events and topics there, "
+         "one per line.");
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "daemon/alarms_process.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,11 +13,14 @@
 #include "daemon/alarms/alarm_queue.h"
 #include "daemon/alarms/child_program.h"
 #include "daemon/alarms/role_state.h"
+#include "daemon/alarms/told_events.h"
 #include "daemon/base/event_kinds.h"
+#include "daemon/base/fixed_text.h"
 #include "daemon/base/log.h"
 #include "daemon/page/event_log.h"
 #include "daemon/page/role_watch.h"
-#include "daemon/stop_asked.h"
+#include "daemon/role_signals.h"
+#include "daemon/status/command_queue.h"
 #include "daemon/wall/wall_contents.h"
 
 namespace merlin {
@@ -23,6 +28,13 @@ namespace {
 
 constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kWatchdogPing = std::chrono::seconds(1);
+// A run that began longer ago has its start behind it: what it said then is not told any more.
+constexpr Duration kStartIsNews = std::chrono::minutes(10);
+// The end of what is said of a device that the configuration gives no port: nobody misses it. Of
+// one with a port it may be said until that was opened for the first time.
+constexpr std::string_view kNotConfigured = ": absent (not configured)";
+constexpr Duration kAskAgain = std::chrono::seconds(3);
+constexpr Duration kAnswerWithin = std::chrono::seconds(2);
 
 // Whether a process of this role has something to do on this machine.
 bool hasWall(const Settings& settings) {
@@ -35,6 +47,70 @@ bool hasDevices(const Settings& settings) {
       devices.list, [](const auto& device) { return !device.line.port.empty(); });
   return reads || !devices.gpio.chip.empty() || !devices.projectors.empty();
 }
+
+const shm::Header& headerOf(const shm::WallSegment& segment) { return segment.header; }
+const shm::Header& headerOf(const shm::DeviceSlots& slots) { return *slots.header; }
+
+// Whether the sentence says of a device nothing but that it works.
+bool saysThatItWorks(std::string_view sentence, const shm::DeviceSlots* devices) {
+  if (!devices) return false;
+  return std::ranges::any_of(devices->health, [&](const auto& device) {
+    const auto health = device.slot->read();
+    return health &&
+           sentence == fmt::format("{}: ok ({})", device.device, textIn(health->identity));
+  });
+}
+
+using Tell = std::function<void(const alarms::AlarmEvent&)>;
+
+// One role of merlind, followed over its restarts: whether it is missed, and what it said before it
+// was followed.
+template <typename Watch>
+class FollowedRole {
+ public:
+  FollowedRole(const std::string& instance, const char* role, bool expected, Timestamp now,
+               page::EventLog& events)
+      : events_(events), watch_(instance, role, events), state_(role, expected, now) {}
+
+  // Never waits. `tell`: is called with each event of the role's answer.
+  void update(Timestamp now, const Tell& tell) {
+    watch_.update(now);
+    if (const auto said = state_.update(watch_.generation(), now))
+      events_.add("alarms", kRoleEvent.name, *said);
+    askForStart(now, tell);
+  }
+  const auto* segment() const noexcept { return watch_.segment(); }
+
+ private:
+  // Twice: what the role says between the first answer and the moment from which its events reach
+  // us is in the second one.
+  void askForStart(Timestamp now, const Tell& tell) {
+    if (std::exchange(generation_, watch_.generation()) != watch_.generation()) {
+      answers_due_ = isStarting(now) ? 2 : 0;
+      ask_at_ = now;
+    }
+    if (answers_due_ > 0 && now >= ask_at_) {
+      queue_.add({generation_, "events", "", now + kAnswerWithin});
+      ask_at_ = now + kAskAgain;
+    }
+    queue_.update(watch_.commandEndpoint(), now, [&](std::uint64_t of, const auto& answer) {
+      if (!answer || of != generation_) return;  // it is asked again
+      if (answers_due_ > 0) --answers_due_;
+      for (const alarms::AlarmEvent& event : alarms::eventsOf(watch_.role(), *answer)) tell(event);
+    });
+  }
+  bool isStarting(Timestamp now) const {
+    return segment() && now - fromNanoseconds(headerOf(*segment()).started_ns) < kStartIsNews;
+  }
+
+  page::EventLog& events_;
+  Watch watch_;
+  alarms::RoleState state_;
+  status::CommandQueue queue_;
+  std::uint64_t generation_ = 0;
+  int answers_due_ = 0;  // that the present run still has to give
+  Timestamp ask_at_{};
+};
 
 // One alarm: its events and its program, of which one runs at a time.
 class Alarm {
@@ -74,64 +150,60 @@ class AlarmsProcess {
  public:
   AlarmsProcess(const Settings& settings, Clock& clock)
       : clock_(clock),
-        wall_(settings.instance, "wall", events_),
-        devices_(settings.instance, "devices", events_),
-        wall_state_("wall", hasWall(settings), clock.now()),
-        devices_state_("devices", hasDevices(settings), clock.now()) {
+        wall_(settings.instance, "wall", hasWall(settings), clock.now(), events_),
+        devices_(settings.instance, "devices", hasDevices(settings), clock.now(), events_) {
     for (const AlarmSettings& alarm : settings.alarms)
       alarms_.emplace_back(alarm, settings.instance);
   }
 
-  void run() {
+  Asked run(const std::function<bool()>& is_valid) {
     ::sd_notify(0, "READY=1");
     logInfo("ready");
-    while (!stopAsked(kBeat, "alarms")) {
+    Asked asked = Asked::kNothing;
+    while ((asked = askedBySignal(kBeat, is_valid)) == Asked::kNothing) {
       const Timestamp now = clock_.now();
       tend(now);
       if (now - pinged_ < kWatchdogPing) continue;
       pinged_ = now;
       ::sd_notify(0, "WATCHDOG=1");
     }
-    ::sd_notify(0, "STOPPING=1");
-    logInfo("stopping");
+    tellEnd(asked);
+    return asked;
   }
 
  private:
   void tend(Timestamp now) {
-    wall_.update(now);
-    devices_.update(now);
-    watchRoles(now);
-    for (const page::LoggedEvent& event : events_.after(told_)) {
-      told_ = event.number;
+    const Tell tell = [this](const alarms::AlarmEvent& event) { add(event); };
+    wall_.update(now, tell);
+    devices_.update(now, tell);
+    for (const page::LoggedEvent& event : events_.after(seen_)) {
+      seen_ = event.number;
       if (event.role == "page") continue;  // what the watches say of roles: RoleState is patient
-      for (Alarm& alarm : alarms_) alarm.add({event.role, event.time_utc, event.kind, event.what});
+      add({event.role, event.time_utc, event.kind, event.what});
     }
     for (Alarm& alarm : alarms_) alarm.tend(now);
   }
 
-  void watchRoles(Timestamp now) {
-    const auto add = [&](const std::optional<std::string>& said) {
-      if (said) events_.add("alarms", kRoleEvent.name, *said);
-    };
-    add(wall_state_.update(wall_.generation(), now));
-    add(devices_state_.update(devices_.generation(), now));
+  void add(const alarms::AlarmEvent& event) {
+    if (event.what.ends_with(kNotConfigured)) return;
+    if (!told_.take(event, saysThatItWorks(event.what, devices_.segment()))) return;
+    for (Alarm& alarm : alarms_) alarm.add(event);
   }
 
   Clock& clock_;
   page::EventLog events_{1};
-  page::WallWatch wall_;
-  page::DevicesWatch devices_;
-  alarms::RoleState wall_state_, devices_state_;
+  FollowedRole<page::WallWatch> wall_;
+  FollowedRole<page::DevicesWatch> devices_;
   std::vector<Alarm> alarms_;
-  std::uint64_t told_ = 0;  // number of the last event that the alarms were told
+  std::uint64_t seen_ = 0;  // number of the last event of events_ that was looked at
+  alarms::ToldEvents told_;
   Timestamp pinged_{};
 };
 
 }  // namespace
 
-Result<Ok> runAlarms(const Settings& settings, Clock& clock) {
-  AlarmsProcess(settings, clock).run();
-  return Ok{};
+Asked runAlarms(const Settings& settings, Clock& clock, const std::function<bool()>& is_valid) {
+  return AlarmsProcess(settings, clock).run(is_valid);
 }
 
 }  // namespace merlin

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
+#include "daemon/alarms/child_program.h"
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/devices/device_checks.h"
@@ -125,9 +126,11 @@ void checkNetworkCommands(const DaemonOptions& options, LoadedSettings& loaded) 
   const ServeSettings& s = loaded.settings.serve;
   const bool wall = options.wall && !s.wall_endpoint.empty();
   const bool devices = options.devices && !s.devices_endpoint.empty();
-  if (!wall && !devices) return;
+  const bool topics = options.wall && !s.wall_topics_endpoint.empty();
+  if (!wall && !devices && !topics) return;
   if (wall) checkBindable(s.wall_endpoint, "/serve/wall_endpoint", loaded);
   if (devices) checkBindable(s.devices_endpoint, "/serve/devices_endpoint", loaded);
+  if (topics) checkBindable(s.wall_topics_endpoint, "/serve/wall_topics_endpoint", loaded);
   if (!s.commands_keys.empty())
     take(status::readKeyPair(s.commands_keys), "/serve/commands_keys", loaded);
   if (!s.commands_clients.empty())
@@ -148,16 +151,35 @@ void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
   if (!input.keys.empty()) take(status::readKeyPair(input.keys), "/wall/input/keys", loaded);
 }
 
+// A role that is switched off is not at fault: its process waits for a configuration with it.
+void addNothingToDo(LoadedSettings& loaded, const char* pointer, const char* what) {
+  loaded.add({true, loaded.lineOf(pointer), pointer, what});
+}
+
 void checkPage(LoadedSettings& loaded) {
   const PageSettings& page = loaded.settings.page;
   if (page.enabled || page.metrics) return;
-  loaded.addFinding("/page/enabled",
-                    "is false, and so is /page/metrics: the role page has nothing to serve");
+  addNothingToDo(loaded, "/page/enabled",
+                 "is false, and so is /page/metrics: the role page has nothing to serve");
 }
 
+// A program that is not there is no reason to refuse the others, and may be put there later.
 void checkAlarms(LoadedSettings& loaded) {
-  if (!loaded.settings.alarms.empty()) return;
-  loaded.addFinding("/alarms", "is empty: the role alarms has no program to start");
+  const std::vector<AlarmSettings>& alarms = loaded.settings.alarms;
+  if (alarms.empty())
+    addNothingToDo(loaded, "/alarms", "is empty: the role alarms has no program to start");
+  for (std::size_t i = 0; i < alarms.size(); ++i) {
+    const std::vector<std::string>& run = alarms[i].run;
+    if (run.empty() || !run.front().starts_with('/')) continue;  // the loader has reported it
+    const auto usable = alarms::checkProgram(run.front());
+    if (usable) continue;
+    const std::string at = fmt::format("/alarms/{}/run/0", i);
+    loaded.add({true, loaded.lineOf(at), at,
+                fmt::format("{}{}; until it can be, this alarm tells nobody: put the program "
+                            "there, and let everybody execute it (chmod 755)",
+                            kCannot, usable.error().what),
+                true});
+  }
 }
 
 }  // namespace

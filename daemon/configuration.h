@@ -29,8 +29,8 @@ struct Configuration {
   std::string instead_of{};
 };
 
-// kAgain: merlind runs with a configuration of this file, and changes of what only a start takes
-// are refused anyway: the contents and the renderer are not read, which may take long.
+// kAgain: merlind runs with a configuration of this file: the contents and the renderer are not
+// read, which may take long.
 enum class Reading { kStart, kAgain };
 
 // Reads the file and all other files that merlind reads when it starts with these roles; files that

@@ -19,6 +19,7 @@ namespace {
 constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kSummary = std::chrono::seconds(5);
 constexpr Duration kOnceASecond = std::chrono::seconds(1);
+constexpr const char* kLongWatchdog = "WATCHDOG_USEC=600000000";
 
 sigset_t takenSignals() {
   sigset_t set;
@@ -32,6 +33,14 @@ Duration watchdogInterval() {
   std::uint64_t usec = 0;
   return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
                                              : Duration{};
+}
+
+// The watchdog's time as the unit has it, since it is longer after a start of this program by
+// itself.
+void tellReady() {
+  std::uint64_t usec = 0;
+  const bool watched = ::sd_watchdog_enabled(0, &usec) > 0;
+  ::sd_notify(0, watched ? fmt::format("READY=1\nWATCHDOG_USEC={}", usec).c_str() : "READY=1");
 }
 
 // Ends the process after 20 s: a thread that hangs, for example in a file system that does not
@@ -164,8 +173,9 @@ void Daemon::connectRoles() {
     wall_fault_ = std::make_unique<devices::WallFault>(settings_.instance);
   if (wall_ && !devices_ && !remote_devices_)
     devices_beside_ = std::make_unique<DevicesBeside>(settings_.instance);
-  reloader_.emplace(file_, options_, std::move(configured_), settings_,
-                    Reloader::Parts{devices_.get(), wall_.get(), services_, threads_, wake});
+  reloader_.emplace(
+      file_, options_, std::move(configured_), settings_,
+      Reloader::Parts{devices_.get(), wall_.get(), services_, threads_, clock_, wake});
   commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get(),
                                         keeper_.get(), &*reloader_, devices_beside_.get()},
                     clock_);
@@ -189,6 +199,7 @@ void Daemon::serveWindows() {
 // are executed by the walls.
 void Daemon::executeActions() {
   for (const std::size_t action : device_actions_.read(devices_->slots()).in_order) {
+    if (action >= kActions.size()) continue;  // shared memory may be written by its owner
     const CommandInfo* const command = findCommand(kActions[action]);
     if (command->role == CommandOf::kWall) continue;
     const auto done = commands_->run(command->name);
@@ -236,19 +247,30 @@ Result<Ok> Daemon::run() {
     if (auto shown = awaitFirstFrame(wall_->start()); !shown) return shown;
   }
   kept_files_.forgetUntaken();  // the cards that are used were opened before the first frame
-  ::sd_notify(0, "READY=1");
+  tellReady();
   logInfo("ready");
   keepLastGood();
-  while (!stopAsked(kBeat)) {
+  while (!starts_again_ && !stopAsked(kBeat)) {
     housekeeping();
-    if (reloader_->tend() && last_good_) last_good_->keep(reloader_->configured());
+    tendReload();
     // Not before READY=1: a ping arms systemd's watchdog, and the first frame may take longer.
     if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
     if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
   }
-  ::sd_notify(0, "STOPPING=1");
-  logInfo("stopping");
+  tellEnd();
   return Ok{};
+}
+
+void Daemon::tendReload() {
+  const Reloader::Done done = reloader_->tend();
+  if (done == Reloader::Done::kSwapped && last_good_) last_good_->keep(reloader_->configured());
+  starts_again_ = done == Reloader::Done::kRestart;
+}
+
+// To systemd the service goes on while it starts again, and is to be given time for a large model.
+void Daemon::tellEnd() const {
+  ::sd_notify(0, starts_again_ ? kLongWatchdog : "STOPPING=1");
+  logInfo("{}", starts_again_ ? "starting again" : "stopping");
 }
 
 // A configuration is good when merlind runs with it.

@@ -45,11 +45,15 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Runs until SIGTERM or SIGINT; SIGHUP: reads the configuration again. Tells systemd when the
+  // Runs until SIGTERM or SIGINT; SIGHUP: reads the configuration again. Also returns, with
+  // startsAgain(), once it was read and has changes that only a start takes. Tells systemd when the
   // first frame is shown, and from then on that every thread still makes progress (its watchdog).
   // Errors: those of starting the servers; the first frame could not be drawn; kClosed (stopped
   // before the first frame); a thread has ended unexpectedly.
   Result<Ok> run();
+  bool startsAgain() const noexcept { return starts_again_; }
+  // For the start that follows, what is to stay open meanwhile: see ProgramRestart.
+  std::vector<std::pair<std::string, UniqueFd>> handOver() { return kept_files_.handOver(); }
 
  private:
   Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock);
@@ -63,6 +67,8 @@ class Daemon {
   void serveWindows();
   Result<Ok> awaitFirstFrame(std::future<Result<std::string>> ready);
   bool stopAsked(Duration wait);  // waits for a signal
+  void tendReload();
+  void tellEnd() const;
   void keepLastGood();
   void housekeeping();
   void mendSharedMemory();
@@ -82,6 +88,7 @@ class Daemon {
   status::EndedThreads ended_threads_{threads_, services_};
   status::Watchdog watchdog_;
   Timestamp summarised_{}, mended_{};
+  bool starts_again_ = false;
   std::atomic<bool> closed_{false};  // a person closed a window whose on_close is "stop"
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<RemoteDevices> remote_devices_;  // if /wall/input names another machine

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include <fcntl.h>
 #include <systemd/sd-daemon.h>
 
 namespace merlin {
@@ -32,11 +33,23 @@ bool KeptBySystemd::keep(const std::string& name, int fd) {
   if (!is_service_) return false;
   removeFromStore(name);  // two files may have the same name there
   const std::string message = "FDSTORE=1\nFDNAME=" + name;
-  return ::sd_pid_notify_with_fds(0, 0, message.c_str(), &fd, 1) > 0;
+  if (::sd_pid_notify_with_fds(0, 0, message.c_str(), &fd, 1) <= 0) return false;
+  const std::lock_guard lock(mutex_);
+  kept_.insert_or_assign(name, UniqueFd(::fcntl(fd, F_DUPFD_CLOEXEC, 0)));
+  return true;
 }
 
 void KeptBySystemd::forget(const std::string& name) {
   if (is_service_) removeFromStore(name);
+  const std::lock_guard lock(mutex_);
+  kept_.erase(name);
+}
+
+std::vector<std::pair<std::string, UniqueFd>> KeptBySystemd::handOver() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::pair<std::string, UniqueFd>> files;
+  for (auto& [name, file] : std::exchange(kept_, {})) files.emplace_back(name, std::move(file));
+  return files;
 }
 
 void KeptBySystemd::forgetUntaken() {

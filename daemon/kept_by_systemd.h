@@ -5,6 +5,8 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "daemon/base/kept_files.h"
 
@@ -22,6 +24,9 @@ class KeptBySystemd final : public KeptFiles {
   // Forgets what the process before this one kept and nobody has taken: a card that is not used any
   // more would show its last picture for ever.
   void forgetUntaken();
+  // What is kept, by name, for ProgramRestart: the service goes on, so that systemd hands over
+  // nothing.
+  std::vector<std::pair<std::string, UniqueFd>> handOver();
 
  private:
   void removeFromStore(const std::string& name) const;
@@ -29,6 +34,7 @@ class KeptBySystemd final : public KeptFiles {
   const bool is_service_;
   std::mutex mutex_;
   std::map<std::string, UniqueFd> taken_over_;
+  std::map<std::string, UniqueFd> kept_;  // copies
 };
 
 }  // namespace merlin

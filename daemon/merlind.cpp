@@ -22,6 +22,7 @@
 #include "daemon/daemon.h"
 #include "daemon/last_good.h"
 #include "daemon/page_process.h"
+#include "daemon/program_restart.h"
 #include "render/gl/gl_context.h"
 
 namespace merlin {
@@ -148,7 +149,23 @@ int exitStatusOf(const Result<Ok>& ran) {
   return ran.error().code == Errc::kClosed ? kExitDone : exitStatus(ran.error());
 }
 
-int runDaemon(const Options& options) {
+// The roles page and alarms, which start again for a changed configuration.
+int runBeside(const Options& options, const Settings& settings, const ProgramRestart& restart) {
+  const auto is_valid = [&] {
+    const Configuration fresh = checkedConfiguration(options.config, options);
+    if (fresh.loaded.verdict() != LoadedSettings::Verdict::kInvalid) return true;
+    logWarning("{} is invalid; the settings before it stay in effect", options.config);
+    return false;
+  };
+  SystemClock clock;
+  const Result<Asked> asked = options.role == "alarms"
+                                  ? Result<Asked>(runAlarms(settings, clock, is_valid))
+                                  : runPage(settings, clock, is_valid);
+  if (!asked) return exitStatusOf(asked.error());
+  return *asked == Asked::kStartAgain ? exitStatusOf(restart.now({})) : kExitDone;
+}
+
+int runDaemon(const Options& options, const ProgramRestart& restart) {
   blockSignals();  // first, because reading a large model takes long and a signal may arrive
   Configuration configuration = checkedConfiguration(options.config, options);
   if (configuration.loaded.verdict() == LoadedSettings::Verdict::kInvalid) {
@@ -161,27 +178,26 @@ int runDaemon(const Options& options) {
     logError("{}", configuration.instead_of);
   }
   raiseDescriptorLimit();
-  if (options.role == "alarms") {
-    SystemClock alarms_clock;
-    return exitStatusOf(runAlarms(configuration.loaded.settings, alarms_clock));
-  }
-  if (options.role == "page") {
-    SystemClock page_clock;
-    return exitStatusOf(runPage(configuration.loaded.settings, page_clock));
-  }
+  if (options.role == "alarms" || options.role == "page")
+    return runBeside(options, configuration.loaded.settings, restart);
   const render::gl::GlSettings& gl = configuration.loaded.settings.wall.render.gl;
   render::gl::prepareSoftwareGl(gl.raster_threads, gl.gpu == render::gl::kNoGpu);
   SystemClock clock;
-  const auto daemon = Daemon::make(std::move(configuration), daemonOptions(options), clock);
+  auto daemon = Daemon::make(std::move(configuration), daemonOptions(options), clock);
   if (!daemon) {
     logError("{}", daemon.error().what);
     delayRestart();
     return exitStatus(daemon.error());
   }
-  return exitStatusOf((*daemon)->run());
+  const Result<Ok> ran = (*daemon)->run();
+  if (!ran || !(*daemon)->startsAgain()) return exitStatusOf(ran);
+  const auto kept = (*daemon)->handOver();
+  daemon->reset();
+  return exitStatusOf(restart.now(kept));
 }
 
 int runProgram(int argc, char** argv) {
+  const ProgramRestart restart(argc, argv);
   Options options;
   CLI::App app(
       "MERLIN's daemon: reads the devices and draws the wall.\n\nExample: merlind --config "
@@ -228,7 +244,7 @@ int runProgram(int argc, char** argv) {
     return kExitDone;
   }
   if (options.print_config) return printConfig(options);
-  if (check->count() == 0) return runDaemon(options);
+  if (check->count() == 0) return runDaemon(options, restart);
   return runGuarded(
       "merlind", [&] { return checkConfig(options); }, kExitBadInput);
 }

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <systemd/sd-daemon.h>
 
+#include "daemon/base/event_logger.h"
 #include "daemon/base/log.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/net/server_keeper.h"
@@ -16,11 +17,11 @@
 #include "daemon/page/page_server.h"
 #include "daemon/page/token.h"
 #include "daemon/page_contents.h"
+#include "daemon/role_signals.h"
 #include "daemon/status/ended_threads.h"
 #include "daemon/status/run_directory.h"
 #include "daemon/status/services.h"
 #include "daemon/status/watchdog.h"
-#include "daemon/stop_asked.h"
 
 namespace merlin {
 namespace {
@@ -54,18 +55,18 @@ class PageProcess {
         keeper_("page",
                 [this, settings = serverSettings(settings, token)] { return start(settings); }) {}
 
-  Result<Ok> run() {
+  Result<Asked> run(const std::function<bool()>& is_valid) {
     tend();
     ::sd_notify(0, "READY=1");
     logInfo("ready");
-    while (!stopAsked(kBeat, "page")) {
+    Asked asked = Asked::kNothing;
+    while ((asked = askedBySignal(kBeat, is_valid)) == Asked::kNothing) {
       tend();
       if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
       if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
     }
-    ::sd_notify(0, "STOPPING=1");
-    logInfo("stopping");
-    return Ok{};
+    tellEnd(asked);
+    return asked;
   }
 
  private:
@@ -90,10 +91,11 @@ class PageProcess {
   void tend() {
     const Timestamp now = clock_.now();
     keeper_.tend(now);
-    for (const std::string& sentence : keeper_.takeEvents(now)) {
-      logInfo("{}", sentence);
-      events_.add("page", "server", sentence);
+    for (const Event& event : keeper_.takeEvents(now)) {
+      logger_.log(kServerEvent, event, now);
+      events_.add("page", kServerEvent.name, event.what);
     }
+    logger_.tellLeftOut(now);
     const net::ServerHealth health = keeper_.health();
     const std::string status = health.failure.empty()
                                    ? fmt::format("{} connections", health.report.connections)
@@ -107,13 +109,25 @@ class PageProcess {
   status::EndedThreads ended_threads_{threads_, services_};
   status::Watchdog watchdog_;
   page::EventLog events_;
+  EventLogger logger_{"page"};
   std::string told_status_;
   net::ServerKeeper keeper_;  // uses everything above
 };
 
+// Waits until the configuration has a page again, or for the end.
+Asked serveNothing(const std::function<bool()>& is_valid) {
+  ::sd_notify(0, "READY=1\nSTATUS=switched off by the configuration");
+  logInfo("ready: the page is switched off by the configuration, and so are the metrics");
+  Asked asked = Asked::kNothing;
+  while ((asked = askedBySignal(kBeat, is_valid)) == Asked::kNothing) ::sd_notify(0, "WATCHDOG=1");
+  tellEnd(asked);
+  return asked;
+}
+
 }  // namespace
 
-Result<Ok> runPage(Settings settings, Clock& clock) {
+Result<Asked> runPage(Settings settings, Clock& clock, const std::function<bool()>& is_valid) {
+  if (!settings.page.enabled && !settings.page.metrics) return serveNothing(is_valid);
   auto directory = status::runDirectory(settings.run_directory);
   if (!directory) return directory.error();
   settings.run_directory = *std::move(directory);
@@ -121,7 +135,7 @@ Result<Ok> runPage(Settings settings, Clock& clock) {
       fmt::format("{}/{}-page.token", settings.run_directory, settings.instance));
   if (!token) return token.error();
   ::setpriority(PRIO_PROCESS, 0, kNice);
-  return PageProcess(settings, *token, clock).run();
+  return PageProcess(settings, *token, clock).run(is_valid);
 }
 
 }  // namespace merlin

@@ -2,16 +2,21 @@
 // that it stays while the wall is restarted, and a fault of one cannot stop the other.
 #pragma once
 
+#include <functional>
+
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/result.h"
+#include "daemon/role_signals.h"
 
 namespace merlin {
 
-// Runs until SIGTERM or SIGINT; notifies systemd of its start and of progress. A port that is in
-// use is no error: it is tried again every five seconds. REQUIRES: these signals and SIGHUP are
-// blocked; no thread has been started. Errors: kBusy (another process serves the page of this
-// instance), kIo (the run directory or the token's file), a thread has ended unexpectedly.
-Result<Ok> runPage(Settings settings, Clock& clock);
+// Runs until it is asked to stop or to start again, as askedBySignal() says, and returns which;
+// notifies systemd of its start and of progress. A port that is in use is no error: it is tried
+// again every five seconds. With a page that is switched off it only waits. REQUIRES: SIGTERM,
+// SIGINT and SIGHUP are blocked; no thread has been started. Errors: kBusy (another process serves
+// the page of this instance), kIo (the run directory or the token's file), a thread has ended
+// unexpectedly.
+Result<Asked> runPage(Settings settings, Clock& clock, const std::function<bool()>& is_valid);
 
 }  // namespace merlin

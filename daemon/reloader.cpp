@@ -8,6 +8,7 @@
 
 #include "config/effective.h"
 #include "daemon/base/log.h"
+#include "daemon/wall/wall_checks.h"
 
 namespace merlin {
 namespace {
@@ -16,6 +17,8 @@ using reload::Outcome;
 using reload::Part;
 
 constexpr std::size_t kMostWaiting = 8, kKept = 32;
+// A process that starts again waits until its answer was fetched, and then until it has been sent.
+constexpr Duration kFetch = std::chrono::seconds(5), kSend = std::chrono::milliseconds(200);
 constexpr const char* kService = "configuration";
 
 std::optional<std::uint32_t> numberIn(const std::string& text) {
@@ -36,6 +39,11 @@ bool adjustsChange(const LoadedSettings& loaded, const std::vector<SettingChange
   });
 }
 
+bool concerns(const std::vector<SettingChange>& changes, std::string_view group) {
+  return std::ranges::any_of(
+      changes, [&](const SettingChange& change) { return change.pointer.starts_with(group); });
+}
+
 std::string orNothing(const std::string& value) { return value.empty() ? "nothing" : value; }
 
 }  // namespace
@@ -48,21 +56,34 @@ Reloader::Reloader(std::string file, const DaemonOptions& options, Settings conf
       running_(running),
       parts_(parts) {}
 
+void Reloader::request() {
+  const std::lock_guard lock(mutex_);
+  (void)add(false, false);
+}
+
+// REQUIRES: mutex_ is held.
+Result<std::string> Reloader::add(bool only_check, bool is_command) {
+  if (restart_at_) return Error{Errc::kBusy, "merlind starts again just now; try again later"};
+  if (waiting_.size() >= kMostWaiting) {
+    return Error{Errc::kBusy,
+                 fmt::format("{} requests wait already; try again later", kMostWaiting)};
+  }
+  waiting_.push_back({++last_number_, only_check, is_command});
+  parts_.wake();
+  return fmt::format("{{\"request\": {}}}", last_number_);
+}
+
 Result<std::string> Reloader::run(const std::string& argument) {
   const std::lock_guard lock(mutex_);
-  if (argument == "now" || argument == "check") {
-    if (waiting_.size() >= kMostWaiting) {
-      return Error{Errc::kBusy,
-                   fmt::format("{} requests wait already; try again later", kMostWaiting)};
-    }
-    waiting_.push_back({++last_number_, argument == "check"});
-    parts_.wake();
-    return fmt::format("{{\"request\": {}}}", last_number_);
-  }
+  if (argument == "now" || argument == "check") return add(argument == "check", true);
   const auto number = numberIn(argument);
   const auto answer =
       std::ranges::find_if(answers_, [&](const auto& a) { return a.first == number; });
-  if (answer != answers_.end()) return answer->second;
+  if (answer != answers_.end()) {
+    if (restart_at_ && number == restart_number_)
+      restart_at_ = std::min(*restart_at_, parts_.clock.now() + kSend);
+    return answer->second;
+  }
   const bool waits = std::ranges::any_of(waiting_, [&](auto& r) { return r.number == number; });
   if (waits || (current_ && current_->number == number)) return std::string("{\"pending\": true}");
   return Error{
@@ -71,28 +92,29 @@ Result<std::string> Reloader::run(const std::string& argument) {
                   argument.substr(0, 64), kKept)};
 }
 
-bool Reloader::tend() {
+Reloader::Done Reloader::tend() {
   std::optional<Request> request;
   std::optional<ReadFile> file;
   {
     const std::lock_guard lock(mutex_);
+    if (restart_at_) return parts_.clock.now() >= *restart_at_ ? Done::kRestart : Done::kNothing;
     if (read_) {
       request = current_;
       file.swap(read_);
     }
   }
-  bool swapped = false;
+  Done done = Done::kNothing;
   if (file) {
     thread_.stop();
-    swapped = finish(*request, *std::move(file));
+    done = finish(*request, *std::move(file));
   }
   const std::lock_guard lock(mutex_);
-  if (current_ || waiting_.empty()) return swapped;
+  if (current_ || waiting_.empty() || restart_at_) return done;
   current_ = waiting_.front();
   waiting_.pop_front();
   thread_ = WatchedThread(parts_.watch, "reload",
                           [this](const std::stop_token& stop, Progress& p) { read(stop, p); });
-  return swapped;
+  return done;
 }
 
 // The body of the thread. Then it waits until it is stopped, as every thread must.
@@ -130,27 +152,35 @@ reload::Readers Reloader::process() const {
          (mirrors ? reload::kMirror : 0U);
 }
 
+// What a start checks beyond a reload, where it can have changed: the process would end for it.
+void Reloader::checkStart(LoadedSettings& loaded, const std::vector<SettingChange>& changes) const {
+  if (!options_.wall) return;
+  if (concerns(changes, "/wall/render/gpu")) wall::checkRenderer(loaded);
+  if (concerns(changes, "/wall/model") || concerns(changes, "/wall/contents") ||
+      concerns(changes, "/wall/render/show"))
+    wall::checkContents(loaded);
+  loaded.sortFindings();
+}
+
+Outcome Reloader::judge(LoadedSettings& loaded, reload::Plan& plan) const {
+  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return Outcome::kInvalid;
+  const auto changes = changesBetween(configured_, loaded.settings);
+  reload::Plan found = reload::planFor(changes, process());
+  if (!found.restart.empty()) checkStart(loaded, changes);
+  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid || adjustsChange(loaded, changes))
+    return Outcome::kInvalid;
+  plan = std::move(found);
+  return plan.restart.empty() ? Outcome::kDone : Outcome::kRestarts;
+}
+
 Reloader::ReadFile Reloader::read() const {
-  Configuration fresh = readConfiguration(file_, options_, Reading::kAgain);
+  LoadedSettings loaded = readConfiguration(file_, options_, Reading::kAgain).loaded;
   ReadFile file;
   file.answer.file = file_;
-  file.answer.findings = findingLines(file_, fresh.loaded);
-  if (fresh.loaded.verdict() == LoadedSettings::Verdict::kInvalid) {
-    file.answer.outcome = Outcome::kInvalid;
-    return file;
-  }
-  file.settings = std::move(fresh.loaded.settings);
-  const auto changes = changesBetween(configured_, file.settings);
-  if (adjustsChange(fresh.loaded, changes)) {
-    file.answer.outcome = Outcome::kInvalid;
-    return file;
-  }
-  file.answer.plan = reload::planFor(changes, process());
-  if (!file.answer.plan.restart.empty()) {
-    file.answer.outcome = Outcome::kRestart;
-    return file;
-  }
-  if (!options_.devices) return file;
+  file.answer.outcome = judge(loaded, file.answer.plan);
+  file.answer.findings = findingLines(file_, loaded);
+  file.settings = std::move(loaded.settings);
+  if (file.answer.outcome != Outcome::kDone || !options_.devices) return file;
   if (auto trained = devices::loadTrained(file.settings)) {
     file.trained = *std::move(trained);
   } else {  // it was readable when it was checked
@@ -161,8 +191,7 @@ Reloader::ReadFile Reloader::read() const {
   return file;
 }
 
-// Returns whether the file's settings are in effect now.
-bool Reloader::finish(const Request& request, ReadFile file) {
+Reloader::Done Reloader::finish(const Request& request, ReadFile file) {
   file.answer.only_checked = request.only_check;
   const bool swaps = !request.only_check && file.answer.outcome == Outcome::kDone;
   if (swaps) swap(file);
@@ -172,7 +201,11 @@ bool Reloader::finish(const Request& request, ReadFile file) {
   answers_.emplace_back(request.number, std::move(text));
   if (answers_.size() > kKept) answers_.pop_front();
   current_.reset();
-  return swaps;
+  if (!request.only_check && file.answer.outcome == Outcome::kRestarts) {
+    restart_at_ = parts_.clock.now() + (request.is_command ? kFetch : Duration{});
+    restart_number_ = request.number;
+  }
+  return swaps ? Done::kSwapped : Done::kNothing;
 }
 
 void Reloader::swap(const ReadFile& file) {
@@ -195,9 +228,13 @@ void Reloader::swap(const ReadFile& file) {
 
 void Reloader::report(const reload::Answer& answer) {
   for (const std::string& finding : answer.findings) logWarning("{}", finding);
-  if (answer.outcome != Outcome::kDone)
-    return parts_.services.failed(kService, reload::refusal(answer));
+  const std::string refusal = reload::refusal(answer);
+  if (!refusal.empty()) return parts_.services.failed(kService, refusal);
   parts_.services.ok(kService);
+  if (answer.outcome == Outcome::kRestarts) {
+    return logInfo("reload: {} changed in {}, which only a start takes: merlind starts again",
+                   reload::restartReason(answer.plan), file_);
+  }
   for (const SettingChange& change : answer.plan.swapped) {
     logInfo("reload: {} was {} and is {}", change.pointer, orNothing(change.before),
             orNothing(change.after));

@@ -10,7 +10,10 @@
 #include <string>
 #include <utility>
 
+#include "config/effective.h"
+#include "config/loader.h"
 #include "config/settings.h"
+#include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/configuration.h"
@@ -22,15 +25,20 @@
 namespace merlin {
 
 // The file is read and checked on a thread of its own, which runs only meanwhile and gives way to
-// all others; what changed is swapped by tend(), on the main thread. All or nothing. Several
-// requests are executed one after another.
+// all others; what changed is swapped by tend(), on the main thread, or, if only a start takes it,
+// tend() says so. All or nothing. Several requests are executed one after another.
 class Reloader {
  public:
+  // What tend() did. kRestart: the file is valid, and whoever asked was told that the process
+  // starts again with it, which is to be done now.
+  enum class Done { kNothing, kSwapped, kRestart };
+
   struct Parts {
     devices::DevicesRole* devices;  // null: this process lacks the part
     wall::WallRole* wall;
     status::Services& services;  // says why a reload was refused, until one is not
     ThreadWatch& watch;
+    const Clock& clock;
     std::function<void()> wake;  // has the main thread call tend() soon; called on any thread
   };
   // `configured`: the settings of `file` that are in effect. `running`: the same with what was made
@@ -41,15 +49,14 @@ class Reloader {
   // The command: "now" and "check", which only says what would be done, return {"request": N}; N
   // as the argument returns {"pending": true} until the request was executed, then its answer
   // (reload::answerText()). The last 32 answers are kept. Errors: kInvalidArgument; kBusy (8
-  // requests wait). Returns at once. Thread-safe.
+  // requests wait, or the process starts again). Returns at once. Thread-safe.
   Result<std::string> run(const std::string& argument);
   // As by "now"; whoever asks hears of it by log and events. Thread-safe.
-  void request() { (void)run("now"); }
+  void request();
 
   // Begins what was requested, and swaps what was read. To be called by the main thread, from the
-  // first frame on. Takes up to 50 ms for each device that is made anew. Returns true if other
-  // settings than before are in effect.
-  bool tend();
+  // first frame on. Takes up to 50 ms for each device that is made anew.
+  Done tend();
   // The settings of the file that are in effect. On the thread of tend().
   const Settings& configured() const noexcept { return configured_; }
 
@@ -57,6 +64,7 @@ class Reloader {
   struct Request {
     std::uint32_t number = 0;
     bool only_check = false;
+    bool is_command = true;  // whoever asked waits for the answer
   };
   struct ReadFile {
     reload::Answer answer;
@@ -65,9 +73,12 @@ class Reloader {
   };
   ReadFile readGuarded() const;
   ReadFile read() const;
+  void checkStart(LoadedSettings& loaded, const std::vector<SettingChange>& changes) const;
+  reload::Outcome judge(LoadedSettings& loaded, reload::Plan& plan) const;
   reload::Readers process() const;
+  Result<std::string> add(bool only_check, bool is_command);
   void read(const std::stop_token& stop, Progress& progress);
-  bool finish(const Request& request, ReadFile file);
+  Done finish(const Request& request, ReadFile file);
   void swap(const ReadFile& file);
   void report(const reload::Answer& answer);
 
@@ -83,6 +94,9 @@ class Reloader {
   std::optional<Request> current_;
   std::optional<ReadFile> read_;  // of current_
   std::deque<std::pair<std::uint32_t, std::string>> answers_;
+  // Once the process is to start again: when, and the request whose answer says so.
+  std::optional<Timestamp> restart_at_;
+  std::uint32_t restart_number_ = 0;
   WatchedThread thread_;  // reads
 };
 

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/log.h"
 #include "daemon/serve/spnav_server.h"
 #include "daemon/serve/vrpn_server.h"
 #include "daemon/status/documents.h"
@@ -40,7 +39,8 @@ Result<status::CurveServer> sampleServerKeys(const ServeSettings& s) {
   return status::CurveServer{s.samples_endpoint, *std::move(keys), {*std::move(clients), {}}};
 }
 
-// The same of the socket that answers a role's requests of other machines, at `endpoint`.
+// The same of a socket of a role for other machines, at `endpoint`: that which answers requests, or
+// that of the topics.
 Result<status::CurveServer> commandServerKeys(const ServeSettings& s, const std::string& endpoint) {
   if (endpoint.empty()) return status::CurveServer{};
   auto keys = status::readKeyPair(s.commands_keys);
@@ -164,9 +164,15 @@ Result<Ok> RoleServers::startDevices() {
   auto network = sampleServerKeys(parts_.settings.serve);
   if (!network) return network.error();
   s.network = *std::move(network);
+  s.network_name = "samples for other machines";
+  s.network_setting = "/serve/samples_endpoint";
   // Shared because a std::function must be copyable.
-  auto health = std::make_shared<status::HealthEvents>(devices);
-  s.events = [this, health] { return deviceEvents(*health); };
+  shm::DeviceSlots followed = devices;
+  if (const auto* const panel = parts_.devices->panelHealth())
+    followed.health.push_back({"control panel", panel});
+  auto health = std::make_shared<status::HealthEvents>(std::move(followed));
+  auto events = std::make_shared<RoleEvents>("devices");
+  s.events = [this, events, health] { return deviceEvents(*events, *health); };
   if (auto started = startStatus("devices", CommandOf::kDevices, std::move(s)); !started)
     return started;
   startServersForOthers(devices);
@@ -190,70 +196,78 @@ Result<Ok> RoleServers::startWall() {
   };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};
+  auto network =
+      commandServerKeys(parts_.settings.serve, parts_.settings.serve.wall_topics_endpoint);
+  if (!network) return network.error();
+  s.network = *std::move(network);
+  s.network_name = "topics of the wall over the network";
+  s.network_setting = "/serve/wall_topics_endpoint";
   // Shared because a std::function must be copyable.
-  auto events = std::make_shared<status::WallEvents>(segment);
+  auto events = std::make_shared<RoleEvents>("wall");
+  auto wall = std::make_shared<status::WallEvents>(segment);
   auto health = remote ? std::make_shared<status::HealthEvents>(*remote) : nullptr;
-  s.events = [this, events, health] { return wallEvents(*events, health.get()); };
+  s.events = [this, events, wall, health] { return wallEvents(*events, *wall, health.get()); };
   if (auto started = startStatus("wall", CommandOf::kWall, std::move(s)); !started) return started;
   if (remote) startServersForOthers(*remote);
   return Ok{};
 }
 
-void RoleServers::addEvent(std::vector<std::string>& documents, const EventKind& kind,
-                           const std::string& sentence) const {
-  if (parts_.wall) parts_.wall->tell(sentence);
-  documents.push_back(status::event(kind.name, sentence, clock_.now()));
+namespace {
+
+// Sentences of a kind whose events are all faults, or none is.
+std::vector<Event> eventsOf(std::vector<std::string> sentences, bool are_faults) {
+  std::vector<Event> events;
+  for (std::string& sentence : sentences) events.push_back({std::move(sentence), are_faults});
+  return events;
 }
 
-// Logs the sentences and adds them to `documents`, as events of that kind.
-void RoleServers::addEvents(std::vector<std::string>& documents, const EventKind& kind,
-                            const std::vector<std::string>& sentences) const {
-  for (const std::string& sentence : sentences) {
-    logInfo("{}", sentence);
-    addEvent(documents, kind, sentence);
+}  // namespace
+
+// Logs the events and adds them to those of the role.
+void RoleServers::add(RoleEvents& to, const EventKind& kind,
+                      const std::vector<Event>& events) const {
+  for (const Event& event : events) {
+    to.logger.log(kind, event, clock_.now());
+    if (parts_.wall) parts_.wall->tell(event.what);
+    to.documents.push_back(status::event(kind.name, event.what, clock_.now()));
   }
 }
 
-// Logs the services' events and adds them to `documents`. Each event is delivered once, to the role
-// whose server asks first.
-void RoleServers::addServiceEvents(std::vector<std::string>& documents) {
-  for (const std::string& sentence : parts_.services.takeEvents()) {
-    logWarning("{}", sentence);
-    addEvent(documents, kServiceEvent, sentence);
-  }
+// Each event of a service is delivered once, to the role whose server asks first.
+std::vector<std::string> RoleServers::taken(RoleEvents& events) const {
+  add(events, kServiceEvent, parts_.services.takeEvents());
+  events.logger.tellLeftOut(clock_.now());
+  return std::exchange(events.documents, {});
 }
 
-std::vector<std::string> RoleServers::deviceEvents(status::HealthEvents& health) {
-  std::vector<std::string> documents;
-  addEvents(documents, kDeviceEvent, health.take(clock_.now()));
-  addEvents(documents, kGestureEvent, health.takeGestures());
+std::vector<std::string> RoleServers::deviceEvents(RoleEvents& events,
+                                                   status::HealthEvents& health) {
+  add(events, kDeviceEvent, health.take(clock_.now()));
+  add(events, kGestureEvent, health.takeGestures());
   if (devices::Projectors* const projectors = parts_.devices->projectors())
-    addEvents(documents, kProjectorEvent, projectors->takeEvents());
+    add(events, kProjectorEvent, projectors->takeEvents());
   if (!parts_.wall && parts_.keeper)
-    addEvents(documents, kStateEvent, parts_.keeper->takeNotices());
-  addEvents(documents, kFlightEvent, parts_.devices->flight().check());
-  addEvents(documents, kServerEvent, servers_.events("devices"));
-  addServiceEvents(documents);
-  return documents;
+    add(events, kStateEvent, eventsOf(parts_.keeper->takeNotices(), true));
+  add(events, kFlightEvent, parts_.devices->flight().check());
+  add(events, kServerEvent, servers_.events("devices"));
+  return taken(events);
 }
 
 // The events of the wall, its models and its servers and, if the wall uses another machine's
 // devices, those of the devices.
-std::vector<std::string> RoleServers::wallEvents(status::WallEvents& events,
+std::vector<std::string> RoleServers::wallEvents(RoleEvents& events, status::WallEvents& wall,
                                                  status::HealthEvents* remote) {
-  std::vector<std::string> documents;
-  addEvents(documents, kWallEvent, events.take());
-  addEvents(documents, kPictureEvent, events.takePictures());
-  addEvents(documents, kWallEvent, parts_.wall->viewerEvents());
-  addEvents(documents, kModelEvent, parts_.wall->contentEvents());
-  addEvents(documents, kStateEvent, parts_.keeper->takeNotices());
+  add(events, kWallEvent, wall.take());
+  add(events, kPictureEvent, wall.takePictures());
+  add(events, kWallEvent, parts_.wall->viewerEvents());
+  add(events, kModelEvent, parts_.wall->contentEvents());
+  add(events, kStateEvent, eventsOf(parts_.keeper->takeNotices(), true));
   if (remote) {
-    addEvents(documents, kDeviceEvent, remote->take(clock_.now()));
-    addEvents(documents, kGestureEvent, remote->takeGestures());
+    add(events, kDeviceEvent, remote->take(clock_.now()));
+    add(events, kGestureEvent, remote->takeGestures());
   }
-  addEvents(documents, kServerEvent, servers_.events("wall"));
-  addServiceEvents(documents);
-  return documents;
+  add(events, kServerEvent, servers_.events("wall"));
+  return taken(events);
 }
 
 }  // namespace merlin

@@ -4,11 +4,13 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/event_kinds.h"
+#include "daemon/base/event_logger.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/devices/devices_role.h"
@@ -61,13 +63,17 @@ class RoleServers {
   Result<Ok> startStatus(const std::string& role, CommandOf commands,
                          status::StatusServerSettings settings);
   void startServersForOthers(const shm::DeviceSlots& devices);
-  std::vector<std::string> deviceEvents(status::HealthEvents& health);
-  std::vector<std::string> wallEvents(status::WallEvents& events, status::HealthEvents* remote);
-  void addEvent(std::vector<std::string>& documents, const EventKind& kind,
-                const std::string& sentence) const;
-  void addEvents(std::vector<std::string>& documents, const EventKind& kind,
-                 const std::vector<std::string>& sentences) const;
-  void addServiceEvents(std::vector<std::string>& documents);
+  // Of one role; for its server's thread.
+  struct RoleEvents {
+    explicit RoleEvents(std::string_view role) : logger(role) {}
+    EventLogger logger;
+    std::vector<std::string> documents;
+  };
+  void add(RoleEvents& to, const EventKind& kind, const std::vector<Event>& events) const;
+  std::vector<std::string> taken(RoleEvents& events) const;
+  std::vector<std::string> deviceEvents(RoleEvents& events, status::HealthEvents& health);
+  std::vector<std::string> wallEvents(RoleEvents& events, status::WallEvents& wall,
+                                      status::HealthEvents* remote);
 
   Parts parts_;
   ThreadWatch& watch_;

@@ -11,8 +11,9 @@ constexpr Duration kSentAwayPeriod = std::chrono::seconds(5);
 
 }  // namespace
 
-// Destroys the servers of kept_ before the roles, because the relay for samples uses a role's
-// server. Does not hold the lock meanwhile, because the servers' threads may be waiting for it.
+// Destroys the servers of kept_ before the roles, because the relays for other machines use a
+// role's server. Does not hold the lock meanwhile, because the servers' threads may be waiting for
+// it.
 Servers::~Servers() {
   decltype(kept_) kept;
   decltype(roles_) roles;
@@ -27,7 +28,9 @@ Servers::~Servers() {
 
 Result<Ok> Servers::startRole(const std::string& role, status::StatusServerSettings settings) {
   settings.name = role;
-  const bool samples = !settings.network.endpoint.empty();
+  const bool topics = !settings.network.endpoint.empty();
+  const std::string topics_name = settings.network_name;
+  const std::string topics_setting = settings.network_setting;
   const bool commands = !settings.network_commands.endpoint.empty();
   auto started = status::StatusServer::start(std::move(settings), watch_, clock_);
   if (!started) return started.error();
@@ -43,10 +46,7 @@ Result<Ok> Servers::startRole(const std::string& role, status::StatusServerSetti
       return Error{relay.error().code, fmt::format("{}: {}", setting, relay.error().what)};
     });
   };
-  if (samples) {
-    keepRelay("samples for other machines", "/serve/samples_endpoint",
-              &status::StatusServer::startSamples);
-  }
+  if (topics) keepRelay(topics_name, topics_setting, &status::StatusServer::startNetworkTopics);
   if (commands) {
     keepRelay(fmt::format("commands of the {} over the network", role),
               fmt::format("/serve/{}_endpoint", role), &status::StatusServer::startNetworkCommands);
@@ -77,8 +77,8 @@ std::vector<net::ServerHealth> Servers::health(const std::string& role) const {
   return all;
 }
 
-std::vector<std::string> Servers::events(const std::string& role) {
-  std::vector<std::string> events;
+std::vector<Event> Servers::events(const std::string& role) {
+  std::vector<Event> events;
   const Timestamp now = clock_.now();
   const std::lock_guard lock(mutex_);
   const auto found = roles_.find(role);
@@ -86,12 +86,12 @@ std::vector<std::string> Servers::events(const std::string& role) {
     found->second.reported = now;
     for (const net::ServerReport& report : found->second.server->reports()) {
       auto sentence = net::sentAwaySentence(report, found->second.reported_sent_away[report.name]);
-      if (!sentence.empty()) events.push_back(std::move(sentence));
+      if (!sentence.empty()) events.push_back(faultEvent(std::move(sentence)));
     }
   }
   if (role != host_) return events;
   for (const auto& keeper : kept_) {
-    for (auto& sentence : keeper->takeEvents(now)) events.push_back(std::move(sentence));
+    for (Event& event : keeper->takeEvents(now)) events.push_back(std::move(event));
   }
   return events;
 }

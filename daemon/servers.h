@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/net/server_keeper.h"
 #include "daemon/status/server.h"
@@ -40,7 +41,7 @@ class Servers {
   std::vector<net::ServerHealth> health(const std::string& role) const;
   // Events since the last call for that role, one sentence each: connections that were refused or
   // closed, servers that failed or run again. Thread-safe.
-  std::vector<std::string> events(const std::string& role);
+  std::vector<Event> events(const std::string& role);
 
  private:
   struct Role {

@@ -71,7 +71,7 @@ const std::map<std::string, Folders> kMayInclude = {
       "drivers/io", "drivers/port", "drivers/spaceball"}},
     {"daemon/cli/devices",
      {"daemon/cli", "daemon/shm", "drivers/evdev", "drivers/io", "drivers/port"}},
-    {"daemon/cli/line", {"daemon/cli", "drivers", "drivers/emulate", "drivers/io"}},
+    {"daemon/cli/line", {"config", "daemon/cli", "drivers", "drivers/emulate", "drivers/io"}},
     {"daemon/cli/mesh",
      {"daemon/cli", "render/compare", "render/content", "render/frame", "render/image",
       "render/fuse", "render/inventor", "render/lod", "render/lod/io", "render/mesh",

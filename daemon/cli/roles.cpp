@@ -32,7 +32,7 @@ std::optional<FoundRole> find(const std::string& instance, const char* role,
   // Without an endpoint the segment is a copy of another machine's devices, and no process on this
   // machine executes their commands.
   if (h.command_endpoint[0] == '\0') return std::nullopt;
-  return FoundRole{role, {h.status_endpoint, h.command_endpoint}, h.pid};
+  return FoundRole{role, {h.status_endpoint, h.command_endpoint}, h.pid, h.generation};
 }
 
 // The other daemon's public key: `given` is the key, or the name of a file that has it.
@@ -105,7 +105,7 @@ Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon) {
   if (!keys) return keys.error();
   std::vector<FoundRole> roles;
   for (const std::string& endpoint : daemon.endpoints)
-    roles.push_back({"", {"", endpoint}, 0, *keys});
+    roles.push_back({"", {"", endpoint}, 0, 0, *keys});
   return roles;
 }
 
@@ -122,7 +122,7 @@ Result<std::string> instanceOf(std::uint32_t pid) {
       return name.substr(0, dash);
   }
   return Error{Errc::kIo,
-               fmt::format("process {} is no merlind that reads devices or draws a wall", pid)};
+               fmt::format("process {} is not a merlind that reads devices or draws a wall", pid)};
 }
 
 Result<std::string> askRole(const std::string& instance, const std::string& role,

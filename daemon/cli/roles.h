@@ -28,7 +28,8 @@ struct DaemonAddress {
 struct FoundRole {
   std::string role;  // "devices" or "wall"; empty: that of the other machine's endpoint
   shm::Endpoints endpoints;
-  std::uint32_t pid = 0;  // of its process; one may have both roles
+  std::uint32_t pid = 0;         // of its process; one may have both roles
+  std::uint64_t generation = 0;  // another one after each start
   std::optional<status::ClientKeys> keys = {};
 
   status::CommandAddress commands() const { return {endpoints.command, keys}; }

@@ -41,6 +41,10 @@ std::string firstOf(const std::string& first, std::size_t count) {
 
 }  // namespace
 
+std::string restartReason(const Plan& plan) {
+  return firstOf(plan.restart.front().pointer, plan.restart.size());
+}
+
 std::string answerText(const Answer& answer) {
   const Json json{{"outcome", kOutcomeNames[static_cast<std::size_t>(answer.outcome)]},
                   {"only_checked", answer.only_checked},
@@ -56,13 +60,10 @@ std::string answerText(const Answer& answer) {
 std::string refusal(const Answer& answer) {
   constexpr const char* kKept = "the settings before it stay in effect";
   switch (answer.outcome) {
-    case Outcome::kDone: return {};
+    case Outcome::kDone:
+    case Outcome::kRestarts: return {};
     case Outcome::kInvalid:
       return fmt::format("{}; {}", firstOf(answer.findings.front(), answer.findings.size()), kKept);
-    case Outcome::kRestart:
-      return fmt::format("{}: {} changed, which only a restart takes; {}", answer.file,
-                         firstOf(answer.plan.restart.front().pointer, answer.plan.restart.size()),
-                         kKept);
     case Outcome::kFailed: break;
   }
   return fmt::format("{}: {}; {}", answer.file, answer.failure, kKept);

@@ -8,11 +8,11 @@
 
 namespace merlin::reload {
 
-// kInvalid: the file has faults, or a changed number that is out of range. kRestart: a changed
-// setting needs a restart. kFailed: the outside world, for example no memory. After these three
-// nothing was changed.
-enum class Outcome { kDone, kInvalid, kRestart, kFailed };
-inline constexpr const char* kOutcomeNames[] = {"done", "invalid", "needs_restart", "failed"};
+// kInvalid: the file has faults, or a changed number that is out of range. kFailed: the outside
+// world, for example no memory. After these two nothing was changed. kRestarts: a setting changed
+// that is taken only at the start; the process starts again at once, with all of the file.
+enum class Outcome { kDone, kInvalid, kRestarts, kFailed };
+inline constexpr const char* kOutcomeNames[] = {"done", "invalid", "restarts", "failed"};
 
 struct Answer {
   Outcome outcome = Outcome::kDone;
@@ -29,7 +29,11 @@ struct Answer {
 // text; empty: there is no such setting.
 std::string answerText(const Answer& answer);
 
-// Why nothing was changed, in one sentence for an event; empty after kDone.
+// What makes a restart necessary, by name: "/wall/outputs/0/path (and 2 more)". REQUIRES:
+// plan.restart is not empty.
+std::string restartReason(const Plan& plan);
+
+// Why nothing was changed, in one sentence for an event; empty after kDone and kRestarts.
 std::string refusal(const Answer& answer);
 
 }  // namespace merlin::reload

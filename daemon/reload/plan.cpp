@@ -52,6 +52,7 @@ constexpr Taker kTakers[] = {
     {"/wall/scene/return_after_s", kWall, Part::kScene},
     {"/serve", kDevices | kMirror, Part::kRestart},
     {"/serve/wall_endpoint", kWall, Part::kRestart},
+    {"/serve/wall_topics_endpoint", kWall, Part::kRestart},
     {"/serve/devices_endpoint", kDevices, Part::kRestart},
     {"/serve/commands_keys", kDevices | kWall, Part::kRestart},
     {"/serve/commands_clients", kDevices | kWall, Part::kRestart},

@@ -11,7 +11,7 @@
 
 namespace merlin::reload {
 
-// What can be swapped while merlind runs; kRestart: only a restart takes the setting.
+// What can be swapped while merlind runs; kRestart: the process has to start again.
 enum class Part : std::size_t {
   kRestart,
   kBindings,  // bindings, and when a silent device lets go
@@ -48,7 +48,7 @@ std::vector<Taker> takers();
 
 struct Plan {
   std::vector<SettingChange> swapped;    // that this process can take while it runs
-  std::vector<SettingChange> restart;    // that it takes at its next start only
+  std::vector<SettingChange> restart;    // that it takes only when it starts
   std::vector<SettingChange> elsewhere;  // that only other processes read
   std::array<bool, static_cast<std::size_t>(Part::kCount)> parts{};  // of `swapped`
   std::vector<bool> lines;  // of kLine: by the index of the device; those beyond its end: false

@@ -38,7 +38,8 @@ SettingFaults validate(const ServeSettings& s) {
       !s.commands_keys.empty() && !(s.commands_clients.empty() && s.commands_readers.empty());
   const Endpoint all[] = {{"/samples_endpoint", s.samples_endpoint, samples, kSamples},
                           {"/wall_endpoint", s.wall_endpoint, commands, kCommands},
-                          {"/devices_endpoint", s.devices_endpoint, commands, kCommands}};
+                          {"/devices_endpoint", s.devices_endpoint, commands, kCommands},
+                          {"/wall_topics_endpoint", s.wall_topics_endpoint, commands, kCommands}};
   SettingFaults faults;
   for (const Endpoint& endpoint : all) validate(endpoint, faults);
   for (const Endpoint& a : all) {

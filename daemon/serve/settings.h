@@ -19,7 +19,10 @@ struct ServeSettings {
   // Addresses at which each role answers requests of other machines, encrypted, "tcp://*:7402";
   // empty: none.
   std::string wall_endpoint, devices_endpoint;
-  std::string commands_keys;     // file with this machine's key pair
+  // Address at which other machines follow the wall's topics, encrypted; empty: none. Those of the
+  // devices are at samples_endpoint.
+  std::string wall_topics_endpoint;
+  std::string commands_keys;     // file with this machine's key pair, for these three
   std::string commands_clients;  // file with the public keys that may send commands, one per line
   std::string commands_readers;  // file with those that may only read status and events
 
@@ -29,7 +32,8 @@ struct ServeSettings {
 };
 
 // Finds an address that cannot be used, that is used twice, or that has no keys: traffic over a
-// network must be encrypted. Pointers: "/samples_endpoint", "/wall_endpoint", "/devices_endpoint".
+// network must be encrypted. Pointers: "/samples_endpoint", "/wall_endpoint", "/devices_endpoint",
+// "/wall_topics_endpoint".
 SettingFaults validate(const ServeSettings& serve);
 
 }  // namespace merlin

@@ -222,6 +222,7 @@ void addPace(FieldTable& t) {
   MERLIN_FIELD(t, WallStats, returned, "");
   MERLIN_FIELD(t, WallStats, full_cost, "");
   MERLIN_FIELD(t, WallStats, cost_unit, "");
+  MERLIN_FIELD(t, WallStats, least_cost, "");
 }
 
 void addTrace(FieldTable& t) {

@@ -143,11 +143,12 @@ struct WallStats {
   float still_to_first_s;          // last time from standstill to the first finer picture
   std::uint32_t work_histogram[32];  // moving frames by work / period since the start, in buckets
                                      // of 1/16; the last one has all longer ones
-  std::uint32_t returned;   // times that the initial view returned by itself, since the start
-  std::uint32_t full_cost;  // cost of full detail
-  char cost_unit[16];       // unit of costs, of the content that is shown: "triangles"
+  std::uint32_t returned;    // times that the initial view returned by itself, since the start
+  std::uint32_t full_cost;   // cost of full detail
+  char cost_unit[16];        // unit of costs, of the content that is shown: "triangles"
+  std::uint32_t least_cost;  // the least that the governor chooses
 };
-static_assert(sizeof(WallStats) == 352 && offsetof(WallStats, cost) == 32);
+static_assert(sizeof(WallStats) == 360 && offsetof(WallStats, cost) == 32);
 static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, scale_divisor) == 156);
 
 // Steps of a frame; stepName() of daemon/cli/wall/trace_json.has their names.

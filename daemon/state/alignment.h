@@ -4,6 +4,7 @@
 // A correction of the configuration is the base: an offset is added to it.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <map>
@@ -49,11 +50,14 @@ struct Offset {
   bool operator==(const Offset&) const = default;
 };
 
-// What an output was when it was aligned; offsets fit no other form.
+// What an output was when it was aligned; offsets fit no other form. Whoever writes the aligned
+// corners into the configuration wants them there once, without the offsets.
 struct OutputForm {
   std::string output;                   // its name
   int width = 0, height = 0;            // of its picture [px]
   int mesh_columns = 0, mesh_rows = 0;  // 0: no mesh
+  // A correction's `corners` in the configuration; nothing: not known, from an earlier version.
+  std::optional<std::array<double, 8>> corners{};
   bool operator==(const OutputForm&) const = default;
 };
 

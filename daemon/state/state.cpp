@@ -35,10 +35,12 @@ Json textOf(const OutputAlignment& output) {
   for (const auto& [place, offset] : output.moved)
     moved.push_back({{"place", textOf(place)}, {"by", textOf(offset)}});
   const OutputForm& form = output.form;
-  return {{"output", form.output},
-          {"size", {form.width, form.height}},
-          {"mesh", {form.mesh_columns, form.mesh_rows}},
-          {"moved", std::move(moved)}};
+  Json text{{"output", form.output},
+            {"size", {form.width, form.height}},
+            {"mesh", {form.mesh_columns, form.mesh_rows}},
+            {"moved", std::move(moved)}};
+  if (form.corners) text["corners"] = *form.corners;
+  return text;
 }
 
 Json textOf(const Step& step) {
@@ -83,12 +85,21 @@ Place placeOf(JsonView view, const OutputForm& form) {
   return corner.value_or(Place{});
 }
 
+std::array<double, 8> cornersOf(JsonView view) {
+  std::array<double, 8> corners{};
+  if (view.expectArray(corners.size(), corners.size()) != corners.size()) return corners;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    corners[i] = view.at(i).number(-kMostSum, kMostSum);
+  return corners;
+}
+
 OutputAlignment outputOf(JsonView view) {
-  view.allowKeys({"output", "size", "mesh", "moved"});
+  view.allowKeys({"output", "size", "mesh", "corners", "moved"});
   OutputAlignment output;
   output.form.output = view.at("output").text(kLongestName);
   std::tie(output.form.width, output.form.height) = countsOf(view.at("size"));
   std::tie(output.form.mesh_columns, output.form.mesh_rows) = countsOf(view.at("mesh"));
+  if (view.has("corners")) output.form.corners = cornersOf(view.at("corners"));
   JsonView moved = view.at("moved");
   const std::size_t count = moved.expectArray(0, kMostMoved);
   for (std::size_t i = 0; i < count; ++i) {

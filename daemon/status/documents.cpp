@@ -166,8 +166,9 @@ OrderedJson outputsJson(const shm::WallSegment& segment) {
 constexpr std::string_view kTriangles = "triangles";
 
 OrderedJson detailJson(const shm::WallStats& s) {
-  return {{"step", s.detail_step},    {"steps", s.detail_steps},  {"cost", s.cost},
-          {"full_cost", s.full_cost}, {"held_cost", s.held_cost}, {"unit", text(s.cost_unit)}};
+  return {{"step", s.detail_step},    {"steps", s.detail_steps},    {"cost", s.cost},
+          {"full_cost", s.full_cost}, {"least_cost", s.least_cost}, {"held_cost", s.held_cost},
+          {"unit", text(s.cost_unit)}};
 }
 
 // The content shown. `slide`: of slides. `refused`: why the last one that was asked for is not

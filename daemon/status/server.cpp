@@ -27,9 +27,9 @@ constexpr int kMostQueued = 100;      // documents queued for a subscriber that 
 constexpr int kHandshake_ms = 2000;
 constexpr std::size_t kEventsKept = 50;
 constexpr const char* kZap = "inproc://zeromq.zap.01";
-// Of the samples: a domain cannot be taken from a socket again, and with one libzmq asks about the
+// Of the topics: a domain cannot be taken from a socket again, and with one libzmq asks about the
 // clients of the publisher's local address too.
-constexpr const char* kSamplesDomain = "";
+constexpr const char* kTopicsDomain = "";
 constexpr const char* kCommandsDomain = "commands";
 constexpr Duration kCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kSayAgain = std::chrono::seconds(10);
@@ -70,7 +70,7 @@ struct StatusServer::Sockets {
     const char* domain;
   };
   std::vector<Bound> bound;
-  std::string samples, commands;  // paths of the encrypted sockets; empty: none
+  std::string topics, commands;  // paths of the encrypted sockets; empty: none
 
   Sockets() = default;
   Sockets(const Sockets&) = delete;
@@ -144,7 +144,7 @@ Result<std::unique_ptr<StatusServer>> StatusServer::start(StatusServerSettings s
 StatusServer::StatusServer(StatusServerSettings settings, const Clock& clock)
     : settings_(std::move(settings)),
       clock_(clock),
-      doors_{{kSamplesDomain, settings_.network.clients},
+      doors_{{kTopicsDomain, settings_.network.clients},
              {kCommandsDomain, settings_.network_commands.clients}},
       due_(settings_.publications.size()),
       followed_from_(clock.now() + kFollowersCome) {
@@ -172,8 +172,8 @@ Result<Ok> StatusServer::openSockets() {
     sockets_->bind(sockets_->publisher, innerOf(settings_.status_endpoint));
     sockets_->bind(sockets_->replier, innerOf(settings_.command_endpoint));
     if (!settings_.network.endpoint.empty()) {
-      sockets_->samples = innerOf(settings_.status_endpoint + ".samples");
-      sockets_->bind(sockets_->publisher, sockets_->samples, &settings_.network, kSamplesDomain);
+      sockets_->topics = innerOf(settings_.status_endpoint + ".network");
+      sockets_->bind(sockets_->publisher, sockets_->topics, &settings_.network, kTopicsDomain);
     }
     if (!settings_.network_commands.endpoint.empty()) {
       sockets_->commands = innerOf(settings_.command_endpoint + ".network");
@@ -214,14 +214,14 @@ Result<Ok> StatusServer::startRelays(ThreadWatch& watch) {
   return Ok{};
 }
 
-Result<std::unique_ptr<net::Server>> StatusServer::startSamples(ThreadWatch& watch) const {
-  RelaySettings samples = topicsRelay();
-  samples.name = "samples for other machines";
-  samples.endpoint = settings_.network.endpoint;
-  samples.inner = sockets_->samples;
-  samples.limits.opening = std::chrono::seconds(5);  // over a network, with encryption
-  samples.zmtp = {1024, 1, 16384};
-  auto relay = Relay::start(std::move(samples), watch, clock_);
+Result<std::unique_ptr<net::Server>> StatusServer::startNetworkTopics(ThreadWatch& watch) const {
+  RelaySettings topics = topicsRelay();
+  topics.name = settings_.network_name;
+  topics.endpoint = settings_.network.endpoint;
+  topics.inner = sockets_->topics;
+  topics.limits.opening = std::chrono::seconds(5);  // over a network, with encryption
+  topics.zmtp = {1024, 1, 16384};
+  auto relay = Relay::start(std::move(topics), watch, clock_);
   if (!relay) return relay.error();
   return std::unique_ptr<net::Server>(*std::move(relay));
 }

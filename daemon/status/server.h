@@ -30,6 +30,7 @@ struct StatusServerSettings {
   // Where the same topics are published, encrypted, for clients on other machines whose keys are
   // listed; it takes no commands.
   CurveServer network;
+  std::string network_name, network_setting;  // of its relay: for reports, and as a JSON pointer
   // Where requests are answered, encrypted, from clients on other machines whose keys are listed:
   // every command to those that may command; status and events to those that may read.
   CurveServer network_commands;
@@ -61,7 +62,7 @@ class StatusServer {
   // Starts the relay at the encrypted address of `network`. It is separate because it may fail
   // alone (the port is in use) and be tried again. REQUIRES: that address is set. Errors: those of
   // Relay::start().
-  Result<std::unique_ptr<net::Server>> startSamples(ThreadWatch& watch) const;
+  Result<std::unique_ptr<net::Server>> startNetworkTopics(ThreadWatch& watch) const;
   // The same for the address of `network_commands`.
   Result<std::unique_ptr<net::Server>> startNetworkCommands(ThreadWatch& watch) const;
 

@@ -37,6 +37,21 @@ std::string changeText(const state::Step& step, bool undone) {
   return fmt::format("{} by {:g}, {:g}", state::nameOf(place), to.x - from.x, to.y - from.y);
 }
 
+// Why offsets of an output that was so fit none that is so now; empty: they do.
+std::string misfit(const state::OutputForm& aligned, const state::OutputForm& now) {
+  state::OutputForm same = aligned;
+  same.corners = now.corners;
+  if (same != now) {
+    return fmt::format(
+        "it was aligned with {} x {} pixels and a mesh of {} x {} points and has "
+        "{} x {} and {} x {} now",
+        aligned.width, aligned.height, aligned.mesh_columns, aligned.mesh_rows, now.width,
+        now.height, now.mesh_columns, now.mesh_rows);
+  }
+  if (!aligned.corners || aligned.corners == now.corners) return {};
+  return "its corners in the configuration are not those with which it was aligned";
+}
+
 double outside(double place, double size) { return std::max({0.0, -place, place - size}); }
 
 }  // namespace
@@ -61,7 +76,8 @@ Aligner::~Aligner() { thread_.stop(); }
 
 state::OutputForm Aligner::formOf(const Entry& entry) const {
   const AlignedOutput& o = entry.output;
-  return {o.name, o.width, o.height, o.configured.mesh.columns, o.configured.mesh.rows};
+  const render::correct::MeshSettings& mesh = o.configured.mesh;
+  return {o.name, o.width, o.height, mesh.columns, mesh.rows, o.configured.corners};
 }
 
 // Drops offsets that were made for another configuration and do not fit the present one.
@@ -71,16 +87,8 @@ void Aligner::dropMisfits() {
     const std::string& name = entry.output.name;
     const state::OutputAlignment* const saved = alignment_.find(name);
     if (!saved) continue;
-    std::string why;
-    if (const state::OutputForm form = formOf(entry); saved->form != form) {
-      why = fmt::format(
-          "it was aligned with {} x {} pixels and a mesh of {} x {} points and has "
-          "{} x {} and {} x {} now",
-          saved->form.width, saved->form.height, saved->form.mesh_columns, saved->form.mesh_rows,
-          form.width, form.height, form.mesh_columns, form.mesh_rows);
-    } else if (const auto good = check(entry, alignment_); !good) {
-      why = good.error().what;
-    }
+    std::string why = misfit(saved->form, formOf(entry));
+    if (const auto good = check(entry, alignment_); why.empty() && !good) why = good.error().what;
     if (why.empty()) continue;
     keeper_.addNotice(fmt::format("the alignment of output {} is dropped: {}", name, why));
     alignment_.forget(name);

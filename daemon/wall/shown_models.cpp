@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -192,7 +193,7 @@ bool ShownModels::nextWithin(std::size_t place) {
                      after = shown.file]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;
     auto slide = readContent(entry, settings.render.model.show, after, skipped);
-    for (const std::string& why : skipped) watch.report(why);
+    for (const std::string& why : skipped) watch.report(faultEvent(why));
     if (!slide) return slide.error();
     auto ready = prepareContent(place, *std::move(slide), settings);
     if (ready) ready->asked_for = more;
@@ -213,8 +214,8 @@ void ShownModels::takePicture(ReadyModel& ready) {
 Result<Ok> ShownModels::takeModel(ReadyModel& ready, const Eigen::Isometry3f& T_eye_model) {
   auto renderer = attach(ready, T_eye_model);
   if (!renderer) {
-    parts_.watch.report(fmt::format("a model cannot be shown ({}); what was shown before stays",
-                                    renderer.error().what));
+    parts_.watch.report(faultEvent(fmt::format(
+        "a model cannot be shown ({}); what was shown before stays", renderer.error().what)));
     return renderer.error();
   }
   Shown& shown = shown_[ready.place];
@@ -235,7 +236,7 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
   if (std::exchange(shown.missing, false)) {
     parts_.missing.nowShown(ready.place);
     parts_.watch.report(
-        fmt::format("{} can be read now, and is shown in its turn", shown.entry.path));
+        newsEvent(fmt::format("{} can be read now, and is shown in its turn", shown.entry.path)));
   }
   shown.file = ready.path;
   shown.is_last_slide = ready.is_last_slide;
@@ -249,6 +250,9 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
 
 std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
                                                             const Eigen::Isometry3f& T_eye_model) {
+  // Ends the wall's thread, and so the process: the next one starts with a context of its own.
+  if (contexts_->own->wasReset())
+    throw std::runtime_error("the GPU was reset, and what it held is lost");
   const Timestamp now = parts_.clock.now();
   if (!waiting_) {
     waiting_ = parts_.watch.take();
@@ -267,8 +271,8 @@ std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
   }
   noteFile(ready, model ? ContentKind::kModel : ContentKind::kPicture);
   if (ready.was_replaced) {
-    parts_.watch.report(
-        fmt::format("{} {} was replaced and is shown", model ? "model" : "picture", ready.path));
+    parts_.watch.report(newsEvent(
+        fmt::format("{} {} was replaced and is shown", model ? "model" : "picture", ready.path)));
   }
   return Replacement{ready.place, contentAt(ready.place), ready.asked_for, ready.request, {},
                      false};

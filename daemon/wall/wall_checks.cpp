@@ -31,9 +31,8 @@ bool isNamed(const WallSettings& wall, std::size_t i, std::size_t count) {
   return i >= before && !wall.contents[i - before].name.empty();
 }
 
-}  // namespace
-
-std::vector<WallContent> readContents(LoadedSettings& loaded) {
+// Keeps in memory what it has read, or only what cannot be read.
+std::vector<WallContent> readEach(LoadedSettings& loaded, bool keep) {
   std::vector<WallContent> contents;
   bool any = false;
   for (const ContentEntry& entry : contentsOf(loaded.settings.wall)) {
@@ -46,7 +45,7 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
     std::vector<std::string> skipped;
     auto content = readContent(entry, loaded.settings.wall.render.model.show, "", skipped);
     if (content) {
-      contents.push_back(*std::move(content));
+      if (keep) contents.push_back(*std::move(content));
       any = true;
     } else if (content.error().code == Errc::kInvalidArgument) {
       loaded.addFinding("/wall/render/show", kCannot + content.error().what);
@@ -62,6 +61,12 @@ std::vector<WallContent> readContents(LoadedSettings& loaded) {
   }
   return contents;
 }
+
+}  // namespace
+
+std::vector<WallContent> readContents(LoadedSettings& loaded) { return readEach(loaded, true); }
+
+void checkContents(LoadedSettings& loaded) { (void)readEach(loaded, false); }
 
 void checkNames(LoadedSettings& loaded) {
   const WallSettings& wall = loaded.settings.wall;

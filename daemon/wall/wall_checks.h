@@ -17,6 +17,9 @@ namespace merlin::wall {
 // O(size of the models' files).
 std::vector<WallContent> readContents(LoadedSettings& loaded);
 
+// Adds the findings of readContents(), and has one content at a time in memory.
+void checkContents(LoadedSettings& loaded);
+
 // Adds a finding for each content that has the name of one before it, which commands would find in
 // its place: see contentsOf(). Two names that the configuration itself gives are the loader's to
 // compare. Reads no file.

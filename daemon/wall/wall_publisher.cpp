@@ -24,6 +24,7 @@ void fillDetail(shm::WallStats& out, const WallPublisher::State& s) {
   out.cost = static_cast<std::uint32_t>(detail.costOf(s.step));
   out.full_cost = static_cast<std::uint32_t>(detail.fullCost());
   copyText(detail.unit(), out.cost_unit);
+  out.least_cost = static_cast<std::uint32_t>(s.governor.least());
   out.budget = static_cast<std::uint32_t>(s.governor.budget());
   out.held_cost = s.governor.held() ? out.budget : 0;
 }

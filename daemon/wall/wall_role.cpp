@@ -89,7 +89,7 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& configured,
   if (const auto made = role->makeCorrections(); !made) return made.error();
   role->makeSignals(generation);
   if (const auto made = role->shown_folder_.make(); !made)
-    role->model_watch_.report(made.error().what);
+    role->model_watch_.report(faultEvent(made.error().what));
   return role;
 }
 
@@ -165,8 +165,9 @@ Result<Ok> WallRole::makeCorrections() {
       corrections_.push_back(nullptr);
       continue;
     }
+    const auto parts = render::stereo::signalParts(output, settings_.wall.tiles);
     auto made = alignedOutput(output, *render::out::pictureSize(output, settings_.wall.tiles),
-                              team_, shader_pass_);
+                              parts.value_or(render::correct::SignalParts{}), team_, shader_pass_);
     if (!made)
       return Error{made.error().code,
                    fmt::format("/wall/outputs/{}/correction: {}", i, made.error().what)};
@@ -178,10 +179,10 @@ Result<Ok> WallRole::makeCorrections() {
     for (std::size_t corner = 0; corner < made->marks.size(); ++corner)
       made->marks[corner] = render::testcard::cornerOf(plan_, output, corner);
     links.push_back(std::move(correction));
-    if (render::stereo::showsBothEyes(output, settings_.wall.tiles)) {
+    if (!parts) {
       made->fixed =
-          "it shows a picture of each eye, which would be moved as one; use stereo mode "
-          "two_outputs or anaglyph";
+          "its pictures of both eyes are not the halves of its signal; let it show one tile, or "
+          "use stereo mode two_outputs or anaglyph";
     }
     aligned.push_back(*std::move(made));
     corrections_.push_back(
@@ -376,13 +377,13 @@ std::optional<ViewerPlace> WallRole::makeViewerPlace() {
                                          Eigen::Vector3d(wall.tiles.eyes_m.data())};
   return ViewerPlace(render::stereo::Head(head, configured, Eigen::Vector3d(wall.room.eye_m.data()),
                                           wall.scene.still_after_s),
-                     head.station, plan_, [this](std::string sentence) {
+                     head.station, plan_, [this](Event event) {
                        const std::lock_guard lock(viewer_events_mutex_);
-                       viewer_events_.push_back(std::move(sentence));
+                       viewer_events_.push_back(std::move(event));
                      });
 }
 
-std::vector<std::string> WallRole::viewerEvents() {
+std::vector<Event> WallRole::viewerEvents() {
   const std::lock_guard lock(viewer_events_mutex_);
   return std::exchange(viewer_events_, {});
 }
@@ -436,7 +437,8 @@ Result<std::uint32_t> WallRole::showFile(const std::string& name) {
   if (!entry) return entry.error();
   const std::uint32_t number = ++show_requests_;
   if (const auto shown = showEntry(*entry, number); !shown) return shown.error();
-  for (std::string& fault : shown_folder_.tidy(name)) model_watch_.report(std::move(fault));
+  for (std::string& fault : shown_folder_.tidy(name))
+    model_watch_.report(faultEvent(std::move(fault)));
   return number;
 }
 
@@ -445,7 +447,7 @@ Result<Ok> WallRole::showEntry(const ContentEntry& entry, std::uint32_t request)
   const auto read = [this, entry, request]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;
     auto content = readContent(entry, settings_.wall.render.model.show, "", skipped);
-    for (const std::string& why : skipped) model_watch_.report(why);
+    for (const std::string& why : skipped) model_watch_.report(faultEvent(why));
     if (!content) return content.error();
     auto ready = prepareContent(entries_.size(), *std::move(content), settings_.wall);
     if (!ready) return ready.error();
@@ -465,10 +467,10 @@ Result<Ok> WallRole::showEntry(const ContentEntry& entry, std::uint32_t request)
   return Ok{};
 }
 
-std::vector<std::string> WallRole::contentEvents() {
-  std::vector<std::string> events = model_watch_.takeEvents();
-  std::vector<std::string> unreadable = tiles_.takeFaults();
-  std::ranges::move(unreadable, std::back_inserter(events));
+std::vector<Event> WallRole::contentEvents() {
+  std::vector<Event> events = model_watch_.takeEvents();
+  for (std::string& unreadable : tiles_.takeFaults())
+    events.push_back(faultEvent(std::move(unreadable)));
   return events;
 }
 

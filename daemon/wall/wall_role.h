@@ -104,7 +104,7 @@ class WallRole {
   void tend(Timestamp now);
 
   // Returns the events of the viewer's tracked head since the last call. Thread-safe.
-  std::vector<std::string> viewerEvents();
+  std::vector<Event> viewerEvents();
 
   // Shows the content of the configuration of that name. Returns the number of the request: when it
   // is done, shm::WallContent::finished is that number. Errors: kBusy, kInvalidArgument (no such
@@ -127,7 +127,7 @@ class WallRole {
   void tell(std::string sentence) { board_.add(clock_.now(), std::move(sentence)); }
 
   // Returns the events of replaced, unreadable and missing files since the last call. Thread-safe.
-  std::vector<std::string> contentEvents();
+  std::vector<Event> contentEvents();
 
   void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
   // To be called once a second on the thread that calls writeHeartbeat(): restores the wall's
@@ -189,7 +189,7 @@ class WallRole {
   std::function<void()> on_snapshot_ = [] {};
   render::out::WindowActs window_;
   std::mutex viewer_events_mutex_;
-  std::vector<std::string> viewer_events_;
+  std::vector<Event> viewer_events_;
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
   std::atomic<std::uint32_t> show_requests_{0};

@@ -61,17 +61,17 @@ FrameRenderer::~FrameRenderer() {
 content::ContentView FrameRenderer::viewOf(std::size_t tile,
                                            const Eigen::Isometry3f& T_eye_content) const {
   const tiles::Tile& t = plan_.tiles[tile];
-  const tiles::Look look =
+  const tiles::TileMatrices matrices =
       content_->navigation() == content::Navigation::kPanorama
-          ? tiles::lookAround(t)
-          : tiles::lookOf(t, T_eye_content.translation(), content_->bounds().radius_m);
+          ? tiles::panoramaMatrices(t)
+          : tiles::matricesOf(t, T_eye_content.translation(), content_->bounds().radius_m);
   // The light is at the eye for every tile that follows the wall, so that a surface is equally
   // bright on both sides of a seam. A camera of its own has its light at the camera.
   Eigen::Matrix3f eye_from_content = T_eye_content.linear();
   if (t.camera != tiles::TileCamera::kWall)
-    eye_from_content = look.view.topLeftCorner<3, 3>() * eye_from_content;
+    eye_from_content = matrices.view.topLeftCorner<3, 3>() * eye_from_content;
   return {tile,
-          look.projection * look.view * T_eye_content.matrix(),
+          matrices.projection * matrices.view * T_eye_content.matrix(),
           eye_from_content,
           t.width,
           t.height,

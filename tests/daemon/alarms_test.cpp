@@ -5,6 +5,7 @@
 #include "daemon/alarms/alarm_queue.h"
 #include "daemon/alarms/child_program.h"
 #include "daemon/alarms/role_state.h"
+#include "daemon/alarms/told_events.h"
 #include "daemon/json/json_tree.h"
 #include "tests/support/eventually.h"
 #include "tests/support/temp_dir.h"
@@ -194,6 +195,47 @@ TEST(RoleStateTest, TellsOfARoleThatDoesNotStay) {
   EXPECT_EQ(starts(10, seconds(5), Timestamp(seconds(25))), 2) << "every fifth, while it goes on";
   EXPECT_EQ(starts(50, std::chrono::minutes(3), Timestamp(std::chrono::hours(2))), 0)
       << "now and then is no loop";
+}
+
+TEST(EventsOf, AreThoseOfAnAnswerInTheirOrder) {
+  const auto events =
+      eventsOf("devices",
+               R"([{"now_ns": 7, "time_utc": "T1", "kind": "device", "what": "ball: absent"},
+          {"kind": "device"}, 3, {"time_utc": "T2", "kind": "flight", "what": "bytes"}])");
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].role, "devices");
+  EXPECT_EQ(events[0].time_utc, "T1");
+  EXPECT_EQ(events[0].what, "ball: absent");
+  EXPECT_EQ(events[1].kind, "flight");
+  for (const char* const none : {"", "[", "{}", "[]", "null"})
+    EXPECT_TRUE(eventsOf("wall", none).empty()) << none;
+}
+
+TEST(ToldEventsTest, AnEventThatComesTwiceIsToldOnce) {
+  ToldEvents told;
+  EXPECT_TRUE(told.take(event("ball: absent (unplugged)"), false));
+  EXPECT_FALSE(told.take(event("ball: absent (unplugged)"), false));
+  AlarmEvent again = event("ball: absent (unplugged)");
+  again.time_utc = "2026-11-25T12:00:00.000001Z";
+  EXPECT_TRUE(told.take(again, false)) << "at another time it is another one";
+  AlarmEvent of_wall = again;
+  of_wall.role = "wall";
+  EXPECT_TRUE(told.take(of_wall, false));
+  for (std::size_t i = 0; i < ToldEvents::kKept; ++i)
+    EXPECT_TRUE(told.take(event(std::to_string(i), "wall"), false));
+  EXPECT_TRUE(told.take(again, false)) << "it does not remember for ever";
+}
+
+TEST(ToldEventsTest, ThatADeviceWorksIsToldAfterSomethingElseOfIt) {
+  ToldEvents told;
+  const auto at = [&](const std::string& time, const std::string& what, bool works) {
+    return told.take({"devices", time, "device", what}, works);
+  };
+  EXPECT_FALSE(at("1", "ball: ok (Spaceball)", true)) << "as at every start";
+  EXPECT_TRUE(at("2", "glove: ok (no key x)", false)) << "it complains";
+  EXPECT_TRUE(at("3", "ball: absent (unplugged)", false));
+  EXPECT_TRUE(at("4", "ball: ok (Spaceball)", true)) << "it is back";
+  EXPECT_FALSE(at("5", "ball: ok (Spaceball)", true));
 }
 
 }  // namespace

@@ -155,7 +155,7 @@ class Day : public testing::Test {
     }
     panel_->step(false, clock_.now());
     projectors_->tend();
-    for (const std::string& event : projectors_->takeEvents()) say("  " + event);
+    for (const Event& event : projectors_->takeEvents()) say("  " + event.what);
     wall::WallInput input;
     input.scene.ball.emplace();
     input.scene.ball->rotation[1] = pushed_.contains(clock_.second()) ? 0.5F : 0.0F;

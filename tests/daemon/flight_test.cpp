@@ -12,6 +12,7 @@
 #include "tests/support/device_bench.h"
 #include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/told.h"
 
 namespace merlin::devices {
 namespace {
@@ -133,7 +134,7 @@ TEST(FlightRecorder, WhatItDumpsReplays) {
   health.state = HealthState::kFailed;
   std::snprintf(health.reason, sizeof health.reason, "no record for 0.5 s");
   segment->health[test::kGlove].publish(health);
-  const auto sentences = recorder.check();
+  const auto sentences = test::told(recorder.check());
   ASSERT_EQ(sentences.size(), 1u);
   const std::string said = "the last bytes of left are in ";
   ASSERT_TRUE(sentences[0].starts_with(said + dir.path() + "/flight/lab-left-20")) << sentences[0];

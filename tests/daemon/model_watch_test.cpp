@@ -7,6 +7,7 @@
 
 #include "tests/support/eventually.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/told.h"
 
 namespace merlin::wall {
 namespace {
@@ -60,17 +61,21 @@ TEST(ModelWatch, OffersTheNewestOfAPlaceAndSaysWhyOneIsRefused) {
   EXPECT_EQ(ready->place, 1u) << "it was another one when it was read";
   EXPECT_TRUE(models.takeEvents().empty());
   test::writeText(dir / "bad", "22");
-  std::vector<std::string> events;
-  ASSERT_TRUE(test::eventually([&] { return !(events = models.takeEvents()).empty(); }));
-  EXPECT_EQ(events.front(), "the model's file was replaced by one that cannot be shown (" +
+  test::Sentences events;
+  ASSERT_TRUE(
+      test::eventually([&] { return !(events = test::told(models.takeEvents())).empty(); }));
+  EXPECT_EQ(events.front(), "fault: the model's file was replaced by one that cannot be shown (" +
                                 (dir / "bad") +
                                 ": is damaged); the model that was read before stays");
   EXPECT_FALSE(models.take());
   std::filesystem::remove(dir / "good");
-  ASSERT_TRUE(test::eventually([&] { return !(events = models.takeEvents()).empty(); }));
+  ASSERT_TRUE(
+      test::eventually([&] { return !(events = test::told(models.takeEvents())).empty(); }));
   EXPECT_NE(events.front().find(dir / "good is gone"), std::string::npos) << events.front();
   test::writeText(dir / "good", "1");
-  ASSERT_TRUE(test::eventually([&] { return !(events = models.takeEvents()).empty(); }));
+  ASSERT_TRUE(
+      test::eventually([&] { return !(events = test::told(models.takeEvents())).empty(); }));
+  EXPECT_FALSE(events.front().starts_with("fault")) << events.front();
   EXPECT_NE(events.front().find("is there again"), std::string::npos) << events.front();
 }
 
@@ -95,15 +100,16 @@ TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {
   ModelWatch models(
       {{file, {}, "picture", missing.faultOf(0)}, {folder, {}, "picture", missing.faultOf(1)}},
       make, missing, watch, clock, std::chrono::milliseconds(1));
-  std::vector<std::string> events = models.takeEvents();
+  test::Sentences events = test::told(models.takeEvents());
   ASSERT_EQ(events.size(), 2u);
-  EXPECT_EQ(events.front(), file + " is left out until it can be read: there is no such file");
+  EXPECT_EQ(events.front(),
+            "fault: " + file + " is left out until it can be read: there is no such file");
   const auto told = [&] {
-    return test::eventually([&] { return !(events = models.takeEvents()).empty(); });
+    return test::eventually([&] { return !(events = test::told(models.takeEvents())).empty(); });
   };
   test::writeText(file, "bad");
   ASSERT_TRUE(told());
-  EXPECT_EQ(events.front(), file + " is still left out: " + file + ": is damaged");
+  EXPECT_EQ(events.front(), "fault: " + file + " is still left out: " + file + ": is damaged");
   EXPECT_EQ(missing.faultOf(0), file + ": is damaged");
   EXPECT_FALSE(models.take());
   test::writeText(file, "good");

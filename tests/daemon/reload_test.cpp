@@ -191,13 +191,13 @@ TEST(ReloadAnswer, SaysWhatAndWhyNot) {
   EXPECT_EQ(json["swapped"][0]["from"], "30");
   EXPECT_EQ(json["swapped"][0]["to"], "1");
   EXPECT_EQ(refusal(answer), "");
-  answer.outcome = Outcome::kRestart;
+  answer.outcome = Outcome::kRestarts;
   answer.plan = planOf({"/wall/render/gpu", "/wall/input/keys"}, kWall);
   json = nlohmann::json::parse(answerText(answer));
+  EXPECT_EQ(json["outcome"], "restarts");
   EXPECT_EQ(json["restart"], (nlohmann::json{"/wall/input/keys", "/wall/render/gpu"}));
-  EXPECT_EQ(refusal(answer),
-            "/etc/m.json: /wall/input/keys (and 1 more) changed, which only a restart takes; the "
-            "settings before it stay in effect");
+  EXPECT_EQ(restartReason(answer.plan), "/wall/input/keys (and 1 more)");
+  EXPECT_EQ(refusal(answer), "");
   answer.outcome = Outcome::kInvalid;
   answer.findings = {"/etc/m.json:3: /wal is not a known setting"};
   EXPECT_EQ(refusal(answer),

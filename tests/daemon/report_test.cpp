@@ -202,6 +202,35 @@ TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
       << result->files[2].name;
 }
 
+// The arguments of an alarm's program may be tokens, also where they stand in the program's place.
+TEST_F(RunPart, TheConfigurationLacksArgumentsOfAlarms) {
+  const TempDir dir;
+  writeText(dir / "merlin.json",
+            R"({"alarms": [{"run": ["/usr/bin/tell", "--token", "t0ken-of-the-lab"]},
+                           {"run": ["/usr/bin/curl https://chat/hook-of-the-lab"]}]})");
+  const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
+                              "merlin-report-none", dir.path()};
+  const ReportPart configuration = reportParts(subject)[0];
+  const auto result = runPart(configuration.settings, stop_.get(), mask_);
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->files.size(), 3u);
+  std::string all;
+  for (const PackedFile& file : result->files) all += file.content;
+  EXPECT_EQ(all.find("of-the-lab"), std::string::npos) << all;
+  EXPECT_EQ(all.find("--token"), std::string::npos) << all;
+  EXPECT_NE(all.find("/usr/bin/tell"), std::string::npos) << all;
+  EXPECT_NE(all.find("/usr/bin/curl (left out)"), std::string::npos) << all;
+}
+
+TEST(KnownSecrets, AreArgumentsOfAlarmsThatAreLongEnough) {
+  Settings settings;
+  settings.alarms.resize(1);
+  settings.alarms[0].run = {"/usr/bin/tell-somebody", "--token", "t0ken-of-the-lab"};
+  const KnownSecrets secrets(settings, {});
+  EXPECT_EQ(secrets.without("/usr/bin/tell-somebody --token t0ken-of-the-lab"),
+            "/usr/bin/tell-somebody --token (left out)");
+}
+
 TEST_F(RunPart, ThatCrashesOrWritesTooMuchSaysSo) {
   const auto crashed = run([](PartFolder&) {
     const rlimit none{0, 0};

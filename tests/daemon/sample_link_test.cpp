@@ -199,7 +199,7 @@ struct Devices {
     EXPECT_TRUE(started) << started.error().what;
     if (!started) return;
     server = *std::move(started);
-    auto relay = server->startSamples(threads);
+    auto relay = server->startNetworkTopics(threads);
     EXPECT_TRUE(relay) << relay.error().what;
     if (relay) samples = *std::move(relay);
   }

@@ -9,9 +9,13 @@
 
 #include "daemon/net/server_thread.h"
 #include "tests/support/eventually.h"
+#include "tests/support/told.h"
 
 namespace merlin::net {
 namespace {
+
+using test::Sentences;
+using test::told;
 
 // A server that runs until the test sets `fails`.
 class Failing final : public Server {
@@ -38,15 +42,14 @@ TEST(Keeper, AServerWhoseThreadEndsIsStartedAgainAndTheProcessIsNotTold) {
   });
   Timestamp now{std::chrono::seconds(1000)};
   keeper.tend(now);
-  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: running"});
+  EXPECT_EQ(told(keeper.takeEvents(now)), Sentences{"mouse: running"});
   fails = true;
   ASSERT_TRUE(test::eventually([&] {
     keeper.tend(now);
     return !keeper.health().failure.empty();
   }));
-  EXPECT_EQ(
-      keeper.takeEvents(now),
-      std::vector<std::string>{"mouse: failed (its thread ended: no memory); retried every 5 s"});
+  EXPECT_EQ(told(keeper.takeEvents(now)),
+            Sentences{"fault: mouse: failed (its thread ended: no memory); retried every 5 s"});
   EXPECT_TRUE(threads.threads().empty()) << "no thread is left, nor one that ended unasked";
   keeper.tend(now + std::chrono::milliseconds(4999));
   EXPECT_EQ(starts, 1);
@@ -65,9 +68,9 @@ TEST(Keeper, AServerThatCannotStartIsTriedEveryFiveSecondsAndToldOnce) {
   });
   const Timestamp now{std::chrono::seconds(1000)};
   keeper.tend(now);
-  EXPECT_EQ(keeper.takeEvents(now),
-            std::vector<std::string>{"mouse: failed (another program serves this socket); "
-                                     "retried every 5 s"});
+  EXPECT_EQ(told(keeper.takeEvents(now)),
+            Sentences{"fault: mouse: failed (another program serves this socket); "
+                      "retried every 5 s"});
   keeper.tend(now + std::chrono::seconds(5));
   EXPECT_TRUE(keeper.takeEvents(now).empty());
   taken = false;
@@ -75,7 +78,7 @@ TEST(Keeper, AServerThatCannotStartIsTriedEveryFiveSecondsAndToldOnce) {
   EXPECT_EQ(keeper.health().failure, "another program serves this socket");
   keeper.tend(now + std::chrono::seconds(10));
   EXPECT_EQ(keeper.health().failure, "");
-  EXPECT_EQ(keeper.takeEvents(now), std::vector<std::string>{"mouse: running"});
+  EXPECT_EQ(told(keeper.takeEvents(now)), Sentences{"mouse: running"});
 }
 
 }  // namespace

@@ -7,12 +7,15 @@
 
 #include "daemon/status/ended_threads.h"
 #include "tests/support/eventually.h"
+#include "tests/support/told.h"
 
 namespace merlin::status {
 namespace {
 
 using nlohmann::json;
 using std::chrono::milliseconds;
+using test::Sentences;
+using test::told;
 
 TEST(Services, AChangeIsAnEventOnceAndTheStateStands) {
   Services services;
@@ -21,13 +24,13 @@ TEST(Services, AChangeIsAnEventOnceAndTheStateStands) {
   EXPECT_TRUE(services.takeEvents().empty());
   services.failed("picture", "no \"disk\"");
   services.failed("picture", "no \"disk\"");
-  EXPECT_EQ(services.takeEvents(), std::vector<std::string>{"picture: failed (no \"disk\")"});
+  EXPECT_EQ(told(services.takeEvents()), Sentences{"fault: picture: failed (no \"disk\")"});
   const json failed = json::parse(services.addTo("{\"a\": 1}"));
   EXPECT_EQ(failed["a"], 1);
   EXPECT_EQ(failed["services"]["picture"]["health"], "failed");
   EXPECT_EQ(failed["services"]["picture"]["reason"], "no \"disk\"");
   services.ok("picture");
-  EXPECT_EQ(services.takeEvents(), std::vector<std::string>{"picture: works again"});
+  EXPECT_EQ(told(services.takeEvents()), Sentences{"picture: works again"});
   EXPECT_EQ(json::parse(services.addTo("{}"))["services"]["picture"]["health"], "ok");
 }
 
@@ -44,7 +47,7 @@ TEST(EndedThreads, OneThatEndsIsSaidAndThenEndsTheDaemon) {
   });
   ASSERT_TRUE(test::eventually([&] { return watch.threads()[1].ended; }));
   EXPECT_FALSE(ended.check(Timestamp(milliseconds(1000)))) << "first it is said";
-  EXPECT_EQ(services.takeEvents(), std::vector<std::string>{"thread glove: failed (no memory)"});
+  EXPECT_EQ(told(services.takeEvents()), Sentences{"fault: thread glove: failed (no memory)"});
   EXPECT_FALSE(ended.check(Timestamp(milliseconds(1400))));
   const auto error = ended.check(Timestamp(milliseconds(1500)));
   ASSERT_TRUE(error);

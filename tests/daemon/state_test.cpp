@@ -10,7 +10,8 @@
 namespace merlin::state {
 namespace {
 
-const OutputForm kLeft{"left", 640, 480, 3, 3}, kRight{"right", 800, 600, 0, 0};
+const OutputForm kLeft{"left", 640, 480, 3, 3, std::array<double, 8>{4, 8, 0.5}},
+    kRight{"right", 800, 600, 0, 0};
 const Place kTopLeft = *cornerNamed("top_left"), kBottomRight = *cornerNamed("bottom_right");
 constexpr Place kPoint{Place::Of::kMesh, 2, 1};
 

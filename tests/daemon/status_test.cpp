@@ -22,6 +22,7 @@
 #include "tests/support/eventually.h"
 #include "tests/support/local_devices.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/told.h"
 
 namespace merlin::status {
 namespace {
@@ -192,6 +193,7 @@ TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
   stats.cost_exponent = 0.7F;
   stats.rate_divisor = 2;
   stats.held_cost = 9;
+  stats.least_cost = 7;
   stats.settle_frames = 3;
   stats.oscillation = 0.05F;
   stats.work_histogram[31] = 4;
@@ -200,6 +202,7 @@ TEST_F(DocumentsTest, TheWallSaysHowItKeepsItsRate) {
   EXPECT_EQ(s["cost_exponent"], 0.7);
   EXPECT_EQ(s["rate_divisor"], 2);
   EXPECT_EQ(s["detail"]["held_cost"], 9);
+  EXPECT_EQ(s["detail"]["least_cost"], 7);
   EXPECT_EQ(s["settle_frames"], 3);
   EXPECT_EQ(s["oscillation"], 0.05);
   EXPECT_EQ(s["operator_coarser"], false);
@@ -287,7 +290,7 @@ TEST_F(DocumentsTest, TheLastGestureOfEachHand) {
                   {"age_s", 1.5},
                   {"certainty", 0.5},
                   {"passed_over", 1}}));
-  EXPECT_EQ(events.takeGestures(), std::vector<std::string>{"hand: gesture push"});
+  EXPECT_EQ(test::told(events.takeGestures()), test::Sentences{"hand: gesture push"});
   EXPECT_TRUE(events.takeGestures().empty());
   push.passed_over = 2;
   devices_->gesture[0].publish(push);
@@ -298,12 +301,25 @@ TEST_F(DocumentsTest, EventsAreToldOnce) {
   HealthEvents events(devices_.slots());
   EXPECT_TRUE(events.take(kNow).empty());
   devices_->health[test::kBall].publish(healthy("Spaceball 2003"));
-  EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: ok (Spaceball 2003)"}));
+  EXPECT_EQ(test::told(events.take(kNow)), test::Sentences{"ball: ok (Spaceball 2003)"});
   EXPECT_TRUE(events.take(kNow).empty());
   DeviceHealth lost{};
   std::snprintf(lost.reason, sizeof lost.reason, "the other end hung up");
   devices_->health[test::kBall].publish(lost);
-  EXPECT_EQ(events.take(kNow), (std::vector<std::string>{"ball: absent (the other end hung up)"}));
+  EXPECT_EQ(test::told(events.take(kNow)),
+            test::Sentences{"fault: ball: absent (the other end hung up)"});
+  std::snprintf(lost.reason, sizeof lost.reason, "stopped");
+  devices_->health[test::kBall].publish(lost);
+  EXPECT_EQ(test::told(events.take(kNow)), test::Sentences{"ball: absent (stopped)"});
+  DeviceHealth complains = healthy("pad");
+  std::snprintf(complains.reason, sizeof complains.reason, "it lacks the key BTN_8");
+  devices_->health[test::kBall].publish(complains);
+  EXPECT_EQ(test::told(events.take(kNow)),
+            test::Sentences{"fault: ball: ok (it lacks the key BTN_8)"});
+  complains.updated_ns = 0;
+  devices_->health[test::kBall].publish(complains);
+  EXPECT_EQ(test::told(events.take(kNow)),
+            test::Sentences{"fault: ball: stale (it lacks the key BTN_8)"});
   lost.state = HealthState::kOpening;  // trying to open it again is no event
   devices_->health[test::kBall].publish(lost);
   EXPECT_TRUE(events.take(kNow).empty());

@@ -2,6 +2,7 @@
 // rests, the picture becomes finer.
 #include "render/stereo/eye_tiles.h"
 #include "tests/support/fake_wall.h"
+#include "tests/support/told.h"
 
 namespace merlin::wall {
 namespace {
@@ -17,7 +18,7 @@ class WallViewerTest : public FakeWall {
     feed_.pushed = false;
     viewer_place_.emplace(render::stereo::Head(stereo.head, {}, Eigen::Vector3d::Zero(), 0.15), 2,
                           plan_,
-                          [this](std::string sentence) { said_.push_back(std::move(sentence)); });
+                          [this](const Event& event) { said_.push_back(test::told({event})[0]); });
     viewer_ = &*viewer_place_;
   }
   // The tracker's -y is the room's x: metres to the right of the place that the tiles are set for.
@@ -77,11 +78,12 @@ TEST_F(WallViewerTest, ReturnsToTheConfiguredPlaceAndSaysSo) {
   });
   EXPECT_EQ(at_2_s, 0);
   EXPECT_NEAR(eyeIsAt(), 0.25, 1e-5);
-  EXPECT_EQ(said_,
-            (Sentences{"the wall is drawn for the viewer's head, tracker station 2",
-                       "tracker station 2 on the viewer's head is missing: the wall is drawn for "
-                       "the configured place of the viewer",
-                       "the wall is drawn for the viewer's head, tracker station 2"}));
+  EXPECT_EQ(
+      said_,
+      (Sentences{"the wall is drawn for the viewer's head, tracker station 2",
+                 "fault: tracker station 2 on the viewer's head is missing: the wall is drawn for "
+                 "the configured place of the viewer",
+                 "the wall is drawn for the viewer's head, tracker station 2"}));
 }
 
 TEST_F(WallViewerTest, SaysThatAStationWasNeverThere) {
@@ -89,8 +91,9 @@ TEST_F(WallViewerTest, SaysThatAStationWasNeverThere) {
   EXPECT_EQ(said_, Sentences{}) << "a tracker may take a while to begin";
   stop_ = {};
   run(0.3);
-  EXPECT_EQ(said_, Sentences{"tracker station 2 on the viewer's head is missing: the wall is drawn "
-                             "for the configured place of the viewer"});
+  EXPECT_EQ(said_,
+            Sentences{"fault: tracker station 2 on the viewer's head is missing: the wall is drawn "
+                      "for the configured place of the viewer"});
 }
 
 TEST_F(WallViewerTest, KeepsTheLastPlaceBeforeAScreenAndSaysSoOnce) {
@@ -102,9 +105,10 @@ TEST_F(WallViewerTest, KeepsTheLastPlaceBeforeAScreenAndSaysSoOnce) {
   });
   EXPECT_NEAR(eyeIsAt(), 0.25, 1e-5);
   ASSERT_EQ(said_.size(), 2u);
-  EXPECT_EQ(said_[1],
-            "tracker station 2 says that the viewer's eyes are on or behind a screen, or almost "
-            "touch one: the wall is drawn for their position before that");
+  EXPECT_EQ(
+      said_[1],
+      "fault: tracker station 2 says that the viewer's eyes are on or behind a screen, or almost "
+      "touch one: the wall is drawn for their position before that");
 }
 
 }  // namespace

@@ -92,6 +92,21 @@ TEST(WatchView, ColoursSayWhatIsWrong) {
   EXPECT_EQ(styleOf(layOut(s, {26, 80}, false), "4.00 % (second"), CellStyle::kWarning);
 }
 
+TEST(WatchView, AServiceThatHasFailedIsShownWithItsReason) {
+  WatchedState s = state();
+  const std::size_t before = linesOf(layOut(s, {14, 80}, false)).size();
+  s.status["services"] = Json::parse(
+      R"({"shared memory": {"health": "ok", "reason": ""},
+          "configuration": {"health": "failed", "reason": "merlin.json: line 3: unknown key"}})");
+  const CellGrid grid = layOut(s, {17, 80}, false);
+  const auto lines = linesOf(grid);
+  ASSERT_EQ(lines.size(), before + 3);
+  EXPECT_EQ(lines[15], "services");
+  EXPECT_EQ(lines[16], "  configuration    failed              merlin.json: line 3: unknown key");
+  EXPECT_EQ(styleOf(grid, "failed              merlin.json"), CellStyle::kBad);
+  EXPECT_EQ(styleOf(grid, "unknown key"), CellStyle::kPlain);
+}
+
 TEST(WatchView, WhileNoDaemonAnswersTheLastStateIsDim) {
   WatchedState s = state();
   s.absent = "no merlind runs as \"merlin\"";

@@ -424,8 +424,8 @@ TEST(TilePlan, FrustaThatAreNoneAreRefused) {
 // Where a tile shows a point of a content at `centre`, in clip coordinates.
 Vector3f shownAt(const tiles::Tile& tile, const Vector3f& centre, float radius,
                  const Vector3f& point) {
-  const tiles::Look look = tiles::lookOf(tile, centre, radius);
-  return (look.projection * look.view * point.homogeneous()).hnormalized();
+  const tiles::TileMatrices matrices = tiles::matricesOf(tile, centre, radius);
+  return (matrices.projection * matrices.view * point.homogeneous()).hnormalized();
 }
 
 TEST(OwnViews, ShowTheContentAlongTheWallsAxes) {

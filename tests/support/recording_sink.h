@@ -12,11 +12,13 @@ struct RecordingSink final : SampleSink {
   void publish(const TrackerSample& s) noexcept override { tracker.push_back(s); }
   void publish(const BallSample& s) noexcept override { ball.push_back(s); }
   void publish(const TouchSample& s) noexcept override { touch.push_back(s); }
+  void describe(const DeviceKeys& k) noexcept override { keys = k; }
 
   std::vector<GloveSample> glove;
   std::vector<TrackerSample> tracker;
   std::vector<BallSample> ball;
   std::vector<TouchSample> touch;
+  DeviceKeys keys;  // of the device that was opened last
 };
 
 struct RecordingHealth final : HealthSink {

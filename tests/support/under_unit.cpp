@@ -45,7 +45,8 @@ std::string outputOf(const char* command) {
   return text;
 }
 
-// All values of `key`, from all files.
+// All values of `key`, from all files; an assignment without a value takes away those before it, as
+// systemd does where a key has a list.
 Words valuesOf(const Words& units, const std::string& key) {
   Words values;
   for (const std::string& unit : units) {
@@ -54,10 +55,29 @@ Words valuesOf(const Words& units, const std::string& key) {
     for (std::string line; std::getline(file, line);) {
       if (!line.starts_with(key + "=")) continue;
       std::istringstream words(line.substr(key.size() + 1));
+      if ((words >> std::ws).eof()) values.clear();
       for (std::string word; words >> word;) values.push_back(word);
     }
   }
   return values;
+}
+
+bool isYes(const Words& values) { return !values.empty() && values.back() == "yes"; }
+
+// Like systemd, whose filters no process without privileges can have otherwise: systemd.exec(5),
+// NoNewPrivileges=.
+bool hasNoNewPrivileges(const Words& units) {
+  for (const char* const key :
+       {"NoNewPrivileges", "RestrictRealtime", "RestrictSUIDSGID", "LockPersonality",
+        "MemoryDenyWriteExecute", "PrivateDevices", "ProtectKernelTunables", "ProtectKernelModules",
+        "ProtectKernelLogs", "ProtectClock", "ProtectHostname", "RestrictNamespaces"}) {
+    if (isYes(valuesOf(units, key))) return true;
+  }
+  for (const char* const key :
+       {"SystemCallFilter", "SystemCallArchitectures", "RestrictAddressFamilies"}) {
+    if (!valuesOf(units, key).empty()) return true;
+  }
+  return false;
 }
 
 std::uint32_t familyOf(const std::string& name) {
@@ -142,8 +162,12 @@ void restrictFamilies(const Words& names) {
   install(code);
 }
 
-// Like systemd's SystemCallFilter=: any other system call kills the process.
-void restrictCalls(const Words& sets) {
+// Like systemd's SystemCallFilter=: any other system call kills the process, or fails with EPERM if
+// the unit has that as SystemCallErrorNumber=.
+void restrictCalls(const Words& sets, const Words& error) {
+  if (sets.empty()) return;
+  if (!error.empty() && error.back() != "EPERM")
+    fail(error.back() + ": is not known to under_unit");
   const auto numbers = numbersOf(callsOf(sets));
   if (numbers.size() < 100) {
     std::fprintf(stderr, "under_unit: no table of system calls; they are not restricted\n");
@@ -154,7 +178,8 @@ void restrictCalls(const Words& sets) {
     code.push_back(BPF_JUMP(kEqual, number, 0, 1));
     code.push_back(BPF_STMT(kReturn, SECCOMP_RET_ALLOW));
   }
-  code.push_back(BPF_STMT(kReturn, SECCOMP_RET_KILL_PROCESS));
+  code.push_back(
+      BPF_STMT(kReturn, error.empty() ? SECCOMP_RET_KILL_PROCESS : SECCOMP_RET_ERRNO | EPERM));
   install(code);
 }
 
@@ -174,6 +199,8 @@ int main(int argc, char** argv) {
   if (at + 1 >= argc || units.empty()) fail("usage: under_unit UNIT... -- PROGRAM ARGUMENT...");
   const Words families = valuesOf(units, "RestrictAddressFamilies");
   const Words sets = valuesOf(units, "SystemCallFilter");
+  const Words error = valuesOf(units, "SystemCallErrorNumber");
+  const bool no_new_privileges = hasNoNewPrivileges(units);
   for (const std::string& mask : valuesOf(units, "UMask"))
     ::umask(static_cast<mode_t>(std::strtoul(mask.c_str(), nullptr, 8)));
   if (::geteuid() == 0 &&
@@ -182,10 +209,11 @@ int main(int argc, char** argv) {
   }
   // The kernel clears the parent-death signal at a change of user, so it is set again here.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) fail("no PR_SET_NO_NEW_PRIVS");
+  if (no_new_privileges && ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
+    fail("no PR_SET_NO_NEW_PRIVS");
   doWithoutLeakSanitizer();
   restrictFamilies(families);
-  restrictCalls(sets);
+  restrictCalls(sets, error);
   ::execv(argv[at + 1], argv + at + 1);
   fail(std::string(argv[at + 1]) + ": cannot be executed");
 }

@@ -10,17 +10,38 @@ namespace {
 
 using Json = nlohmann::json;
 
+// How often it was told until now.
+int timesTold(const std::string& file, const std::string& role, const std::string& part) {
+  int times = 0;
+  for (const Json& event : told(file)) {
+    if (event.is_object() && event["role"] == role &&
+        event["what"].get<std::string>().find(part) != std::string::npos)
+      ++times;
+  }
+  return times;
+}
+bool isToldNow(const std::string& file, const std::string& role, const std::string& part) {
+  return timesTold(file, role, part) > 0;
+}
 bool isTold(const std::string& file, const std::string& role, const std::string& part) {
-  return eventually(
-      [&] {
-        for (const Json& event : told(file)) {
-          if (event.is_object() && event["role"] == role &&
-              event["what"].get<std::string>().find(part) != std::string::npos)
-            return true;
-        }
-        return false;
-      },
-      std::chrono::seconds(60));
+  return eventually([&] { return isToldNow(file, role, part); }, std::chrono::seconds(60));
+}
+
+Json alarmsInto(const std::string& file) {
+  return {{{"run", {"/bin/sh", "-c", "cat >> \"$0\"", file}}, {"most_per_hour", 3600}}};
+}
+
+Process alarmsOf(const Merlind& merlind) {
+  return Process({kMerlind, "--config", merlind.config(), "--role", "alarms"});
+}
+
+// Whether the role has published its events of the start, which it does 3 s after that.
+bool hasPublishedItsStart(Merlind& merlind) {
+  return eventually([&] {
+    const auto* const devices = merlind.devices();
+    const Timestamp now = SystemClock().now();
+    return devices && now - fromNanoseconds(devices->header->started_ns) > std::chrono::seconds(4);
+  });
 }
 
 TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
@@ -38,12 +59,13 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
   ASSERT_TRUE(merlind.healthIs("ball", HealthState::kOk));
   Process alarms({kMerlind, "--config", merlind.config(), "--role", "alarms"});
   ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
-  // What happened before the alarms' start is not told, so the ball is lost until that is seen.
+  // That it works is no alarm, so the ball is lost until that is seen.
   EXPECT_TRUE(eventually([&] {
     for (const pid_t pid : merlind.children("spaceball")) ::kill(pid, SIGKILL);
     return !told(file).empty();
   })) << alarms.output();
   EXPECT_TRUE(isTold(file, "devices", "ball")) << readText(file);
+  EXPECT_TRUE(isTold(file, "devices", "ball: ok (")) << "and that it is back: " << readText(file);
   for (const Json& event : told(file)) {
     EXPECT_EQ(event["instance"], merlind.instance());
     EXPECT_FALSE(event["kind"].get<std::string>().empty());
@@ -55,14 +77,63 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
+// After a boot the alarms come last: what the devices said before is told, and once.
+TEST(Alarms, FaultsOfTheStartAreToldThoughTheAlarmsStartLater) {
+  const TempDir dir;
+  const std::string file = dir / "told";
+  MerlindOptions options;
+  options.role = "devices";
+  options.emulate = false;
+  options.also = onlyDevice(deviceEntry("ball", "spaceball", "serial:/dev/serial/by-id/none"));
+  options.also["alarms"] = alarmsInto(file);
+  Merlind merlind(dir, "", "booted", options);
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(hasPublishedItsStart(merlind));
+  Process alarms = alarmsOf(merlind);
+  EXPECT_TRUE(isTold(file, "devices", "ball: absent (")) << readText(file) << alarms.output();
+  EXPECT_EQ(merlind.process().kill(SIGTERM), 0);
+  EXPECT_TRUE(isTold(file, "alarms", "the role devices has not run for 15 s")) << readText(file);
+  EXPECT_EQ(timesTold(file, "devices", "ball: "), 1) << readText(file);
+  EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
+}
+
+TEST(Alarms, AContentThatWasMissingAtTheStartIsTold) {
+  const TempDir dir;
+  const std::string file = dir / "told", model = makeModel(dir, 2);
+  MerlindOptions options;
+  options.role = "wall";
+  options.emulate = false;
+  options.also = {{"alarms", alarmsInto(file)},
+                  {"wall",
+                   {{"contents",
+                     {{{"model", model}, {"name", "there"}},
+                      {{"model", dir / "missing.mrm"}, {"name", "missing"}}}}}}};
+  options.also["wall"]["model"] = nullptr;
+  Merlind merlind(dir, "", "booted", options);
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  Process alarms = alarmsOf(merlind);
+  EXPECT_TRUE(isTold(file, "wall", "missing.mrm")) << readText(file) << merlind.process().output();
+  EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
+}
+
+// It waits for a configuration with some, and takes that when it is told to.
 TEST(Alarms, AConfigurationWithoutAlarmsHasNothingToStart) {
   const TempDir dir;
-  writeText(dir / "none.json", "{}");
-  const Outcome refused = run({kMerlind, "--config", dir / "none.json", "--role", "alarms"});
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.output.find("/alarms is empty: the role alarms has no program to start"),
+  writeText(dir / "c.json", "{}");
+  const Outcome checked = run({kMerlind, "--check-config", dir / "c.json", "--role", "alarms"});
+  EXPECT_EQ(checked.status, 1);
+  EXPECT_NE(checked.output.find("/alarms is empty: the role alarms has no program to start"),
             std::string::npos)
-      << refused.output;
+      << checked.output;
+  Process alarms({kMerlind, "--config", dir / "c.json", "--role", "alarms"});
+  ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
+  writeText(dir / "c.json", "{");
+  ::kill(alarms.pid(), SIGHUP);
+  EXPECT_TRUE(alarms.saysEventually("c.json is invalid; the settings before it stay in effect"));
+  writeText(dir / "c.json", R"({"alarms": [{"run": ["/bin/true"]}]})");
+  ::kill(alarms.pid(), SIGHUP);
+  EXPECT_TRUE(alarms.saysEventually("starting again"));
+  EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
 }  // namespace

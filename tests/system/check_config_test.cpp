@@ -77,6 +77,25 @@ TEST_F(CheckConfig, RefusesWallsThatCannotBeDrawn) {
                 "OSMesa draws in software");
 }
 
+// One that is put there later is no reason to refuse the others.
+TEST_F(CheckConfig, SaysThatAnAlarmsProgramCannotBeExecuted) {
+  writeText(dir_ / "plain", "#!/bin/sh\n");
+  const std::string config = file({{"alarms",
+                                    {{{"run", {"/no/such/program"}}},
+                                     {{"run", {dir_ / "plain", "argument"}}},
+                                     {{"run", {dir_.path()}}},
+                                     {{"run", {"/bin/sh", "-c", "true"}}}}}});
+  const Outcome checked = run({kMerlind, "--role", "alarms", "--check-config", config});
+  EXPECT_EQ(checked.status, 1) << "adjusted: " << checked.output;
+  for (const std::string& said :
+       {std::string("/alarms/0/run/0 cannot be used: /no/such/program: cannot be executed: No such "
+                    "file or directory; until it can be, this alarm tells nobody"),
+        "/alarms/1/run/0 cannot be used: " + (dir_ / "plain") + ": cannot be executed: Permission",
+        "/alarms/2/run/0 cannot be used: " + dir_.path() + ": cannot be executed: it is not"})
+    EXPECT_NE(checked.output.find(said), std::string::npos) << checked.output;
+  EXPECT_EQ(checked.output.find("/alarms/3"), std::string::npos) << checked.output;
+}
+
 TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {
   const auto model = [](const std::string& path) { return json{{"wall", {{"model", path}}}}; };
   expectRefused(model(""), "/wall/model", "names no .mrm file");

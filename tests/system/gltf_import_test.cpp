@@ -135,6 +135,43 @@ TEST_F(GltfImport, ARequiredExtensionIsReadOrNamed) {
   expectRefused(glb(json), "requires the glTF extension EXT_whatever, which is not read; ");
 }
 
+TEST_F(GltfImport, ASimulatedScannerTakesWhatAnImportReads) {
+  writeText(dir_ / "a.gltf", triangle("a.bin").dump());
+  const std::string scan = dir_ / "scan.pgm";
+  const auto taken = [&](const std::string& model) {
+    return run({kMerlin,   "mesh", "scan",     model, "--camera", "0.2", "0.2",
+                "2",       "0.2",  "0.2",      "0",   "--angles", "10",  "10",
+                "--width", "8",    "--height", "8",   "-o",       scan,  "--json"});
+  };
+  const Outcome done = taken(dir_ / "a.gltf");
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("\"returns\":64"), std::string::npos) << done.output;
+  const Outcome image = taken(scan);
+  EXPECT_EQ(image.status, 2);
+  EXPECT_NE(image.output.find("is an input"), std::string::npos) << image.output;
+  fs::copy_file(scan, dir_ / "other.pgm");
+  EXPECT_NE(
+      taken(dir_ / "other.pgm").output.find("is a range image or a map already; merlin mesh "),
+      std::string::npos);
+}
+
+TEST_F(GltfImport, AMaterialsColourIsMultipliedWithItsTexture) {
+  const std::vector<std::uint8_t> grey = {255, 128, 0, 255};
+  ASSERT_TRUE(render::image::writePng(dir_ / "a.png", 1, 1, grey));
+  Json json = triangle("a.bin", "a.png");
+  json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.2158605, 1, 1, 1};
+  ASSERT_EQ(report(json.dump())["triangles"], 1);
+  const Outcome info = run({kMerlin, "mesh", "info", out_, "--json"});
+  const Json said = Json::parse(info.output.substr(info.output.find('{')));
+  for (const auto& f : said["features"]) {
+    if (f["name"] != "colour") continue;
+    EXPECT_NEAR(f["range"][1], 128 / 255.0, 0.003) << "0.2158605 of the light is half of the value";
+    EXPECT_EQ(f["range"][0], 0);
+    return;
+  }
+  ADD_FAILURE() << said["features"];
+}
+
 TEST_F(GltfImport, FaultsOfItsJsonAreSaid) {
   const std::string text = triangle("a.bin").dump();
   expectRefused(text.substr(0, text.size() - 9), "glTF: its JSON is damaged or cut");

@@ -377,6 +377,50 @@ TEST_F(GridImport, TheProjectionStaysInTheModelAndInThePgm) {
   EXPECT_EQ(again["origin"][1], 5299970);
 }
 
+// A netCDF file of the classic form with two variables of 2 x 3 floats: "z" of `z` and "err" of 1.
+std::string netcdf(float z) {
+  const auto name = [](const std::string& text) {
+    return big32(static_cast<std::uint32_t>(text.size())) + text +
+           std::string((4 - text.size() % 4) % 4, '\0');
+  };
+  const std::string none = big32(0) + big32(0);
+  const auto variable = [&](const std::string& text, std::uint32_t begin) {
+    return name(text) + big32(2) + big32(0) + big32(1) + none + big32(5) + big32(24) + big32(begin);
+  };
+  const auto head = [&](std::uint32_t begin) {
+    return std::string("CDF\x01", 4) + big32(0) + big32(10) + big32(2) + name("y") + big32(2) +
+           name("x") + big32(3) + none + big32(11) + big32(2) + variable("z", begin) +
+           variable("err", begin + 24);
+  };
+  const auto begin = static_cast<std::uint32_t>(head(0).size());
+  return head(begin) + bigFloats({z, z, z, z, z, z}) + bigFloats({1, 1, 1, 1, 1, 1});
+}
+
+TEST_F(GridImport, OfANetCdfWithSeveralVariablesOneIsChosen) {
+  const std::string file = netcdf(50);
+  const std::string refused = refusal("a.nc", file, {"--cell", "10"});
+  EXPECT_NE(refused.find("has several maps: 1 \"z\" ("), std::string::npos) << refused;
+  EXPECT_NE(refused.find("2 \"err\" ("), std::string::npos) << refused;
+  EXPECT_NE(refused.find("by --variable NAME"), std::string::npos) << refused;
+  for (const char* chosen : {"z", "1", "Z"}) {
+    EXPECT_EQ(report("a.nc", file, {"--cell", "10", "--variable", chosen})["returns"], 6);
+    EXPECT_NEAR(box()[1][2], 50, 1e-5) << chosen;
+  }
+  report("a.nc", file, {"--cell", "10", "--variable", "err"});
+  EXPECT_NEAR(box()[1][2], 1, 1e-5);
+  std::filesystem::remove(ply_);
+  EXPECT_NE(refusal("a.nc", file, {"--cell", "10", "--variable", "depth"})
+                .find("has no map depth (--variable); there are 1 \"z\""),
+            std::string::npos);
+  const std::string tiff = Tiff().of(3, 2, Tiff::shorts({100, 110, -9999, 120, 130, 140}));
+  EXPECT_NE(
+      refusal("a.tif", tiff, {"--variable", "z"}).find("--variable is for files with several"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal("a.pgm", "P5\n2 2\n255\nabcd", {"--variable", "z"}).find("--variable is for netCDF"),
+      std::string::npos);
+}
+
 TEST_F(GridImport, AUsgsDemIsReadFromItsProfiles) {
   const auto json = report("a.dem", usgsDem());
   EXPECT_EQ(json["width"], 2);

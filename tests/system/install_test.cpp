@@ -1,6 +1,8 @@
 // Runs the programs, configuration and unit that `cmake --install` installs, under the unit's
 // restrictions but without systemd.
 #include <filesystem>
+#include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -149,7 +151,15 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/usr/share/merlin/spnav.tmpfiles.conf",
                            "/usr/share/doc/merlin/LICENSE",
                            "/usr/share/doc/merlin/DejaVuSans.LICENSE",
-                           "/usr/share/doc/merlin/systemd.md",
+                           "/usr/share/doc/merlin/systemd/README.md",
+                           "/usr/share/doc/merlin/systemd/from-boxes-to-wall.md",
+                           "/usr/share/doc/merlin/daemon/alarms/README.md",
+                           "/usr/share/doc/merlin/daemon/shm/read_merlin.c",
+                           "/usr/share/doc/merlin/daemon/shm/read_merlin.cpp",
+                           "/usr/share/doc/merlin/daemon/shm/read_merlin.py",
+                           "/usr/share/doc/merlin/daemon/shm/layout.h",
+                           "/usr/share/doc/merlin/daemon/status/read_status.py",
+                           "/usr/share/merlin/merlin-alarms.service.d/mail.conf",
                            "/etc/merlin/merlin.json",
                            "/etc/merlin/postures.json",
                            "/etc/merlin/gestures.json",
@@ -167,6 +177,80 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
   writeText(root_ + "/etc/merlin/merlin.json", "{\"instance\": \"mine\"}");
   ASSERT_EQ(install().status, 0);
   EXPECT_EQ(readText(root_ + "/etc/merlin/merlin.json"), "{\"instance\": \"mine\"}");
+}
+
+// All texts that the first group of `pattern` matches.
+std::set<std::string> namedIn(const std::string& text, const char* pattern) {
+  const std::regex named(pattern);
+  std::set<std::string> names;
+  for (std::sregex_iterator it(text.begin(), text.end(), named), end; it != end; ++it)
+    names.insert((*it)[1].str());
+  return names;
+}
+
+// Sources, tests and what is made of them are in the repository alone, as README.md says.
+bool isOfTheRepository(const std::string& name) {
+  return name.starts_with("tests/") || name.starts_with("build/") || name == "CONTRIBUTING.md";
+}
+
+// A name is relative to the document's folder, or to the top of all documents.
+bool isFile(const std::string& name, const fs::path& folder, const fs::path& top) {
+  return fs::is_regular_file(folder / name) || fs::is_regular_file(top / name);
+}
+
+TEST_F(Install, EveryLinkToAFileInAnInstalledDocumentResolves) {
+  const fs::path top = root_ + "/usr/share/doc/merlin";
+  int documents = 0, links = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(top)) {
+    if (entry.path().extension() != ".md") continue;
+    ++documents;
+    const fs::path folder = entry.path().parent_path();
+    const fs::path source = fs::path(kSource) / folder.lexically_relative(top);
+    const std::string text = readText(entry.path());
+    for (const std::string& name : namedIn(text, "`([A-Za-z0-9_./-]+\\.(md|json|py|c|png))[`: ]")) {
+      // What is no file of ours is another program's, or one that somebody makes.
+      if (isOfTheRepository(name) || !isFile(name, source, kSource)) continue;
+      ++links;
+      EXPECT_TRUE(isFile(name, folder, top)) << name << " in " << entry.path();
+    }
+    for (const std::string& name : namedIn(text, "\\]\\(([^)# ]+)\\)")) {
+      if (name.find("://") != std::string::npos) continue;
+      ++links;
+      EXPECT_TRUE(isFile(name, folder, folder)) << name << " in " << entry.path();
+    }
+  }
+  EXPECT_GE(documents, 90);
+  EXPECT_GE(links, 150);
+}
+
+TEST_F(Install, EveryDocumentThatTheManualPagesNameIsInstalled) {
+  std::string text;
+  for (const char* const what : {"--print-manual", "--print-config-manual"})
+    text += run({merlind_, what}).output;
+  text += run({root_ + "/usr/bin/merlin", "--print-manual"}).output;
+  const auto documents = namedIn(text, "([a-z_]+/[a-z_/]*README\\.md)");
+  EXPECT_GE(documents.size(), 3u);
+  for (const std::string& name : documents)
+    EXPECT_TRUE(fs::is_regular_file(root_ + "/usr/share/doc/merlin/" + name)) << name;
+}
+
+// The page lets a reader copy an example before there is a model of his own.
+TEST_F(Install, EveryExampleThatTheGuideNamesIsValidWhenItIsCopied) {
+  const auto examples =
+      namedIn(readText(root_ + "/usr/share/doc/merlin/systemd/from-boxes-to-wall.md"),
+              "/usr/share/merlin/([a-z0-9-]+\\.json)");
+  EXPECT_GE(examples.size(), 3u);
+  for (const std::string& name : examples) {
+    std::string text = readText(root_ + "/usr/share/merlin/" + name);
+    text = std::regex_replace(text, std::regex("/usr/share"), root_ + "/usr/share");
+    text = std::regex_replace(text, std::regex("/var/lib/merlin"), runDirectory());
+    json config = json::parse(text);
+    config.merge_patch({{"run_directory", runDirectory()}});
+    const std::string path = root_ + "/etc/merlin/test.json";
+    writeText(path, config.dump());
+    const Outcome checked = run({merlind_, "--check-config", path});
+    EXPECT_EQ(checked.status, 0) << name << ": " << checked.output;
+  }
 }
 
 // On a machine with no device and no display, it shows the demo's model, and nothing is amiss.
@@ -228,6 +312,113 @@ TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
   EXPECT_EQ(::recv(client.get(), version, 12, MSG_WAITALL), 12) << rfb.output();
   EXPECT_STREQ(version, "RFB 003.008\n");
   EXPECT_EQ(rfb.kill(SIGTERM), 0) << rfb.output();
+}
+
+// The alarms' process under its unit, with a device that is absent from the start and this program,
+// whose argument is a file that it may write.
+class InstalledAlarms : public Install {
+ protected:
+  void startWith(const std::string& program, const std::vector<std::string>& drop_ins = {}) {
+    const std::string path = dir_ / "tell";
+    writeText(path, program);
+    ASSERT_EQ(::chmod(path.c_str(), 0755), 0);
+    const std::string config = configuration(
+        {{"devices", {deviceEntry("ball", "spaceball", "serial:/dev/serial/by-id/none")}},
+         {"alarms", {{{"run", {path, told_}}, {"kinds", {"device"}}}}}});
+    const Outcome checked = run({merlind_, "--role", "alarms", "--check-config", config});
+    ASSERT_EQ(checked.status, 0) << checked.output;
+    devices_ = start("devices", config);
+    alarms_ = start("alarms", config, drop_ins);
+  }
+  bool tells(const std::string& text) {
+    return eventually([&] { return readText(told_).find(text) != std::string::npos; });
+  }
+
+  std::string told_ = runDirectory() + "/told";
+  std::unique_ptr<Process> devices_, alarms_;
+};
+
+// A mailer calls chown, which the unit forbids, and goes on without it.
+TEST_F(InstalledAlarms, AProgramThatCallsWhatTheUnitForbidsGetsAnError) {
+  startWith(
+      "#!/bin/sh\n: >>\"$1\"\nchown 12345 \"$1\" 2>/dev/null\n"
+      "echo \"chown ended with $?\" >>\"$1\"\ncat >>\"$1\"\n"
+      "grep NoNewPrivs /proc/self/status >>\"$1\"\n");
+  EXPECT_TRUE(tells("NoNewPrivs:\t1")) << readText(told_) << alarms_->output();
+  EXPECT_TRUE(tells("chown ended with 1\n")) << readText(told_) << "159: it was killed by SIGSYS";
+  EXPECT_TRUE(tells("ball: absent")) << readText(told_);
+}
+
+// A setuid sendmail is what it is only without any filter.
+TEST_F(InstalledAlarms, WithTheDropInForMailAProgramMayGainPrivileges) {
+  startWith("#!/bin/sh\ncat >>\"$1\"\ngrep -E 'NoNewPrivs|Seccomp:' /proc/self/status >>\"$1\"\n",
+            {"mail.conf"});
+  EXPECT_TRUE(tells("NoNewPrivs:\t0")) << readText(told_) << alarms_->output();
+  EXPECT_TRUE(tells("ball: absent")) << readText(told_);
+  const std::string seccomp = readText("/proc/self/status");
+  const auto at = seccomp.find("Seccomp:");  // a container may have a filter of its own
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_TRUE(tells(seccomp.substr(at, seccomp.find('\n', at) - at))) << readText(told_);
+}
+
+// The program that daemon/alarms/README.md gives, with another address.
+TEST_F(InstalledAlarms, TheProgramOfTheDocumentReachesAServerUnderTheUnit) {
+  if (run({"which", "curl"}).status != 0) GTEST_SKIP() << "curl is not installed";
+  const std::string document = readText(kSource + "/daemon/alarms/README.md");
+  const auto lines = namedIn(document, "    (exec curl [^\n]+) https://");
+  ASSERT_EQ(lines.size(), 1u);
+  const UniqueFd server(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const raw = reinterpret_cast<sockaddr*>(&address);
+  ASSERT_EQ(::bind(server.get(), raw, size), 0);
+  ASSERT_EQ(::listen(server.get(), 4), 0);
+  ASSERT_EQ(::getsockname(server.get(), raw, &size), 0);
+  startWith("#!/bin/sh\n" + *lines.begin() +
+            " http://localhost:" + std::to_string(ntohs(address.sin_port)) + "/wall\n");
+  const timeval patience{60, 0};
+  ASSERT_EQ(::setsockopt(server.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience), 0);
+  const UniqueFd client(::accept(server.get(), nullptr, nullptr));
+  ASSERT_TRUE(client.valid()) << alarms_->output();
+  std::string request;
+  char buffer[4096];
+  while (request.find("left_out") == std::string::npos) {
+    const ssize_t n = ::recv(client.get(), buffer, sizeof buffer, 0);
+    if (n <= 0) break;
+    request.append(buffer, static_cast<std::size_t>(n));
+  }
+  EXPECT_TRUE(request.starts_with("POST /wall ")) << request;
+  EXPECT_NE(request.find("\"what\": \"ball: absent"), std::string::npos) << request;
+}
+
+// What a killed merlind leaves in shared memory, of any instance; others' files stay.
+TEST(Purge, TakesWhatAKilledMerlindLeftInSharedMemory) {
+  const TempDir root;
+  fs::create_directories(root / "etc");
+  fs::create_directories(root / "dev/shm");
+  const std::string mine = std::to_string(::geteuid());
+  writeText(root / "etc/passwd", "root:x:77777:0::/:/bin/sh\nmerlin:x:" + mine + ":1::/:/bin/sh\n");
+  for (const char* name : {"merlin-wall", "merlin-wall.lock", "merlin-signal-3", "lab-devices",
+                           "lab-framebuffer.lock", "lab-signal-0", "notes", "sem.other"})
+    writeText(root / ("dev/shm/" + std::string(name)), "x");
+  const std::string postrm = kSource + "/systemd/packages/merlin.postrm";
+  const auto left = [&] {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(root / "dev/shm"))
+      names.insert(entry.path().filename());
+    return names;
+  };
+  ASSERT_EQ(run({"env", "DPKG_ROOT=" + root.path(), "sh", postrm, "remove"}).status, 0);
+  EXPECT_EQ(left().size(), 8u);
+  const Outcome purged = run({"env", "DPKG_ROOT=" + root.path(), "sh", postrm, "purge"});
+  EXPECT_EQ(purged.status, 0) << purged.output;
+  EXPECT_EQ(left(), (std::set<std::string>{"notes", "sem.other"}));
+  writeText(root / "etc/passwd", "merlin:x:77777:1::/:/bin/sh\n");
+  writeText(root / "dev/shm/merlin-wall", "another user's");
+  EXPECT_EQ(run({"env", "DPKG_ROOT=" + root.path(), "sh", postrm, "purge"}).status, 0);
+  EXPECT_TRUE(left().contains("merlin-wall"));
 }
 
 class InstalledServers : public Install {

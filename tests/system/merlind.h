@@ -103,6 +103,8 @@ class Merlind {
     }
     return std::nullopt;
   }
+  // After a start of its own the daemon has other shared memory.
+  void openAgain() { devices_.reset(); }
   bool healthIs(const std::string& device, HealthState state) {
     return eventually([&] {
       const auto now = health(device);

@@ -102,6 +102,36 @@ TEST_F(MeshFuse, TakesTheOptionsOfAnImportForAllScans) {
       << taken.output;
 }
 
+TEST_F(MeshFuse, KeepsTheOriginAndWhatTheScansSayOfTheirFeatures) {
+  const auto scan = [&](const std::string& name, const std::string& unit, double most) {
+    writeText(dir_ / name + ".heat.pgm",
+              fmt::format("P5\n# unit: {}\n# minimum: 10\n# maximum: {}\n8 8\n255\n", unit, most) +
+                  std::string(64, '\x32'));
+    writeText(dir_ / name + ".pgm",
+              "P5\n# angles: 40 30\n# scale: 0.01\n# feature: heat=" + name +
+                  ".heat.pgm\n# camera: 1 0 0 450000.25 0 1 0 5400000.5 0 0 1 7\n8 8\n255\n" +
+                  std::string(64, '\x64'));
+    return dir_ / name + ".pgm";
+  };
+  const std::string a = scan("a", "degC", 50), b = scan("b", "degC", 61), c = scan("c", "K", 50);
+  const std::string model = dir_ / "out.mrm";
+  const auto json = jsonOf(fuse({a, b, "-o", model, "--json"}));
+  EXPECT_EQ(json["origin"], nlohmann::json({450000.0, 5400000.0, 0.0}));
+  const auto info = jsonOf(run({kMerlin, "mesh", "info", model, "--json"}));
+  const std::string about = info["about"];
+  EXPECT_NE(about.find("mesh.origin=450000 5400000 0"), std::string::npos) << about;
+  EXPECT_NE(about.find("feature.heat.unit=degC\nfeature.heat.range=10 61\n"), std::string::npos)
+      << about;
+  EXPECT_EQ(info["unit"], "m");
+  EXPECT_NEAR(info["box"]["high"][2], 7 - 0.86, 0.1);
+  EXPECT_LT(info["box"]["high"][0], 2) << "relative to the origin";
+  const Outcome mixed = fuse({a, c, "-o", out_});
+  EXPECT_EQ(mixed.status, 0) << mixed.output;
+  EXPECT_NE(mixed.output.find("the scans give the feature heat in different units"),
+            std::string::npos)
+      << mixed.output;
+}
+
 TEST_F(MeshFuse, TakesPosesFromFilesOfTheirOwn) {
   const std::string scan = dir_ / "a.pgm", pose = dir_ / "pose.txt";
   writeText(scan, "P5\n# angles: 40 30\n8 8\n255\n" + std::string(64, '\x64'));

@@ -199,6 +199,126 @@ TEST_F(MeshImport, AModelForTheWallIsSentToTheExport) {
                                          model + " -o OUT.ply makes a mesh of it");
 }
 
+// Where a map's coordinates are taken relative to an origin, all that is said of it agrees.
+TEST_F(MeshImport, AMeshWithCoordinatesOfAMapKeepsItsOriginInReportModelAndScan) {
+  const std::string far = dir_ / "far.obj", model = dir_ / "a.mrm";
+  writeText(far,
+            "v 450000.125 5400000.25 10\nv 450002.125 5400000.25 10\nv 450002.125 5400002.25 10\n"
+            "v 450000.125 5400002.25 10.5\nf 1 2 3\nf 1 3 4\n");
+  const nlohmann::json origin = {450000.0, 5400000.0, 0.0};
+  const auto json = report({far, "-o", model});
+  EXPECT_EQ(json["origin"], origin);
+  EXPECT_NE(json["notes"].dump().find("relative to 450000, 5400000, 0"), std::string::npos);
+  for (const std::string& file : {far, model}) {
+    const Outcome said = run({kMerlin, "mesh", "info", file, "--json"});
+    const auto info = nlohmann::json::parse(said.output.substr(said.output.find('{')));
+    EXPECT_EQ(info["origin"], origin) << file;
+    EXPECT_EQ(info["box"]["low"], nlohmann::json({0.125, 0.25, 10.0})) << file;
+    EXPECT_EQ(info["box"]["high"], nlohmann::json({2.125, 2.25, 10.5})) << file;
+  }
+  EXPECT_EQ(report({far, "--scale", "0.5", "-o", ply_})["origin"],
+            nlohmann::json({225000.0, 2700000.0, 0.0}))
+      << "in the mesh's unit";
+  const Outcome scan =
+      run({kMerlin, "mesh", "scan", far, "--camera", "450001.125", "5400001.25", "15", "--width",
+           "20", "--height", "20", "-o", dir_ / "b.pgm", "--json"});
+  ASSERT_EQ(scan.status, 0) << scan.output;
+  const auto scanned = nlohmann::json::parse(scan.output.substr(scan.output.find('{')));
+  EXPECT_EQ(scanned["camera"][3], 450001.125) << "in the coordinates of the file";
+  const auto back = report({dir_ / "b.pgm", "-o", dir_ / "c.ply"});
+  EXPECT_EQ(back["origin"], (nlohmann::json{450001.0, 5400001.0, 0.0}));
+  const Outcome box = run({kMerlin, "mesh", "info", dir_ / "c.ply", "--json"});
+  EXPECT_NEAR(nlohmann::json::parse(box.output)["box"]["high"][0], 1.125, 0.3);
+}
+
+TEST_F(MeshImport, ComparisonsBringTwoOriginsTogether) {
+  writeText(dir_ / "a.obj",
+            "v 450000.5 20000 0\nv 450002.5 20000 0\nv 450000.5 20002 0\nf 1 2 3\n");
+  writeText(dir_ / "b.obj",
+            "v 450002.5 20000 0\nv 450000.5 20002 0\nv 450000.5 20000 0\nf 1 2 3\n");
+  const Outcome same = run(
+      {kMerlin, "mesh", "compare", dir_ / "a.obj", dir_ / "b.obj", "--samples", "100", "--json"});
+  ASSERT_EQ(same.status, 0) << same.output;
+  const auto json = nlohmann::json::parse(same.output.substr(same.output.find("{\"")));
+  EXPECT_LT(json["rms"], 1e-3);
+}
+
+TEST_F(MeshImport, ACameraWithCoordinatesOfAMapKeepsItsDigitsByAnOrigin) {
+  const std::string pixels = readText(scan_).substr(kHeader.size());
+  writeText(scan_, kHeader + "# camera: 1 0 0 450000.25 0 1 0 5400000.5 0 0 1 0\n" + pixels);
+  const auto json = report({scan_, "-o", ply_});
+  EXPECT_EQ(json["origin"], nlohmann::json({450000.0, 5400000.0, 0.0}));
+  const auto info = nlohmann::json::parse(run({kMerlin, "mesh", "info", ply_, "--json"}).output);
+  EXPECT_NEAR(info["box"]["low"][0], 0.25 - 0.99817, 1e-5);
+  ASSERT_EQ(import({scan_, "-o", dir_ / "out.mrm"}).status, 0);
+  const Outcome said = run({kMerlin, "mesh", "info", dir_ / "out.mrm"});
+  EXPECT_NE(said.output.find("mesh.origin=450000 5400000 0"), std::string::npos) << said.output;
+  ASSERT_EQ(import({scan_, "-o", dir_ / "again.pgm"}).status, 0);
+  EXPECT_NE(readText(dir_ / "again.pgm").find("# camera: 1 0 0 450000.25"), std::string::npos)
+      << "a range image keeps its camera as it is";
+}
+
+TEST_F(MeshImport, AScanOfAModelKeepsUnitAndRangeOfItsFeatures) {
+  writeText(dir_ / "heat.pgm",
+            "P5\n# unit: degC\n# minimum: 10\n# maximum: 61\n8 6\n255\n" + std::string(48, '\x64'));
+  ASSERT_EQ(
+      import({scan_, "--feature", "heat=" + (dir_ / "heat.pgm"), "-o", dir_ / "a.mrm"}).status, 0);
+  const Outcome scan =
+      run({kMerlin, "mesh", "scan", dir_ / "a.mrm", "--camera", "0", "0", "0", "--angles", "30",
+           "20", "--width", "20", "--height", "20", "-o", dir_ / "b.pgm"});
+  ASSERT_EQ(scan.status, 0) << scan.output;
+  const auto json = report({dir_ / "b.pgm", "-o", ply_});
+  for (const auto& f : json["features"]) {
+    if (f["name"] != "heat") continue;
+    EXPECT_EQ(f["unit"], "degC");
+    EXPECT_EQ(f["range"], nlohmann::json({10.0, 61.0}));
+    return;
+  }
+  ADD_FAILURE() << json["features"];
+}
+
+TEST_F(MeshImport, AMeshThatNeedsMoreMemoryThanAllowedIsRefusedBeforeItIsRead) {
+  std::string obj, faces, body;
+  for (int i = 0; i < 100'000; ++i) {
+    obj += "v 0 0 0\n";
+    faces += "3 0 1 2\n";
+    body += "f 1 2 3\n";
+  }
+  writeText(dir_ / "a.obj", obj + body);
+  std::string vertices;
+  for (int i = 0; i < 100'000; ++i) vertices += "0 0 0\n";
+  writeText(dir_ / "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 100000\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 100000\nproperty list uchar int vertex_indices\n"
+            "end_header\n" +
+                vertices + faces);
+  for (const char* name : {"a.obj", "a.ply"}) {
+    const std::string file = dir_ / name;
+    expectRefusal({file, "--memory", "34M", "-o", ply_},
+                  file + ": reading its 100000 vertices, 100000 triangles takes");
+    expectRefusal({file, "--memory", "34M", "-o", ply_}, "the limit (--memory");
+    const Outcome info = run({kMerlin, "mesh", "info", file, "--memory", "34M"});
+    EXPECT_EQ(info.status, 2) << info.output;
+    EXPECT_EQ(import({file, "--memory", "100M", "-o", dir_ / "b.ply"}).output.find("--memory"),
+              std::string::npos);
+  }
+}
+
+TEST_F(MeshImport, OptionsThatWouldDoNothingToARangeImageAreRefused) {
+  const std::string out = dir_ / "out.pgm";
+  for (const std::vector<std::string>& option : std::vector<std::vector<std::string>>{
+           {"--border"},
+           {"--max-edge", "5%"},
+           {"--colour-by", "none"},
+           {"--exaggerate", "3"},
+           {"--feature", "confidence=" + (dir_ / "confidence.pgm")},
+           {"--texture", dir_ / "colour.ppm"}}) {
+    std::vector<std::string> arguments = {scan_, "-o", out};
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    expectRefusal(arguments, out + ": " + option[0] + " is for a mesh or a model; a range image");
+  }
+}
+
 TEST_F(MeshImport, RefusalsNameFilePlaceAndReason) {
   const std::string bad = dir_ / "bad.pgm";
   writeText(bad, "P5\n2 2\n255\nabcd");

@@ -33,6 +33,7 @@ class NetworkCommands : public testing::Test {
                                  {{"wall_endpoint", wall_},
                                   {"devices_endpoint", devices_},
                                   {"samples_endpoint", samples_},
+                                  {"wall_topics_endpoint", topics_},
                                   {"samples_keys", file("server")},
                                   {"samples_clients", dir_ / "readers"},
                                   {"commands_keys", file("server")},
@@ -59,6 +60,7 @@ class NetworkCommands : public testing::Test {
   TempDir dir_;
   std::string wall_ = fmt::format("tcp://127.0.0.1:{}", freePort());
   std::string devices_ = fmt::format("tcp://127.0.0.1:{}", freePort());
+  std::string topics_ = fmt::format("tcp://127.0.0.1:{}", freePort());
   std::string samples_ = fmt::format("tcp://127.0.0.1:{}", freePort());
   std::unique_ptr<Merlind> daemon_;
 };
@@ -126,6 +128,31 @@ TEST_F(NetworkCommands, MessagesOfAnyFormDoNotHurt) {
                   "notice", seconds(1), std::string(1 << 20, 'x'));
   EXPECT_FALSE(longer);
   EXPECT_EQ(merlin("commander", {"status"}).status, 0);
+}
+
+// Whoever may read hears the wall's events as they come; nobody else hears anything.
+TEST_F(NetworkCommands, TheWallsTopicsAreForListedKeys) {
+  const auto hears = [&](const std::string& who, Duration patience) {
+    zmq::context_t context;
+    zmq::socket_t socket(context, zmq::socket_type::sub);
+    socket.set(zmq::sockopt::linger, 0);
+    socket.set(zmq::sockopt::subscribe, "status");
+    if (!who.empty()) {
+      const status::KeyPair own = *status::readKeyPair(file(who));
+      socket.set(zmq::sockopt::curve_serverkey, readText(dir_ / "server.public").substr(0, 40));
+      socket.set(zmq::sockopt::curve_publickey, own.public_key);
+      socket.set(zmq::sockopt::curve_secretkey, own.secret_key);
+    }
+    socket.set(zmq::sockopt::rcvtimeo, static_cast<int>(1000 * toSeconds(patience)));
+    socket.connect(topics_);
+    zmq::message_t topic, document;
+    if (!socket.recv(topic) || !socket.recv(document)) return std::string();
+    return json::parse(document.to_string_view(), nullptr, false).value("role", "");
+  };
+  EXPECT_EQ(hears("reader", seconds(30)), "wall");
+  EXPECT_EQ(hears("commander", seconds(30)), "wall");
+  EXPECT_EQ(hears("stranger", seconds(3)), "") << "a status comes once a second";
+  EXPECT_EQ(hears("", seconds(3)), "") << "without encryption";
 }
 
 TEST_F(NetworkCommands, WhatIsMissingIsSaidAtOnce) {

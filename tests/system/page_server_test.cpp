@@ -230,7 +230,7 @@ TEST_F(PageTest, MetricsOfBothRolesAreLinesThatPrometheusReads) {
   EXPECT_GT(samples, 70);
 }
 
-TEST_F(PageTest, StaysWithMetricsAloneOrIsRefusedWithNothingToServe) {
+TEST_F(PageTest, StaysWithMetricsAloneAndWaitsWithNothingToServe) {
   start("still", {{"enabled", false}});
   EXPECT_EQ(page_->get("/").status, 404);
   EXPECT_EQ(page_->get("/api/status").status, 404);
@@ -239,11 +239,11 @@ TEST_F(PageTest, StaysWithMetricsAloneOrIsRefusedWithNothingToServe) {
   Json config = Json::parse(readText(wall_->config()));
   config["page"]["metrics"] = false;
   writeText(dir_ / "none.json", config.dump());
-  const Outcome refused = run({kMerlind, "--config", dir_ / "none.json", "--role", "page"});
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.output.find("/page/enabled is false, and so is /page/metrics"),
+  const Outcome checked = run({kMerlind, "--check-config", dir_ / "none.json", "--role", "page"});
+  EXPECT_EQ(checked.status, 1);
+  EXPECT_NE(checked.output.find("/page/enabled is false, and so is /page/metrics"),
             std::string::npos)
-      << refused.output;
+      << checked.output;
   EXPECT_EQ(run({kMerlind, "--check-config", dir_ / "none.json", "--role", "wall"}).status, 0);
 }
 
@@ -260,6 +260,17 @@ class PageAlone : public testing::Test {
   int port_ = freePagePort();
   std::string instance_ = privateName("page");
 };
+
+// It serves nothing, whatever it served before, until the configuration has a page again.
+TEST_F(PageAlone, SwitchedOffItWaitsForAConfigurationWithAPage) {
+  Process page({kMerlind, "--last-good", "--config",
+                config("page.json", {{"enabled", false}, {"metrics", false}}), "--role", "page"});
+  ASSERT_TRUE(page.saysEventually("the page is switched off")) << page.output();
+  config("page.json", {{"enabled", true}});
+  ::kill(page.pid(), SIGHUP);
+  EXPECT_TRUE(page.saysEventually("the page of merlind")) << page.output();
+  EXPECT_EQ(page.kill(SIGTERM), 0) << page.output();
+}
 
 TEST_F(PageAlone, ABusyPortIsTriedAgainAndASecondPageIsRefused) {
   const std::string file = config("page.json", Json::object());

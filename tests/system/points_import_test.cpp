@@ -111,6 +111,44 @@ TEST_F(PointsImport, TheOriginOfLargeCoordinatesIsSaid) {
   EXPECT_NEAR(x + mean / static_cast<double>(mesh.vertexCount()), 500'000, 0.01);
 }
 
+TEST_F(PointsImport, TheOriginIsScaledWithThePoints) {
+  const auto json =
+      report(colouredSphere(500'000), {"--depth", "5", "--neighbours", "10", "--scale", "0.5"});
+  EXPECT_NEAR(json["cloud"]["origin"][0], 250'000, 1);
+  double mean = 0;
+  const auto mesh = written();
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v) mean += double{mesh.positions[3 * v]};
+  EXPECT_NEAR(
+      json["cloud"]["origin"][0].get<double>() + mean / static_cast<double>(mesh.vertexCount()),
+      250'000, 0.01);
+}
+
+TEST_F(PointsImport, AProjectionStaysInTheModel) {
+  const auto points = sphere(kPoints);
+  std::string bytes = las(2, 0, kPoints);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (std::size_t k = 0; k < 3; ++k)
+      set32(
+          bytes, 227 + 20 * p + 4 * k,
+          static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(1000 * points[p][k]))));
+  }
+  std::string record(54, '\0');
+  record.replace(2, 15, "LASF_Projection");
+  const std::string wkt = "PROJCS[\"WGS 84 / UTM zone 33N\",x\\y]";
+  set16(record, 18, 2112);
+  set16(record, 20, static_cast<std::uint32_t>(wkt.size()));
+  set32(bytes, 96, static_cast<std::uint32_t>(227 + 54 + wkt.size()));
+  set32(bytes, 100, 1);
+  bytes.insert(227, record + wkt);
+  const auto json = report(bytes);
+  EXPECT_EQ(json["cloud"]["projection"], wkt);
+  ply_ = dir_ / "out.mrm";
+  ASSERT_EQ(import(bytes).status, 0);
+  const Outcome info = run({kMerlin, "mesh", "info", ply_, "--json"});
+  const std::string about = nlohmann::json::parse(info.output)["about"];
+  EXPECT_NE(about.find("map.projection=" + wkt + "\n"), std::string::npos) << about;
+}
+
 TEST_F(PointsImport, WhatCannotBeASurfaceIsRefusedInOneLine) {
   const auto refusal = [&](const std::string& bytes, std::vector<std::string> options = {}) {
     const Outcome outcome = import(bytes, std::move(options));

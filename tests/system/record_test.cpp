@@ -34,6 +34,46 @@ TEST(Record, WhatIsRecordedReplaysIntoTheSameSamples) {
   EXPECT_EQ(then.substr(0, now.size()), now);
 }
 
+TEST(Record, ADeviceOfAConfigurationIsReadWithItsOwnSettings) {
+  const TempDir dir;
+  Process tracker({kMerlin, "emulate", "fastrak", "--link", dir / "tracker"});
+  ASSERT_TRUE(tracker.saysEventually("fastrak on")) << tracker.output();
+  const std::string config = dir / "wall.json";
+  writeText(config, R"({"devices": [{"name": "left", "driver": "cyberglove"},
+      {"name": "eyes", "driver": "fastrak", "port": "pty:)" +
+                        dir / "tracker" + R"(", "fastrak": {"centimetres": false}}]})");
+  const auto record = [&](std::vector<std::string> more) {
+    std::vector<std::string> command = {kMerlin, "record",           "--config",  config,
+                                        "-o",    dir / "eyes.bytes", "--seconds", "1"};
+    command.insert(command.end(), more.begin(), more.end());
+    return run(command);
+  };
+  const Outcome recorded = record({"--device", "eyes"});
+  ASSERT_EQ(recorded.status, 0) << recorded.output;
+  const auto transcript = io::readTranscript(dir / "eyes.bytes");
+  ASSERT_TRUE(transcript) << transcript.error().what;
+  EXPECT_EQ((*transcript)["driver"], "fastrak");
+  const auto said = [&](const std::string& text) {
+    return std::ranges::any_of(transcript->chunks, [&](const auto& chunk) {
+      return chunk.to_device && chunk.bytes == text;
+    });
+  };
+  EXPECT_TRUE(said("U")) << "the unit is set to inches";
+  EXPECT_FALSE(said("u"));
+
+  const Outcome nobody = record({"--device", "nobody"});
+  EXPECT_EQ(nobody.status, 2);
+  EXPECT_EQ(nobody.output, "merlin: " + config +
+                               ": /devices has no device named \"nobody\"; its devices: left, "
+                               "eyes\n");
+  const Outcome portless = record({"--device", "left"});
+  EXPECT_EQ(portless.status, 2);
+  EXPECT_EQ(portless.output, "merlin: " + config +
+                                 ": the device \"left\" has no port: give one, such as "
+                                 "serial:/dev/ttyUSB0\n");
+  EXPECT_EQ(record({}).status, 2) << "which device is not said";
+}
+
 TEST(Record, BadInputIsOneClearMessage) {
   const TempDir dir;
   writeText(dir / "half.bytes", "# device: x\n@0.1 4400\n");
@@ -48,6 +88,16 @@ TEST(Record, BadInputIsOneClearMessage) {
   EXPECT_NE(none.output.find("ports are serial:"), std::string::npos) << none.output;
   const Outcome absent = run({kMerlin, "record", "pty:" + dir / "nothing", "-o", dir / "x"});
   EXPECT_EQ(absent.status, 2) << absent.output;
+  const Outcome unknown =
+      run({kMerlin, "record", "pty:x", "--device", "spacebal", "-o", dir / "x"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.output.find("there is no driver \"spacebal\"; the drivers are cyberglove"),
+            std::string::npos)
+      << unknown.output;
+  const Outcome portless = run({kMerlin, "record", "-o", dir / "x"});
+  EXPECT_EQ(portless.status, 2);
+  EXPECT_NE(portless.output.find("no port is given: name one"), std::string::npos)
+      << portless.output;
 }
 
 TEST(Flight, TheDaemonDumpsOnCommandAndOnAFault) {

@@ -193,17 +193,36 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
   EXPECT_FALSE(merlind_->process().ended());
 }
 
-TEST_F(Reload, WhatOnlyARestartTakesIsRefusedWithAllTheRest) {
+// In the same process, and whoever asks is told once it is back.
+TEST_F(Reload, ForWhatOnlyAStartTakesItStartsAgainWithAllTheRest) {
   start();
-  write({{"cpu_latency_us", 100}, {"bindings", bindings("fly")}});
-  const Outcome refused = reload();
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_EQ(refused.output,
-            "merlin: nothing was changed, since merlind takes this setting only when it starts: "
-            "systemctl restart merlin.target\n  /cpu_latency_us\n");
-  EXPECT_TRUE(
-      merlind_->process().saysEventually("/cpu_latency_us changed, which only a restart takes"));
-  write({{"cpu_latency_us", -1}, {"page", {{"port", 7999}}}});
+  write({{"state_file", dir_ / "a.json"}, {"bindings", bindings("fly")}});
+  const Outcome would = reload({"--check"});
+  EXPECT_EQ(would.output,
+            "/bindings/0/action: \"grab\" -> \"fly\"\n"
+            "merlind would start again, which alone takes:\n  /state_file\n");
+  ASSERT_TRUE(eventually([&] { return begun("grab") > 0; })) << "nothing was changed";
+  const Outcome done = reload();
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_EQ(done.output,
+            "/bindings/0/action: \"grab\" -> \"fly\"\n"
+            "merlind started again, which alone takes:\n  /state_file\n");
+  EXPECT_TRUE(merlind_->process().saysEventually("/state_file changed in " + merlind_->config()));
+  merlind_->openAgain();
+  for (const char* device : kDevices)
+    EXPECT_TRUE(merlind_->healthIs(device, HealthState::kOk)) << device;
+  EXPECT_TRUE(eventually([&] { return begun("fly") > 0; }));
+  EXPECT_EQ(reload().output, "nothing changed\n");
+  write({{"state_file", dir_ / "b.json"}});
+  ASSERT_EQ(::kill(merlind_->process().pid(), SIGHUP), 0);
+  EXPECT_TRUE(merlind_->process().saysEventually("starting again"));
+  EXPECT_TRUE(eventually([&] { return reload().output == "nothing changed\n"; }));
+  EXPECT_EQ(merlind_->process().kill(SIGTERM), 0) << merlind_->process().output();
+}
+
+TEST_F(Reload, WhatOtherProcessesReadIsSaid) {
+  start();
+  write({{"page", {{"port", 7999}}}, {"bindings", bindings("fly")}});
   const Outcome would = reload({"--check", "--json"});
   EXPECT_EQ(would.status, 0) << would.output;
   const json answer = json::parse(would.output, nullptr, false)["processes"][0];
@@ -216,7 +235,7 @@ TEST_F(Reload, WhatOnlyARestartTakesIsRefusedWithAllTheRest) {
   EXPECT_EQ(done.status, 0);
   EXPECT_EQ(done.output,
             "/bindings/0/action: \"grab\" -> \"fly\"\n"
-            "/page/port: is taken by the page when it starts: systemctl restart merlin-page\n");
+            "/page/port: is read by the page: systemctl reload merlin-page\n");
 }
 
 // Good ones and bad ones in a random order, always the same one, while the hand moves.
@@ -233,9 +252,9 @@ TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
       handWith({{"station", 2}, {"cutoff_hz", 5}})};
   const json bad[] = {devicesWith("ball", nullptr, {{"baud", 7}}),
                       {{"hands", 1}},
-                      {{"script", "still"}},
+                      {{"script", "still"}, {"hands", 1}},
                       {{"postures", {{"file", "none"}}}},
-                      devicesWith("ball", nullptr, {{"name", "mouse"}})};
+                      devicesWith("ball", nullptr, {{"name", "glove"}})};
   // Before any client is connected: its place is free some time after it has gone.
   const std::size_t descriptors = entriesOf("fd"), threads = entriesOf("task");
   std::mt19937 random(5);
@@ -266,11 +285,12 @@ class ReloadOfTwo : public Reload {
  protected:
   void SetUp() override {
     start({{"bindings", bindings("grab")},
-           {"wall", {{"model", makeModel(dir_, 2)}, {"rate", {{"rate_hz", 10}}}}}});
+           {"wall", {{"model", model_}, {"rate", {{"rate_hz", 10}}}}}});
     wall_.emplace(
         std::vector<std::string>{kMerlind, "--config", merlind_->config(), "--role", "wall"});
     ASSERT_TRUE(wall_->saysEventually("ready")) << wall_->output();
   }
+  const std::string model_ = makeModel(dir_, 2);
   std::optional<Process> wall_;
 };
 
@@ -289,19 +309,40 @@ TEST_F(ReloadOfTwo, EachTakesItsPartAndTheWallGoesOn) {
        {"/hands/0/station: 1 -> 2\n", "/wall/rate/rate_hz: 10 -> 12\n",
         "/wall/playlist/dim_after_s: 0 -> 100\n", "/wall/scene/hand_gain: 3 -> 2\n"})
     EXPECT_NE(done.output.find(line), std::string::npos) << line << done.output;
-  EXPECT_EQ(done.output.find("is taken by"), std::string::npos) << done.output;
+  EXPECT_EQ(done.output.find("is read by"), std::string::npos) << done.output;
   EXPECT_TRUE(eventually([&] { return merlind_->wall().rate_asked_hz == 12; }));
   EXPECT_TRUE(eventually([&] { return merlind_->wall().frames > frames; }));
   EXPECT_EQ(reload().output, "nothing changed\n");
 }
 
-TEST_F(ReloadOfTwo, WhatOneRefusesNeitherTakes) {
-  write({{"bindings", bindings("fly")}, {"wall", {{"render", {{"wireframe", true}}}}}});
+TEST_F(ReloadOfTwo, TheWallAloneStartsAgainForItsContents) {
+  auto before = healths();
+  const auto contents = [](const std::string& file) {
+    return json{{"contents", json::array({{{"model", file}, {"name", "second"}}})}};
+  };
+  write({{"wall", contents(dir_ / "none.mrm")}});
   const Outcome refused = reload();
   EXPECT_EQ(refused.status, 2) << refused.output;
-  EXPECT_NE(refused.output.find("\n  /wall/render/wireframe\n"), std::string::npos)
+  EXPECT_NE(refused.output.find("none.mrm: No such file"), std::string::npos) << refused.output;
+  write({{"wall", contents(model_)}});
+  const Outcome done = reload();
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("merlind started again, which alone takes:\n  /wall/contents"),
+            std::string::npos)
+      << done.output;
+  EXPECT_EQ(run({kMerlin, "show", "second", "--instance", merlind_->instance()}).status, 0);
+  EXPECT_FALSE(wall_->ended());
+  for (const char* device : kDevices)
+    EXPECT_EQ(health(device).reconnects, before[device].reconnects) << device;
+}
+
+TEST_F(ReloadOfTwo, WhatOneRefusesNeitherTakes) {
+  write({{"bindings", bindings("fly")}, {"wall", {{"snapshots", merlind_->config()}}}});
+  const Outcome refused = reload();
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("/wall/snapshots cannot be used"), std::string::npos)
       << refused.output;
-  write({{"wall", {{"render", {{"wireframe", false}}}}}});
+  write({{"wall", {{"snapshots", ""}}}});
   const Outcome done = reload();
   EXPECT_EQ(done.output, "/bindings/0/action: \"grab\" -> \"fly\"\n")
       << "it was not swapped before: " << done.output;

@@ -51,12 +51,17 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
   const TempDir dir;
   const std::string model = makeModel(dir);
   const std::string key = makeKeys(dir / "wall.keys");
+  writeText(dir / "wall.clients", std::string(40, 'k') + "\n");
   writeText(dir / "left.password", std::string(kPassword) + "\n");
   MerlindOptions options;
   options.also = {
-      {"serve", {{"samples_keys", "wall.keys"}}},
+      {"serve",
+       {{"samples_endpoint", "tcp://127.0.0.1:1"},
+        {"samples_keys", "wall.keys"},
+        {"samples_clients", "wall.clients"}}},
       {"projectors",
        {{{"name", "left"}, {"address", "127.0.0.1:1"}, {"password_file", "left.password"}}}},
+      {"alarms", {{{"run", {"/usr/bin/tell", std::string("--token=") + kToken}}}}},
       // Somebody has written the password where everybody sees it.
       {"wall", {{"contents", {{{"model", model}, {"name", kPassword}}}}}}};
   Merlind wall(dir, model, "report", options);
@@ -136,7 +141,7 @@ TEST(Report, TheJournalIsThatOfTheUnitsWithoutSecrets) {
   const std::string& journal = files.at("none/journal.txt");
   for (const char* part :
        {"--unit=merlin-devices.service", "--unit=merlin-wall.service", "--unit=merlin-page.service",
-        "--since=-1day", "--lines=20000", "\ntyped (left out)\n"})
+        "--unit=merlin-alarms.service", "--since=-1day", "--lines=20000", "\ntyped (left out)\n"})
     EXPECT_NE(journal.find(part), std::string::npos) << part << " is not in " << journal;
   expectNowhere(files, kPassword);
 }

@@ -1,4 +1,6 @@
 // The unit files, checked by systemd's own tools.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/process.h"
@@ -77,6 +79,31 @@ TEST(DaemonsUnits, SayWhatTheDaemonReliesOn) {
       << "the displays are black while the wall is restarted";
   EXPECT_EQ(wall.find("\nMemoryDenyWriteExecute=yes"), std::string::npos)
       << "llvmpipe dies with it";
+}
+
+// Programs of others run under it, and they are to hear of faults of the start.
+TEST(AlarmsUnit, GivesItsProgramsAnErrorAndWaitsForTheNetworkAlone) {
+  const std::string unit = readText(kUnits + "merlin-alarms.service");
+  EXPECT_NE(unit.find("\nSystemCallErrorNumber=EPERM\n"), std::string::npos)
+      << "a program that calls chown would be killed";
+  EXPECT_NE(unit.find("\nAfter=network-online.target\n"), std::string::npos);
+  EXPECT_EQ(unit.find("After=merlin"), std::string::npos)
+      << "a wall that is never ready would keep the alarms from starting";
+}
+
+TEST(AlarmsUnit, SystemdFindsNoFaultInTheDropInForMail) {
+  if (!installed("systemd-analyze")) GTEST_SKIP() << "systemd is not installed";
+  const TempDir dir;
+  std::string unit = readText(kUnits + "merlin-alarms.service");
+  unit.replace(unit.find("/usr/bin/merlind"), 16, MERLIN_BIN_DIR "/merlind");
+  writeText(dir / "merlin-alarms.service", unit);
+  std::filesystem::create_directory(dir / "merlin-alarms.service.d");
+  writeText(dir / "merlin-alarms.service.d/mail.conf",
+            readText(kUnits + "merlin-alarms.service.d/mail.conf"));
+  const Outcome verified =
+      run({"systemd-analyze", "verify", "--man=no", dir / "merlin-alarms.service"});
+  EXPECT_EQ(verified.status, 0) << verified.output;
+  EXPECT_EQ(verified.output.find("mail.conf:"), std::string::npos) << verified.output;
 }
 
 }  // namespace

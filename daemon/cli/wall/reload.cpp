@@ -34,8 +34,9 @@ struct ReloadOptions {
 struct Reloaded {
   FoundRole process;
   Json answer;
-  bool done() const { return outcome() == "done"; }
   std::string outcome() const { return answer.value("outcome", ""); }
+  bool restarts() const { return outcome() == "restarts"; }
+  bool done() const { return outcome() == "done" || restarts(); }
 };
 
 // One role of each process: a process with both roles reads its configuration once.
@@ -102,6 +103,40 @@ Result<std::vector<Reloaded>> reloadAll(const ReloadOptions& options,
   return reloadEach(options.instance, processes, "now");
 }
 
+// Whether the role answers after a start, and shows pictures if it is a wall.
+bool works(const std::string& instance, const std::string& role) {
+  const auto answer = askRole(instance, role, {"status"});
+  const Json status = answer ? Json::parse(*answer, nullptr, false) : Json();
+  return status.is_object() && status.value("frames", 1) > 0;
+}
+
+bool isBack(const std::string& instance, const FoundRole& before) {
+  const auto roles = findRoles(instance);
+  if (!roles) return false;
+  return std::ranges::any_of(*roles, [&](const FoundRole& now) {
+    return now.role == before.role && now.generation != before.generation &&
+           works(instance, now.role);
+  });
+}
+
+// Waits until each process that starts again is back.
+Result<Ok> awaitStarts(const std::string& instance, const std::vector<Reloaded>& all) {
+  SystemClock clock;
+  const Timestamp until = clock.now() + kPatience;
+  for (const Reloaded& reloaded : all) {
+    while (reloaded.restarts() && !isBack(instance, reloaded.process)) {
+      if (clock.now() > until) {
+        return Error{Errc::kTimeout,
+                     fmt::format("merlind (process {}) has not started again within {:.0f} s; its "
+                                 "log will say what became of it",
+                                 reloaded.process.pid, toSeconds(kPatience))};
+      }
+      clock.sleepUntil(clock.now() + kPollPeriod, {});
+    }
+  }
+  return Ok{};
+}
+
 std::string changeText(const Json& change) {
   const std::string from = change.value("from", ""), to = change.value("to", "");
   const std::string setting = change.value("setting", "");
@@ -125,6 +160,17 @@ std::vector<std::string> together(const std::vector<Reloaded>& all, const char* 
 
 std::string itself(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
 
+// What makes a start necessary: of a list or group of which all changed only its own name.
+std::vector<std::string> restartSettings(const std::vector<Reloaded>& all) {
+  std::vector<std::string> settings = together(all, "restart", itself);
+  const std::vector<std::string> whole = settings;
+  std::erase_if(settings, [&](const std::string& setting) {
+    return std::ranges::any_of(
+        whole, [&](const std::string& group) { return setting.starts_with(group + "/"); });
+  });
+  return settings;
+}
+
 // Changed settings that no running process of these reads: each would think them another's.
 std::vector<std::string> readByNone(const std::vector<Reloaded>& all, reload::Readers running) {
   std::vector<std::string> settings = together(all, "elsewhere", itself);
@@ -135,21 +181,23 @@ std::vector<std::string> readByNone(const std::vector<Reloaded>& all, reload::Re
 }
 
 const char* whoTakes(reload::Readers readers) {
-  if (readers == reload::kPage)
-    return "is taken by the page when it starts: systemctl restart merlin-page";
-  if (readers == reload::kAlarms)
-    return "is taken by the alarms when they start: systemctl restart merlin-alarms";
+  if (readers == reload::kPage) return "is read by the page: systemctl reload merlin-page";
+  if (readers == reload::kAlarms) return "is read by the alarms: systemctl reload merlin-alarms";
   return "is taken by a merlind of another role when it starts";
 }
 
-void printDone(const std::vector<Reloaded>& all, reload::Readers running) {
+// `tense`: of the sentence that names what merlind starts again for.
+void printDone(const std::vector<Reloaded>& all, reload::Readers running, const char* tense) {
   const auto swapped = together(all, "swapped", changeText);
   const auto unread = readByNone(all, running);
   for (const std::string& line : swapped) printOut("{}\n", line);
   for (const std::string& setting : unread) {
     printOut("{}: {}\n", setting, whoTakes(reload::takerOf(setting).readers));
   }
-  if (swapped.empty() && unread.empty()) printOut("nothing changed\n");
+  const auto restart = restartSettings(all);
+  if (!restart.empty()) printOut("merlind {} again, which alone takes:\n", tense);
+  for (const std::string& setting : restart) printOut("  {}\n", setting);
+  if (swapped.empty() && unread.empty() && restart.empty()) printOut("nothing changed\n");
 }
 
 // Why nothing was swapped.
@@ -161,33 +209,32 @@ void printRefusal(const std::vector<Reloaded>& all) {
                  reloaded.answer.value("findings", Json::array()).size());
       return;
     }
-    if (outcome != "done" && outcome != "needs_restart") {
+    if (!reloaded.done()) {
       printError("merlin: {}: {}; nothing was changed\n", printable(file),
                  printable(reloaded.answer.value("failure", "no reason")));
       return;
     }
   }
-  const auto restart = together(all, "restart", itself);
-  printError(
-      "merlin: nothing was changed, since merlind takes {} only when it starts: systemctl restart "
-      "merlin.target\n",
-      restart.size() == 1 ? "this setting" : "these settings");
-  for (const std::string& setting : restart) printError("  {}\n", printable(setting));
 }
 
 // Findings as `merlind --check-config` prints them, also numbers that were adjusted.
-void print(const std::vector<Reloaded>& all, reload::Readers running) {
+void print(const std::vector<Reloaded>& all, reload::Readers running, const char* tense) {
   for (const std::string& finding : together(all, "findings", itself))
     printError("{}\n", printable(finding));
-  allDone(all) ? printDone(all, running) : printRefusal(all);
+  allDone(all) ? printDone(all, running, tense) : printRefusal(all);
 }
 
 int exitStatusOf(const std::vector<Reloaded>& all) {
-  const auto is = [&](const char* outcome) {
-    return std::ranges::any_of(all, [&](const Reloaded& r) { return r.outcome() == outcome; });
-  };
   if (allDone(all)) return kExitDone;
-  return is("invalid") || is("needs_restart") ? kExitBadInput : kExitFailed;
+  const bool invalid =
+      std::ranges::any_of(all, [](const Reloaded& r) { return r.outcome() == "invalid"; });
+  return invalid ? kExitBadInput : kExitFailed;
+}
+
+// Whether the process will be another instance, which is not to be found under its old name.
+bool renames(const std::vector<Reloaded>& all) {
+  const auto restart = restartSettings(all);
+  return std::ranges::find(restart, "/instance") != restart.end();
 }
 
 int reloadInstance(ReloadOptions options) {
@@ -200,8 +247,11 @@ int reloadInstance(ReloadOptions options) {
   if (!roles) return fail(roles.error());
   const auto all = reloadAll(options, processesOf(*roles));
   if (!all) return fail(all.error());
+  const bool awaits = options.pid == 0 && !options.check && !renames(*all);
+  if (const auto back = awaits ? awaitStarts(options.instance, *all) : Ok{}; !back)
+    return fail(back.error());
   if (!options.json) {
-    print(*all, readersOf(*roles));
+    print(*all, readersOf(*roles), options.check ? "would start" : awaits ? "started" : "starts");
     return exitStatusOf(*all);
   }
   Json processes = Json::array();
@@ -227,16 +277,16 @@ void addReload(Command app, Run& run) {
   Command command = app.subcommand(
       "reload",
       "Have merlind read its configuration again and swap what changed, without closing anything "
-      "else: bindings, devices, hand, postures, rate, playlist, speeds. All or nothing: if the "
-      "file is invalid, or if a setting changed that needs a restart, everything stays as it was. "
-      "Exit status: 0 done, 2 invalid or a restart is needed, 1 otherwise.\n"
+      "else: bindings, devices, hand, postures, rate, playlist, speeds. For other settings the "
+      "process that reads them starts again, in about a second. All or nothing: if the file is "
+      "invalid, everything stays as it was. Exit status: 0 done, 2 invalid, 1 otherwise.\n"
       "Example: merlin reload --check");
   addInstance(command, options->instance);
   command
       .option("--pid", options->pid,
               "The daemon of this process, instead of --instance (for systemd's ExecReload=)")
       .typeName("PID");
-  command.flag("--check", options->check, "Only say what would be swapped");
+  command.flag("--check", options->check, "Only say what would be swapped, or needs a start");
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return reloadInstance(*options); }; });
 }

@@ -268,7 +268,7 @@ def bad_reload(day):
     day.variant += 1
     variants = [{"postures": {"hold_s": "long"}}, {"wall": {"no_such_key": 1}},
                 {"bindings": [{"input": "posture.no-such", "action": "grab"}]},
-                {"wall": {"render": {"wireframe": True}}}]
+                {"wall": {"render": {"wireframe": "yes"}}}]
     reload(day, variants[day.variant % len(variants)], "bad reload", 2)
     day.wall.place.write(day.wall.place.config)  # a role that is started needs a good one
 

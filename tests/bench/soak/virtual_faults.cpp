@@ -134,7 +134,7 @@ void VirtualDay::reloadWell() {
 void VirtualDay::reloadBadly() {
   const json variants[] = {{{"postures", {{"hold_s", "long"}}}},
                            {{"wall", {{"no_such_key", 1}}}},
-                           {{"wall", {{"render", {{"wireframe", true}}}}}},
+                           {{"wall", {{"render", {{"wireframe", "yes"}}}}}},
                            {{"bindings", {{{"input", "posture.fist"}, {"action", "no_such"}}}}}};
   explain("bad reload", "service", "^configuration: failed", true);
   explain("bad reload", "service", "^configuration: works again", true);
@@ -158,7 +158,6 @@ bool VirtualDay::reload(const json& patch) {
   } else {
     answer.plan = reload::planFor(changesBetween(configured_, fresh.settings),
                                   reload::kDevices | reload::kWall);
-    if (!answer.plan.restart.empty()) answer.outcome = reload::Outcome::kRestart;
   }
   if (answer.outcome != reload::Outcome::kDone) {
     services_.failed("configuration", reload::refusal(answer));

@@ -1,0 +1,28 @@
+#include "daemon/role_signals.h"
+
+#include <csignal>
+#include <ctime>
+
+#include <systemd/sd-daemon.h>
+
+#include "daemon/base/log.h"
+
+namespace merlin {
+
+Asked askedBySignal(Duration wait, const std::function<bool()>& is_valid) {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
+  const timespec limit{0, wait.count()};
+  const int signal = ::sigtimedwait(&set, nullptr, &limit);
+  if (signal == SIGTERM || signal == SIGINT) return Asked::kStop;
+  return signal == SIGHUP && is_valid() ? Asked::kStartAgain : Asked::kNothing;
+}
+
+void tellEnd(Asked asked) {
+  const bool stops = asked != Asked::kStartAgain;
+  if (stops) ::sd_notify(0, "STOPPING=1");
+  logInfo("{}", stops ? "stopping" : "starting again");
+}
+
+}  // namespace merlin
