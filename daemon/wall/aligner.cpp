@@ -108,9 +108,10 @@ render::correct::CorrectionSettings Aligner::settingsOf(const Entry& entry,
       settings.corners[2 * place.corner() + 1] += by.y;
       continue;
     }
+    const auto columns = static_cast<std::size_t>(settings.mesh.columns);
     render::correct::MeshPoint& point =
-        settings.mesh
-            .points[static_cast<std::size_t>(place.row * settings.mesh.columns + place.column)];
+        settings.mesh.points[static_cast<std::size_t>(place.row) * columns +
+                             static_cast<std::size_t>(place.column)];
     point.x += by.x / entry.output.width;
     point.y += by.y / entry.output.height;
   }

@@ -178,7 +178,7 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
 
 TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
   EXPECT_EQ(undescribed(wallFields(), offsetof(WallSegment, fields)),
-            (Runs{"segment.command_endpoint 40", "wall.cost_unit 24", "trace.wake 4",
+            (Runs{"segment.command_endpoint 40", "wall.least_cost 20", "trace.wake 4",
                   "trace.step.tile's ring 56", "interaction.light 4", "outputs.count 4",
                   "outputs.picture_fault 48", "content.refused 24", "idle.testcard 32",
                   "panel.by_ball 28", "notice.text 24"}));
