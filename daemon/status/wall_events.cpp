@@ -15,29 +15,30 @@ std::vector<Event> WallEvents::take() {
   std::vector<Event> events;
   const auto s = segment_.stats.read();
   if (!s) return events;
+  // That detail or rate gives way is no fault: the wall does what it is made for.
   if (const auto was = std::exchange(operator_coarser_, s->operator_coarser);
       was != operator_coarser_) {
     events.push_back(operator_coarser_ != 0
-                         ? faultEvent("the operator's view is coarser: there is too little time")
+                         ? newsEvent("the operator's view is coarser: there is too little time")
                          : newsEvent("the operator's view is as fine as the wall again"));
   }
   if (const auto was = std::exchange(scale_, s->scale_divisor); was != scale_) {
     events.push_back(
-        scale_ > 1
-            ? faultEvent("tiles at half size while moving: even the coarsest level of detail "
-                         "takes too long")
-            : newsEvent("tiles at full size again: the coarsest level of detail is fast "
-                        "enough"));
+        scale_ > 1 ? newsEvent("tiles at half size while moving: even the coarsest level of detail "
+                               "takes too long")
+                   : newsEvent("tiles at full size again: the coarsest level of detail is fast "
+                               "enough"));
   }
   if (const auto was = std::exchange(divisor_, s->rate_divisor); was != divisor_) {
+    const float rate_hz = s->rate_asked_hz / static_cast<float>(std::max(divisor_, 1U));
     events.push_back(
         was < divisor_
-            ? faultEvent(fmt::format("frame rate reduced to {:.3g} of {:.3g} Hz: even the coarsest "
-                                     "level of detail takes too long",
-                                     s->rate_now_hz, s->rate_asked_hz))
+            ? newsEvent(fmt::format("frame rate reduced to {:.3g} of {:.3g} Hz: even the coarsest "
+                                    "level of detail takes too long",
+                                    rate_hz, s->rate_asked_hz))
             : newsEvent(fmt::format("frame rate raised to {:.3g} of {:.3g} Hz: the coarsest level "
                                     "of detail is fast enough",
-                                    s->rate_now_hz, s->rate_asked_hz)));
+                                    rate_hz, s->rate_asked_hz)));
   }
   if (const auto was = std::exchange(held_, s->held_cost); was != held_) {
     events.push_back(newsEvent(held_ != 0 ? fmt::format("{} {} while moving, set by hand", held_,

@@ -34,22 +34,17 @@ TEST_F(WallEventsTest, TellEachStepDownAndUpOnce) {
   EXPECT_EQ(told(events_.take()), Sentences{});
   EXPECT_EQ(after(stats_), Sentences{});
   stats_.operator_coarser = 1;
-  EXPECT_EQ(after(stats_),
-            Sentences{"fault: the operator's view is coarser: there is too little time"});
+  EXPECT_EQ(after(stats_), Sentences{"the operator's view is coarser: there is too little time"});
   EXPECT_EQ(after(stats_), Sentences{});
   stats_.scale_divisor = 2;
-  EXPECT_EQ(after(stats_),
-            Sentences{"fault: tiles at half size while moving: even the coarsest level of "
-                      "detail takes too long"});
+  EXPECT_EQ(after(stats_), Sentences{"tiles at half size while moving: even the coarsest level of "
+                                     "detail takes too long"});
   stats_.rate_divisor = 2;
-  stats_.rate_now_hz = 15;
   EXPECT_EQ(
       after(stats_),
-      Sentences{
-          "fault: frame rate reduced to 15 of 30 Hz: even the coarsest level of detail takes too "
-          "long"});
+      Sentences{"frame rate reduced to 15 of 30 Hz: even the coarsest level of detail takes too "
+                "long"});
   stats_.rate_divisor = 1;
-  stats_.rate_now_hz = 30;
   stats_.operator_coarser = 0;
   EXPECT_EQ(after(stats_), (Sentences{"the operator's view is as fine as the wall again",
                                       "frame rate raised to 30 of 30 Hz: the coarsest level of "
