@@ -246,7 +246,8 @@ class Package(unittest.TestCase):
         starts = lambda: int(MACHINE.run("journalctl -u merlin-wall -o cat --no-pager | grep -c ready"))
         before, count, devices = pid("merlin-wall"), starts(), pid("merlin-devices")
         MACHINE.run("mkdir -p /etc/merlin/conf.d; echo '{\"wall\": {\"snapshots_kept\": 999}}' "
-                    ">/etc/merlin/conf.d/90-test.json; systemctl reload merlin-devices merlin-wall")
+                    ">/etc/merlin/conf.d/90-test.json; systemctl reload merlin-devices merlin-wall || "
+                    "{ journalctl -u 'merlin-*' --no-pager | tail -n 30; false; }")
         least, _ = shown_until(lambda: starts() > count)
         self.assertGreater(least, 0.03, "a display was dark")
         self.assertEqual([pid("merlin-wall"), pid("merlin-devices"), state("merlin-wall")], [before, devices, "active"])
