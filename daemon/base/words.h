@@ -26,6 +26,12 @@ inline std::string_view takeWord(std::string_view& text, std::string_view blanks
   return word;
 }
 
+inline std::size_t wordsIn(std::string_view text, std::string_view blanks = kBlanks) {
+  std::size_t words = 0;
+  while (!takeWord(text, blanks).empty()) ++words;
+  return words;
+}
+
 // `text` without leading and trailing blanks. Blanks inside stay: file names may contain them.
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = kBlanks) {
   text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));

@@ -29,9 +29,9 @@ std::string lowered(const char* text) {
 }
 
 std::string textOf(const AxisSource& source) {
-  if (source.code < 0) return "none";
+  if (source.axis < 0) return "none";
   std::string text(source.reversed ? "-" : "");
-  text += axisName(source.code);
+  text += axisName(source.axis);
   if (source.minus >= 0) text += fmt::format("-{}", axisName(source.minus));
   return text;
 }
@@ -141,13 +141,13 @@ std::string InputDevice::chooseAxes(const std::vector<std::string>& names) {
   sources_ = usualSources();
   if (names.empty()) {
     for (AxisSource& source : sources_) {
-      if (!has(source.code)) source = {};
+      if (!has(source.axis)) source = {};
     }
     return {};
   }
   for (std::size_t i = 0; i < std::min(names.size(), sources_.size()); ++i) {
-    sources_[i] = parseAxisSource(names[i]).value_or(AxisSource{});
-    for (const int code : {sources_[i].code, sources_[i].minus}) {
+    sources_[i] = parseAxisSource(names[i], axisNumber).value_or(AxisSource{});
+    for (const int code : {sources_[i].axis, sources_[i].minus}) {
       if (code >= 0 && !has(code))
         return fmt::format("it has no axis {}, which the configuration names", axisName(code));
     }
@@ -188,9 +188,9 @@ float InputDevice::oneSided(int code) const noexcept {
 }
 
 float InputDevice::deflection(const AxisSource& source) const noexcept {
-  if (!has(source.code)) return 0;
-  if (has(source.minus)) return oneSided(source.code) - oneSided(source.minus);
-  return source.reversed ? -centred(source.code) : centred(source.code);
+  if (!has(source.axis)) return 0;
+  if (has(source.minus)) return oneSided(source.axis) - oneSided(source.minus);
+  return source.reversed ? -centred(source.axis) : centred(source.axis);
 }
 
 void InputDevice::fill(BallSample& sample) const noexcept {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
-#include "drivers/evdev/axis_source.h"
+#include "drivers/evdev/axis_names.h"
 #include "drivers/evdev/settings.h"
 #include "drivers/port/evdev_line.h"
 #include "drivers/port/samples.h"

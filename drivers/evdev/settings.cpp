@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "drivers/evdev/axis_source.h"
+#include "drivers/evdev/axis_names.h"
 
 namespace merlin {
 namespace {
 
-constexpr std::size_t kAxes = 6, kButtons = 12;
+constexpr std::size_t kButtons = 12;
 
 void checkPort(const LineSettings& line, SettingFaults& faults) {
   const auto port = parsePort(line.port);
@@ -20,20 +20,6 @@ void checkPort(const LineSettings& line, SettingFaults& faults) {
                                          "\"evdev\" needs evdev:/dev/input/..., which `merlin "
                                          "devices` prints",
                                          line.port)});
-}
-
-void checkAxes(const EvdevSettings& settings, SettingFaults& faults) {
-  if (!settings.axes.empty() && settings.axes.size() != kAxes) {
-    faults.push_back(
-        {"/evdev/axes", fmt::format("has {} texts; it needs {}, for x, y, z and the rotations "
-                                    "about them, or none",
-                                    settings.axes.size(), kAxes)});
-  }
-  for (std::size_t i = 0; i < settings.axes.size(); ++i) {
-    if (evdev::parseAxisSource(settings.axes[i])) continue;
-    faults.push_back({fmt::format("/evdev/axes/{}", i),
-                      fmt::format("is \"{}\"; allowed are {}", settings.axes[i], kAxisForms)});
-  }
 }
 
 void checkButtons(const EvdevSettings& settings, SettingFaults& faults) {
@@ -55,7 +41,7 @@ void checkButtons(const EvdevSettings& settings, SettingFaults& faults) {
 SettingFaults validate(const EvdevSettings& settings, const LineSettings& line) {
   SettingFaults faults;
   checkPort(line, faults);
-  checkAxes(settings, faults);
+  checkAxisSources(settings.axes, evdev::axisNumber, "/evdev/axes", kAxisForms, faults);
   checkButtons(settings, faults);
   return faults;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/port/axes.h"
+#include "drivers/vrpn/numbers.h"
 
 namespace merlin::vrpn {
 
@@ -12,8 +13,9 @@ PadInput::PadInput(const VrpnPadSettings& s)
       dead_zone_(static_cast<float>(s.dead_zone)),
       curve_(static_cast<float>(s.curve)) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    sources_[i].channel = static_cast<int>(i);
-    if (i < s.axes.size()) sources_[i] = parseChannelSource(s.axes[i]).value_or(ChannelSource{});
+    sources_[i].axis = static_cast<int>(i);
+    if (i < s.axes.size())
+      sources_[i] = parseAxisSource(s.axes[i], channelNumber).value_or(AxisSource{});
   }
   for (std::size_t i = 0; i < kButtons; ++i) {
     buttons_[i] = s.buttons.empty() ? static_cast<int>(i) : -1;
@@ -33,8 +35,8 @@ float PadInput::deflection(int channel) const noexcept {
   return static_cast<float>(std::clamp(share, -1.0, 1.0));
 }
 
-float PadInput::deflection(const ChannelSource& source) const noexcept {
-  const float pushed = deflection(source.channel);
+float PadInput::deflection(const AxisSource& source) const noexcept {
+  const float pushed = deflection(source.axis);
   if (source.minus < 0) return source.reversed ? -pushed : pushed;
   return std::clamp(pushed - deflection(source.minus), -1.0F, 1.0F);
 }
@@ -42,7 +44,7 @@ float PadInput::deflection(const ChannelSource& source) const noexcept {
 void PadInput::fill(BallSample& sample) const noexcept {
   std::array<float, 6> deflections{};
   std::ranges::transform(sources_, deflections.begin(),
-                         [&](const ChannelSource& source) { return deflection(source); });
+                         [&](const AxisSource& source) { return deflection(source); });
   fillAxes(deflections, dead_zone_, curve_, sample);
   sample.buttons = 0;
   for (std::size_t i = 0; i < kButtons; ++i) {

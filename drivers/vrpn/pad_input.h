@@ -4,9 +4,9 @@
 #include <array>
 #include <bitset>
 
+#include "drivers/port/axis_source.h"
 #include "drivers/port/samples.h"
 #include "drivers/port/vrpn_line.h"
-#include "drivers/vrpn/channel_source.h"
 #include "drivers/vrpn/pad_settings.h"
 
 namespace merlin::vrpn {
@@ -30,9 +30,9 @@ class PadInput {
   static constexpr std::size_t kButtons = 12;
 
   float deflection(int channel) const noexcept;
-  float deflection(const ChannelSource& source) const noexcept;
+  float deflection(const AxisSource& source) const noexcept;
 
-  ChannelSources sources_{};
+  AxisSources sources_{};
   std::array<int, kButtons> buttons_{};  // the server's numbers; -1: none
   double rest_, full_;
   float dead_zone_, curve_;

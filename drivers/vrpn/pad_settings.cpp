@@ -4,28 +4,15 @@
 
 #include <fmt/format.h>
 
+#include "drivers/port/axis_source.h"
 #include "drivers/port/vrpn_line.h"
-#include "drivers/vrpn/channel_source.h"
+#include "drivers/vrpn/numbers.h"
 #include "drivers/vrpn/server_checks.h"
 
 namespace merlin {
 namespace {
 
-constexpr std::size_t kAxes = 6, kButtons = 12;
-
-void checkAxes(const VrpnPadSettings& settings, SettingFaults& faults) {
-  if (!settings.axes.empty() && settings.axes.size() != kAxes) {
-    faults.push_back(
-        {"/vrpn_pad/axes", fmt::format("has {} texts; it needs {}, for x, y, z and the rotations "
-                                       "about them, or none",
-                                       settings.axes.size(), kAxes)});
-  }
-  for (std::size_t i = 0; i < settings.axes.size(); ++i) {
-    if (vrpn::parseChannelSource(settings.axes[i])) continue;
-    faults.push_back({fmt::format("/vrpn_pad/axes/{}", i),
-                      fmt::format("is \"{}\"; allowed are {}", settings.axes[i], kChannelForms)});
-  }
-}
+constexpr std::size_t kButtons = 12;
 
 void checkButtons(const VrpnPadSettings& settings, SettingFaults& faults) {
   if (settings.buttons.size() > kButtons) {
@@ -52,7 +39,7 @@ SettingFaults validate(const VrpnPadSettings& settings, const LineSettings& line
   SettingFaults faults;
   vrpn::checkPort(line, "vrpn_pad", faults);
   vrpn::checkName(settings.device, "/vrpn_pad/device", faults);
-  checkAxes(settings, faults);
+  checkAxisSources(settings.axes, vrpn::channelNumber, "/vrpn_pad/axes", kChannelForms, faults);
   checkButtons(settings, faults);
   if (settings.rest == settings.full) {
     faults.push_back(

@@ -129,6 +129,14 @@ class RunPart : public testing::Test {
   ~RunPart() override { ::sigprocmask(SIG_SETMASK, &mask_, nullptr); }
   RunPart(const RunPart&) = delete;
   RunPart& operator=(const RunPart&) = delete;
+  // What the report has of the configuration merlin.json of the folder.
+  std::vector<PackedFile> configurationFiles(const TempDir& dir) {
+    const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
+                                "merlin-report-none", dir.path()};
+    auto result = runPart(reportParts(subject)[0].settings, stop_.get(), mask_);
+    EXPECT_TRUE(result);
+    return result ? std::move(result->files) : std::vector<PackedFile>();
+  }
   // Runs a part that never ends until it has written its file, however busy the machine is.
   PartResult runEnded(const std::function<void(PartFolder&)>& collect) {
     for (Duration limit = milliseconds(100); limit < seconds(100); limit *= 2) {
@@ -188,18 +196,14 @@ TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
   writeText(dir / "merlin.json",
             R"({"projectors": [{"name": "left", "address": "h", "password_file": "pw"}],
                 "serve": {"samples_keys": "kk"}})");
-  const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
-                              "merlin-report-none", dir.path()};
-  const ReportPart configuration = reportParts(subject)[0];
-  const auto result = runPart(configuration.settings, stop_.get(), mask_);
-  ASSERT_TRUE(result);
-  ASSERT_EQ(result->files.size(), 3u);
-  for (const PackedFile& file : result->files) {
+  const std::vector<PackedFile> files = configurationFiles(dir);
+  ASSERT_EQ(files.size(), 3u);
+  for (const PackedFile& file : files) {
     EXPECT_EQ(file.content.find(dir / "pw"), std::string::npos) << file.name;
     EXPECT_EQ(file.content.find(dir / "kk"), std::string::npos) << file.name;
   }
-  EXPECT_NE(result->files[2].content.find("\"password_file\": \"(left out)\""), std::string::npos)
-      << result->files[2].name;
+  EXPECT_NE(files[2].content.find("\"password_file\": \"(left out)\""), std::string::npos)
+      << files[2].name;
 }
 
 // The arguments of an alarm's program may be tokens, also where they stand in the program's place.
@@ -208,14 +212,10 @@ TEST_F(RunPart, TheConfigurationLacksArgumentsOfAlarms) {
   writeText(dir / "merlin.json",
             R"({"alarms": [{"run": ["/usr/bin/tell", "--token", "t0ken-of-the-lab"]},
                            {"run": ["/usr/bin/curl https://chat/hook-of-the-lab"]}]})");
-  const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
-                              "merlin-report-none", dir.path()};
-  const ReportPart configuration = reportParts(subject)[0];
-  const auto result = runPart(configuration.settings, stop_.get(), mask_);
-  ASSERT_TRUE(result);
-  ASSERT_EQ(result->files.size(), 3u);
+  const std::vector<PackedFile> files = configurationFiles(dir);
+  ASSERT_EQ(files.size(), 3u);
   std::string all;
-  for (const PackedFile& file : result->files) all += file.content;
+  for (const PackedFile& file : files) all += file.content;
   EXPECT_EQ(all.find("of-the-lab"), std::string::npos) << all;
   EXPECT_EQ(all.find("--token"), std::string::npos) << all;
   EXPECT_NE(all.find("/usr/bin/tell"), std::string::npos) << all;

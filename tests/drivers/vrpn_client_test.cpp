@@ -11,6 +11,7 @@
 #include "tests/support/fake_clock.h"
 #include "tests/support/fake_stream.h"
 #include "tests/support/recording_sink.h"
+#include "tests/support/vrpn_messages.h"
 
 namespace merlin::vrpn {
 namespace {
@@ -18,20 +19,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-std::string message(std::int32_t sender, std::int32_t type, std::string_view payload) {
-  VrpnHeader header;
-  header.sender = sender;
-  header.type = type;
-  std::string bytes;
-  appendVrpn(header, payload, bytes);
-  return bytes;
-}
-std::string sender(std::int32_t number, std::string_view name) {
-  return message(number, kVrpnDescribeSender, vrpnName(name));
-}
-std::string type(std::int32_t number, std::string_view name) {
-  return message(number, kVrpnDescribeType, vrpnName(name));
-}
+constexpr auto& message = test::vrpnMessage;
+constexpr auto& sender = test::vrpnSender;
+constexpr auto& type = test::vrpnType;
 
 // The numbers that the servers of these tests use.
 constexpr std::int32_t kOther = 4, kTracker = 7, kPoseNumber = 11, kPongNumber = 12;

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "drivers/port/plausible.h"
+#include "drivers/vrpn/numbers.h"
 #include "drivers/vrpn/pad_device.h"
 #include "tests/support/count_allocations.h"
 #include "tests/support/fake_clock.h"
 #include "tests/support/fake_stream.h"
 #include "tests/support/recording_sink.h"
+#include "tests/support/vrpn_messages.h"
 
 namespace merlin::vrpn {
 namespace {
@@ -17,29 +19,17 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-std::string message(std::int32_t sender, std::int32_t type, std::string_view payload) {
-  VrpnHeader header;
-  header.sender = sender;
-  header.type = type;
-  std::string bytes;
-  appendVrpn(header, payload, bytes);
-  return bytes;
-}
+constexpr auto& message = test::vrpnMessage;
 
 // The numbers that the server of these tests uses.
 constexpr std::int32_t kOther = 4, kStick = 7, kChange = 11, kStates = 12, kChannels = 13,
                        kPong = 14;
 
 std::string descriptions() {
-  const auto sender = [](std::int32_t number, std::string_view name) {
-    return message(number, kVrpnDescribeSender, vrpnName(name));
-  };
-  const auto type = [](std::int32_t number, std::string_view name) {
-    return message(number, kVrpnDescribeType, vrpnName(name));
-  };
-  return sender(0, kVrpnControl) + sender(kOther, "Wand") + sender(kStick, "Joystick0") +
-         type(kChange, kVrpnButtonType) + type(kStates, kVrpnButtonsType) +
-         type(kChannels, kVrpnChannelsType) + type(kPong, kVrpnPong);
+  return test::vrpnSender(0, kVrpnControl) + test::vrpnSender(kOther, "Wand") +
+         test::vrpnSender(kStick, "Joystick0") + test::vrpnType(kChange, kVrpnButtonType) +
+         test::vrpnType(kStates, kVrpnButtonsType) + test::vrpnType(kChannels, kVrpnChannelsType) +
+         test::vrpnType(kPong, kVrpnPong);
 }
 std::string button(std::int32_t number, bool down, std::int32_t sender = kStick) {
   return message(sender, kChange, vrpnButton(number, down));
@@ -104,13 +94,14 @@ TEST(VrpnButtons, NoMoreThanVrpnHasAndNoNumberThatIsNone) {
 }
 
 TEST(ChannelSources, AreNumbersReversedOnesPairsAndNone) {
-  EXPECT_EQ(parseChannelSource("5"), (ChannelSource{5, -1, false}));
-  EXPECT_EQ(parseChannelSource("-0"), (ChannelSource{0, -1, true}));
-  EXPECT_EQ(parseChannelSource("4-127"), (ChannelSource{4, 127, false}));
-  EXPECT_EQ(parseChannelSource("none"), ChannelSource{});
+  const auto parse = [](const char* text) { return parseAxisSource(text, channelNumber); };
+  EXPECT_EQ(parse("5"), (AxisSource{5, -1, false}));
+  EXPECT_EQ(parse("-0"), (AxisSource{0, -1, true}));
+  EXPECT_EQ(parse("4-127"), (AxisSource{4, 127, false}));
+  EXPECT_EQ(parse("none"), AxisSource{});
   for (const char* bad :
        {"", "-", "x", "128", "--1", "1-", "1-1", "-1-2", "1-2-3", "+1", " 1", "1.5", "99999999999"})
-    EXPECT_FALSE(parseChannelSource(bad)) << bad;
+    EXPECT_FALSE(parse(bad)) << bad;
 }
 
 TEST(PadInput, ChannelsAreAxesAndButtonsAreButtonsUnlessTheConfigurationSaysOtherwise) {

@@ -24,17 +24,24 @@ using nlohmann::json;
 
 constexpr unsigned kNobody = 65534;  // the user to which under_unit changes from root
 
-int freePort() {
-  const UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const raw = reinterpret_cast<sockaddr*>(&address);
-  if (::bind(fd.get(), raw, sizeof address) != 0 || ::getsockname(fd.get(), raw, &size) != 0)
-    return 0;
-  return ntohs(address.sin_port);
-}
+// A socket at a free port of this machine alone.
+struct LocalSocket {
+  UniqueFd fd{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  int port = 0;  // 0: there is none
+
+  LocalSocket() {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* const raw = reinterpret_cast<sockaddr*>(&address);
+    if (::bind(fd.get(), raw, sizeof address) != 0 || ::getsockname(fd.get(), raw, &size) != 0)
+      return;
+    port = ntohs(address.sin_port);
+  }
+};
+
+int freePort() { return LocalSocket().port; }
 
 // Not valid if nobody listens.
 UniqueFd connected(int port) {
@@ -367,20 +374,14 @@ TEST_F(InstalledAlarms, TheProgramOfTheDocumentReachesAServerUnderTheUnit) {
   const std::string document = readText(kSource + "/daemon/alarms/README.md");
   const auto lines = namedIn(document, "    (exec curl [^\n]+) https://");
   ASSERT_EQ(lines.size(), 1u);
-  const UniqueFd server(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const raw = reinterpret_cast<sockaddr*>(&address);
-  ASSERT_EQ(::bind(server.get(), raw, size), 0);
-  ASSERT_EQ(::listen(server.get(), 4), 0);
-  ASSERT_EQ(::getsockname(server.get(), raw, &size), 0);
-  startWith("#!/bin/sh\n" + *lines.begin() +
-            " http://localhost:" + std::to_string(ntohs(address.sin_port)) + "/wall\n");
+  const LocalSocket server;
+  ASSERT_GT(server.port, 0);
+  ASSERT_EQ(::listen(server.fd.get(), 4), 0);
+  startWith("#!/bin/sh\n" + *lines.begin() + " http://localhost:" + std::to_string(server.port) +
+            "/wall\n");
   const timeval patience{60, 0};
-  ASSERT_EQ(::setsockopt(server.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience), 0);
-  const UniqueFd client(::accept(server.get(), nullptr, nullptr));
+  ASSERT_EQ(::setsockopt(server.fd.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience), 0);
+  const UniqueFd client(::accept(server.fd.get(), nullptr, nullptr));
   ASSERT_TRUE(client.valid()) << alarms_->output();
   std::string request;
   char buffer[4096];

@@ -69,13 +69,32 @@ std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
   return out;
 }
 
+// The other end of a touch frame's line.
+class FrameLine {
+ public:
+  explicit FrameLine(const std::string& link) : line_(io::PtyMaster::open(link)) {
+    EXPECT_TRUE(line_);
+  }
+  void say(const std::string& bytes) const {
+    (void)!::write(line_->fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
+  }
+  // Says the description until the device of merlind works.
+  bool opens(Merlind& merlind, const std::string& device, const std::string& description) const {
+    return eventually([&] {
+      say(description);
+      const auto health = merlind.health(device);
+      return health && health->state == HealthState::kOk;
+    });
+  }
+
+ private:
+  Result<io::PtyMaster> line_;
+};
+
 TEST(TouchSystem, AFrameOfTheKernelTouches) {
   const TempDir dir;
-  const auto line = io::PtyMaster::open(dir / "frame");
-  ASSERT_TRUE(line);
-  const auto say = [&](const std::string& bytes) {
-    (void)!::write(line->fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
-  };
+  const FrameLine line(dir / "frame");
+  const auto say = [&](const std::string& bytes) { line.say(bytes); };
   std::string description;
   for (const auto& [code, high] : {std::pair{ABS_MT_SLOT, 9},
                                    {ABS_MT_TRACKING_ID, 65535},
@@ -85,11 +104,7 @@ TEST(TouchSystem, AFrameOfTheKernelTouches) {
   description += record(EvdevRecord::kReady);
   Merlind merlind(dir, "", "frame",
                   devicesAlone(deviceEntry("frame", "touch", "pty:" + dir / "frame")));
-  EXPECT_TRUE(eventually([&] {
-    say(description);
-    const auto health = merlind.health("frame");
-    return health && health->state == HealthState::kOk;
-  })) << merlind.process().output();
+  EXPECT_TRUE(line.opens(merlind, "frame", description)) << merlind.process().output();
   const auto moved = [](int code, int value) { return record(EvdevRecord::kMoved, code, value); };
   say(moved(ABS_MT_SLOT, 0) + moved(ABS_MT_TRACKING_ID, 1) + moved(ABS_MT_POSITION_X, 250) +
       moved(ABS_MT_POSITION_Y, 250) + moved(ABS_MT_SLOT, 1) + moved(ABS_MT_TRACKING_ID, 2) +
@@ -103,11 +118,8 @@ TEST(TouchSystem, AFrameOfTheKernelTouches) {
 
 TEST(TouchSystem, FingersThatMoveTogetherAreAnInput) {
   const TempDir dir;
-  const auto line = io::PtyMaster::open(dir / "frame");
-  ASSERT_TRUE(line);
-  const auto say = [&](const std::string& bytes) {
-    (void)!::write(line->fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
-  };
+  const FrameLine line(dir / "frame");
+  const auto say = [&](const std::string& bytes) { line.say(bytes); };
   std::string description;
   for (const int code : {ABS_MT_SLOT, ABS_MT_TRACKING_ID, ABS_MT_POSITION_X, ABS_MT_POSITION_Y})
     description += record(EvdevRecord::kAxis, code, 0, code == ABS_MT_SLOT ? 9 : 1000);
@@ -116,11 +128,7 @@ TEST(TouchSystem, FingersThatMoveTogetherAreAnInput) {
   options.also["bindings"] = {{{"input", "touch.pinch"}, {"action", "reset_view"}},
                               {{"input", "touch.spread"}, {"action", "next_mode"}}};
   Merlind merlind(dir, "", "pinch", options);
-  EXPECT_TRUE(eventually([&] {
-    say(description);
-    const auto health = merlind.health("touch");
-    return health && health->state == HealthState::kOk;
-  })) << merlind.process().output();
+  EXPECT_TRUE(line.opens(merlind, "touch", description)) << merlind.process().output();
   const auto finger = [](int slot, int id, int x) {
     return record(EvdevRecord::kMoved, ABS_MT_SLOT, slot) +
            record(EvdevRecord::kMoved, ABS_MT_TRACKING_ID, id) +

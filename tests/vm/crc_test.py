@@ -5,10 +5,7 @@ The display is the kernel's vkms, which has vertical blanks at 60 Hz and a CRC o
 scans out (debugfs). The CRC of what `merlin snapshot --output` says can be computed here, so that it
 judges the displays and the wall's own check of them without using anything of either.
 """
-import argparse
-import os
 import re
-import sys
 import unittest
 import zlib
 
@@ -27,11 +24,7 @@ FRAMES = 10  # of which the CRCs of a still picture are compared
 
 def setUpModule():
     global CONNECTOR
-    try:
-        vkms = modules.build(wall.OPTIONS.work, modules.VKMS)
-    except vm.Missing as missing:
-        print(f"test-vm: the test of CRCs is skipped: {missing}")
-        raise unittest.SkipTest(str(missing)) from missing
+    vkms = modules.build_or_skip(wall.OPTIONS.work, modules.VKMS, "the test of CRCs")
     wall.setUpModule((vkms,))
     wall.MACHINE.run("mount -t debugfs debugfs /sys/kernel/debug")
     CONNECTOR = wall.MACHINE.run("ls -d /sys/class/drm/card1-Virtual-*").strip().split("/card1-")[1]
@@ -106,9 +99,5 @@ class Crc(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("--bin", required=True, help="folder of the programs")
-    arguments.add_argument("--work", required=True, help="folder for the machine's files")
-    wall.OPTIONS, rest = arguments.parse_known_args()
-    wall.OPTIONS.bin, wall.OPTIONS.work = os.path.abspath(wall.OPTIONS.bin), os.path.abspath(wall.OPTIONS.work)
-    unittest.main(argv=[sys.argv[0], "-v", *rest], failfast=True)
+    wall.OPTIONS, argv = vm.arguments()
+    unittest.main(argv=argv, failfast=True)

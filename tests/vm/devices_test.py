@@ -5,11 +5,9 @@ Two serial ports and a serial adapter on USB, whose other ends are the emulators
 libserialport's way is taken; a gamepad, a touch frame and a mouse made by uinput, so that libevdev's way is. Judges health, values
 and the order of events; no rates and no latencies, since the machine is emulated.
 """
-import argparse
 import json
 import os
 import subprocess
-import sys
 import unittest
 
 import vm
@@ -217,9 +215,5 @@ class Devices(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("--bin", required=True, help="folder of the programs")
-    arguments.add_argument("--work", required=True, help="folder for the machine's files")
-    OPTIONS, rest = arguments.parse_known_args()
-    OPTIONS.bin, OPTIONS.work = os.path.abspath(OPTIONS.bin), os.path.abspath(OPTIONS.work)
-    unittest.main(argv=[sys.argv[0], "-v", *rest], failfast=True)
+    OPTIONS, argv = vm.arguments()
+    unittest.main(argv=argv, failfast=True)

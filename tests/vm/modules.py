@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import unittest
 
 import vm
 
@@ -99,6 +100,15 @@ def add_interrupts(folder):
     # irq_to_desc() is not for modules; generic_handle_irq() calls the handler that irq_sim.c itself has set.
     with open(f"{folder}/irq_sim.c", "w", encoding="utf-8") as file:
         file.write(text.replace("handle_simple_irq(irq_to_desc(irqnum))", "generic_handle_irq(irqnum)"))
+
+
+def build_or_skip(work, name, what):
+    """The same for a test's module; where it cannot be built, `what` is skipped with the reason."""
+    try:
+        return build(work, name)
+    except vm.Missing as missing:
+        print(f"test-vm: {what} is skipped: {missing}")
+        raise unittest.SkipTest(str(missing)) from missing
 
 
 if __name__ == "__main__":

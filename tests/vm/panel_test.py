@@ -5,10 +5,7 @@ The chip is the kernel's simulator gpio-sim, so that libgpiod's way is taken: wh
 read from the simulator, and the button is pressed there. A tracker on a serial line has to go on all
 the time.
 """
-import argparse
 import json
-import os
-import sys
 import unittest
 
 import devices_test as devices
@@ -61,11 +58,7 @@ class Chip:
 
 def setUpModule():
     global CHIP
-    try:
-        simulator = modules.build(devices.OPTIONS.work, modules.GPIO_SIM)
-    except vm.Missing as missing:
-        print(f"test-vm: the control panel is skipped: {missing}")
-        raise unittest.SkipTest(str(missing)) from missing
+    simulator = modules.build_or_skip(devices.OPTIONS.work, modules.GPIO_SIM, "the control panel")
     devices.setUpModule((simulator,))
     CHIP = Chip()
 
@@ -208,10 +201,5 @@ class Panel(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("--bin", required=True, help="folder of the programs")
-    arguments.add_argument("--work", required=True, help="folder for the machine's files")
-    devices.OPTIONS, rest = arguments.parse_known_args()
-    devices.OPTIONS.bin = os.path.abspath(devices.OPTIONS.bin)
-    devices.OPTIONS.work = os.path.abspath(devices.OPTIONS.work)
-    unittest.main(argv=[sys.argv[0], "-v", *rest], failfast=True)
+    devices.OPTIONS, argv = vm.arguments()
+    unittest.main(argv=argv, failfast=True)

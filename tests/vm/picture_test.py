@@ -4,13 +4,12 @@
 spoil_display changes what a display shows while the wall stays DRM master and nothing moves. The
 wall has to find it, say it, put its picture back and say that, too.
 """
-import argparse
-import os
 import subprocess
 import sys
 import time
 import unittest
 
+import vm
 import wall_test as wall
 from vm import until
 
@@ -133,9 +132,5 @@ class Picture(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("--bin", required=True, help="folder of the programs")
-    arguments.add_argument("--work", required=True, help="folder for the machine's files")
-    wall.OPTIONS, rest = arguments.parse_known_args()
-    wall.OPTIONS.bin, wall.OPTIONS.work = os.path.abspath(wall.OPTIONS.bin), os.path.abspath(wall.OPTIONS.work)
-    unittest.main(argv=[sys.argv[0], "-v", *rest], failfast=True)
+    wall.OPTIONS, argv = vm.arguments()
+    unittest.main(argv=argv, failfast=True)

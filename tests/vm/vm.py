@@ -6,6 +6,7 @@ Vm starts QEMU without KVM (the emulator is slower, but the same everywhere), an
   screendump(head)  what display `head`, counted from 0, shows
 Nothing here sleeps: each call waits for bytes, up to a deadline, and then fails with what it saw.
 """
+import argparse
 import glob
 import json
 import os
@@ -14,6 +15,7 @@ import selectors
 import shutil
 import socket
 import subprocess
+import sys
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -24,6 +26,16 @@ MODULES = ("virtio_pci", "virtio_console", "virtio-gpu", "9pnet_virtio", "9p")
 
 class Missing(Exception):
     """What a virtual machine needs cannot be had here."""
+
+
+def arguments():
+    """The folders that a test program's command line names, and the arguments for unittest."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--bin", required=True, help="folder of the programs")
+    parser.add_argument("--work", required=True, help="folder for the machine's files")
+    options, rest = parser.parse_known_args()
+    options.bin, options.work = os.path.abspath(options.bin), os.path.abspath(options.work)
+    return options, [sys.argv[0], "-v", *rest]
 
 
 def fetch(packages, folder):

@@ -4,7 +4,6 @@
 Judges pictures, health and the order of events; no rates and no latencies, since the machine is
 emulated. Each test leaves the wall running with all four displays lit.
 """
-import argparse
 import json
 import os
 import subprocess
@@ -240,9 +239,5 @@ class Wall(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("--bin", required=True, help="folder of the programs")
-    arguments.add_argument("--work", required=True, help="folder for the machine's files")
-    OPTIONS, rest = arguments.parse_known_args()
-    OPTIONS.bin, OPTIONS.work = os.path.abspath(OPTIONS.bin), os.path.abspath(OPTIONS.work)
-    unittest.main(argv=[sys.argv[0], "-v", *rest], failfast=True)
+    OPTIONS, argv = vm.arguments()
+    unittest.main(argv=argv, failfast=True)

@@ -14,12 +14,12 @@
 namespace merlin::render::mesh {
 
 struct MeshReader {
-  const char* ending;  // in lower case, without the dot
-  const char* help;    // what is read, for the user
+  const char* ending = nullptr;  // in lower case, without the dot
+  const char* help = nullptr;    // what is read, for the user
   // Parses a whole file. `folder`: the file's folder with a trailing slash, in which companion
   // files are looked for. The mesh need not be valid or tidy. Errors: kMalformed, kUnsupported,
   // without the file's name.
-  Result<LoadedMesh> (*read)(std::string_view content, const std::string& folder);
+  Result<LoadedMesh> (*read)(std::string_view content, const std::string& folder) = nullptr;
   // Size of the mesh (not checked), so that it is known before any of it is kept; nothing if it
   // cannot be told. May be null.
   std::optional<MeshFileSize> (*size)(std::string_view content,

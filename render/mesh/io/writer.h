@@ -15,10 +15,11 @@ namespace merlin::render::mesh {
 enum class PicturePlace { kNone, kInside, kCompanionFile };
 
 struct MeshWriter {
-  const char* ending;
-  bool (*carries)(const Mesh&, const Feature&);  // whether the format can hold the feature
+  const char* ending = nullptr;
+  bool (*carries)(const Mesh&,
+                  const Feature&) = nullptr;  // whether the format can hold the feature
   // Returns false if a write failed. `name`: name prefix of the companion files (plainName()).
-  bool (*write)(const Mesh&, const std::string& name, const WriteBytes&);
+  bool (*write)(const Mesh&, const std::string& name, const WriteBytes&) = nullptr;
   PicturePlace picture = PicturePlace::kNone;
   // Checks that the mesh fits into the format; the error does not contain the file's name. May be
   // null.

@@ -77,11 +77,6 @@ class ObjCounts {
       libraries_.emplace_back(trimmed(line.substr(0, line.find('#'))));
     }
   }
-  static std::size_t wordsIn(std::string_view line) {
-    std::size_t words = 0;
-    while (!takeWord(line).empty()) ++words;
-    return words;
-  }
 
   std::size_t vertices_ = 0, texcoords_ = 0, triangles_ = 0;
   bool coloured_ = false;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/words.h"
 #include "render/image/image_file.h"
 #include "render/mesh/atlas/corner_coordinates.h"
 #include "render/mesh/atlas/join_textures.h"
@@ -97,22 +98,12 @@ bool isNormal(const std::string& property) {
   return property == "nx" || property == "ny" || property == "nz";
 }
 
-std::size_t wordsIn(std::string_view text) {
-  std::size_t words = 0;
-  bool blank = true;
-  for (const char c : text) {
-    const bool is_blank = c == ' ' || c == '\n' || c == '\r' || c == '\t';
-    words += blank && !is_blank;
-    blank = is_blank;
-  }
-  return words;
-}
-
 // The triangles of faces with any number of corners: what the file has beside its other numbers are
 // the corners. Nothing where there are other lists, whose lengths are not known.
 std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Header& header) {
   const bool ascii = header.form == ply::Form::kAscii;
-  std::size_t left = ascii ? wordsIn(content.substr(header.size)) : content.size() - header.size;
+  std::size_t left =
+      ascii ? wordsIn(content.substr(header.size), " \t\r\n") : content.size() - header.size;
   std::size_t faces = 0, corner = 0;  // bytes, or one word
   for (const ply::Element& e : header.elements) {
     std::size_t fixed = 0;

@@ -1,4 +1,4 @@
-#include "drivers/evdev/axis_source.h"
+#include "drivers/evdev/axis_names.h"
 
 #include <linux/input-event-codes.h>
 
@@ -30,29 +30,13 @@ constexpr NamedAxis kAxes[] = {{"x", ABS_X},
                                {"hat3x", ABS_HAT3X},
                                {"hat3y", ABS_HAT3Y}};
 
+}  // namespace
+
 std::optional<int> axisNumber(std::string_view name) {
   for (const NamedAxis& axis : kAxes) {
     if (axis.name == name) return axis.code;
   }
   return std::nullopt;
-}
-
-}  // namespace
-
-std::optional<AxisSource> parseAxisSource(std::string_view text) {
-  if (text == "none") return AxisSource{};
-  AxisSource source;
-  source.reversed = text.starts_with('-');
-  if (source.reversed) text.remove_prefix(1);
-  const auto between = text.find('-');
-  const auto first = axisNumber(text.substr(0, between));
-  if (!first) return std::nullopt;
-  source.code = *first;
-  if (between == std::string_view::npos) return source;
-  const auto second = axisNumber(text.substr(between + 1));
-  if (!second || source.reversed || *second == *first) return std::nullopt;
-  source.minus = *second;
-  return source;
 }
 
 std::string_view axisName(int code) {

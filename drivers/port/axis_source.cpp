@@ -1,0 +1,40 @@
+#include "drivers/port/axis_source.h"
+
+#include <tuple>
+
+#include <fmt/format.h>
+
+namespace merlin {
+
+std::optional<AxisSource> parseAxisSource(std::string_view text, const AxisNumber& number) {
+  if (text == "none") return AxisSource{};
+  AxisSource source;
+  source.reversed = text.starts_with('-');
+  if (source.reversed) text.remove_prefix(1);
+  const auto between = text.find('-');
+  const auto first = number(text.substr(0, between));
+  if (!first) return std::nullopt;
+  source.axis = *first;
+  if (between == std::string_view::npos) return source;
+  const auto second = number(text.substr(between + 1));
+  if (!second || source.reversed || *second == *first) return std::nullopt;
+  source.minus = *second;
+  return source;
+}
+
+void checkAxisSources(const std::vector<std::string>& texts, const AxisNumber& number,
+                      const std::string& pointer, const char* forms, SettingFaults& faults) {
+  constexpr std::size_t kAxes = std::tuple_size_v<AxisSources>;
+  if (!texts.empty() && texts.size() != kAxes) {
+    faults.push_back({pointer, fmt::format("has {} texts; it needs {}, for x, y, z and the "
+                                           "rotations about them, or none",
+                                           texts.size(), kAxes)});
+  }
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (parseAxisSource(texts[i], number)) continue;
+    faults.push_back({fmt::format("{}/{}", pointer, i),
+                      fmt::format("is \"{}\"; allowed are {}", texts[i], forms)});
+  }
+}
+
+}  // namespace merlin
