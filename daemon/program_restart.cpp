@@ -8,6 +8,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
@@ -54,6 +55,8 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
 }  // namespace
 
 ProgramRestart::ProgramRestart(int argc, char** argv) : arguments_(argv, argv + argc) {
+  // The kernel names a program that was started again after the link: ps would show "exe".
+  ::prctl(PR_SET_NAME, program_invocation_short_name);
   for (char** variable = environ; *variable; ++variable) {
     if (!std::string_view(*variable).starts_with("LISTEN_")) environment_.emplace_back(*variable);
   }

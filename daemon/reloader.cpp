@@ -63,7 +63,8 @@ void Reloader::request() {
 
 // REQUIRES: mutex_ is held.
 Result<std::string> Reloader::add(bool only_check, bool is_command) {
-  if (restart_at_) return Error{Errc::kBusy, "merlind starts again just now; try again later"};
+  // The start reads the file anew, which is what was asked for.
+  if (restart_at_) return fmt::format("{{\"request\": {}}}", restart_number_);
   if (waiting_.size() >= kMostWaiting) {
     return Error{Errc::kBusy,
                  fmt::format("{} requests wait already; try again later", kMostWaiting)};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -107,6 +108,13 @@ Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon) {
   for (const std::string& endpoint : daemon.endpoints)
     roles.push_back({"", {"", endpoint}, 0, 0, *keys});
   return roles;
+}
+
+bool isMerlind(std::uint32_t pid) {
+  std::ifstream file(fmt::format("/proc/{}/cmdline", pid));
+  std::string program;
+  std::getline(file, program, '\0');
+  return std::filesystem::path(program).filename() == "merlind";
 }
 
 Result<std::string> instanceOf(std::uint32_t pid) {

@@ -43,6 +43,9 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 // those of findRoles() and of reading the keys; kInvalidArgument (a key is missing or invalid).
 Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon);
 
+// Whether this process runs the program merlind, whatever its role, and also while it starts.
+bool isMerlind(std::uint32_t pid);
+
 // The instance of the merlind that is this process. Errors: kIo if it is none.
 Result<std::string> instanceOf(std::uint32_t pid);
 

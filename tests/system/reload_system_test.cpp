@@ -42,6 +42,13 @@ json both(json first, const json& second) {
   return first;
 }
 
+// How often the process has waited for something.
+int timesSlept(pid_t pid) {
+  const std::string status = readText(fmt::format("/proc/{}/status", pid));
+  const std::string name = "\nvoluntary_ctxt_switches:";
+  return std::atoi(status.substr(status.find(name) + name.size()).c_str());
+}
+
 class Reload : public testing::Test {
  protected:
   // The devices' process, whose emulated person makes a fist and opens it in turn.
@@ -217,6 +224,8 @@ TEST_F(Reload, ForWhatOnlyAStartTakesItStartsAgainWithAllTheRest) {
   ASSERT_EQ(::kill(merlind_->process().pid(), SIGHUP), 0);
   EXPECT_TRUE(merlind_->process().saysEventually("starting again"));
   EXPECT_TRUE(eventually([&] { return reload().output == "nothing changed\n"; }));
+  const std::string pid = std::to_string(merlind_->process().pid());
+  EXPECT_EQ(readText("/proc/" + pid + "/comm"), "merlind\n");
   EXPECT_EQ(merlind_->process().kill(SIGTERM), 0) << merlind_->process().output();
 }
 
@@ -334,6 +343,25 @@ TEST_F(ReloadOfTwo, TheWallAloneStartsAgainForItsContents) {
   EXPECT_FALSE(wall_->ended());
   for (const char* device : kDevices)
     EXPECT_EQ(health(device).reconnects, before[device].reconnects) << device;
+}
+
+// Another request may have had it do so, as when systemd reloads two units in turn.
+TEST_F(ReloadOfTwo, OneThatStartsAgainIsWaitedFor) {
+  write({{"wall", {{"snapshots_kept", 9}}}});
+  ASSERT_EQ(::kill(wall_->pid(), SIGHUP), 0);
+  ASSERT_TRUE(wall_->saysEventually("starting again"));
+  ASSERT_TRUE(eventually([&] {
+    return !shm::SegmentReader<shm::WallSegment>::open(
+                shm::segmentName(merlind_->instance(), "wall"))
+                .ok();
+  }));
+  ::kill(wall_->pid(), SIGSTOP);
+  Process waits({kMerlin, "reload", "--pid", std::to_string(wall_->pid())});
+  EXPECT_TRUE(eventually([&] { return waits.ended() || timesSlept(waits.pid()) > 50; }));
+  EXPECT_FALSE(waits.ended());
+  ::kill(wall_->pid(), SIGCONT);
+  EXPECT_EQ(waits.wait(), 0);
+  EXPECT_EQ(waits.output(), "nothing changed\n");
 }
 
 TEST_F(ReloadOfTwo, WhatOneRefusesNeitherTakes) {

@@ -237,21 +237,53 @@ bool renames(const std::vector<Reloaded>& all) {
   return std::ranges::find(restart, "/instance") != restart.end();
 }
 
-int reloadInstance(ReloadOptions options) {
+// Asks the processes of the instance once. `roles` receives theirs, as far as they are known.
+Result<std::vector<Reloaded>> askOnce(ReloadOptions& options, std::vector<FoundRole>& roles) {
+  roles.clear();
   if (options.pid > 0) {
+    roles.push_back({.role = "", .endpoints = {}, .pid = options.pid});
     auto instance = instanceOf(options.pid);
-    if (!instance) return fail(instance.error());
+    if (!instance) return instance.error();
     options.instance = *std::move(instance);
   }
-  const auto roles = findRoles(options.instance);
-  if (!roles) return fail(roles.error());
-  const auto all = reloadAll(options, processesOf(*roles));
+  auto found = findRoles(options.instance);
+  if (!found) return found.error();
+  roles = *std::move(found);
+  return reloadAll(options, processesOf(roles));
+}
+
+// Whether the process of this role starts again or has just done so. Meanwhile nobody answers.
+bool startsAgain(const std::string& instance, const FoundRole& before) {
+  const auto roles = findRoles(instance);
+  const bool is_same = roles && std::ranges::any_of(*roles, [&](const FoundRole& now) {
+                         return now.pid == before.pid && now.generation == before.generation;
+                       });
+  return !is_same && isMerlind(before.pid);
+}
+
+// Asks again where a process starts again: another request may have had it do so.
+Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>& roles) {
+  SystemClock clock;
+  for (const Timestamp until = clock.now() + kPatience;;) {
+    auto all = askOnce(options, roles);
+    const bool again =
+        !all && clock.now() < until && std::ranges::any_of(roles, [&](const FoundRole& role) {
+          return startsAgain(options.instance, role);
+        });
+    if (!again) return all;
+    clock.sleepUntil(clock.now() + kPollPeriod, {});
+  }
+}
+
+int reloadInstance(ReloadOptions options) {
+  std::vector<FoundRole> roles;
+  const auto all = ask(options, roles);
   if (!all) return fail(all.error());
   const bool awaits = options.pid == 0 && !options.check && !renames(*all);
   if (const auto back = awaits ? awaitStarts(options.instance, *all) : Ok{}; !back)
     return fail(back.error());
   if (!options.json) {
-    print(*all, readersOf(*roles), options.check ? "would start" : awaits ? "started" : "starts");
+    print(*all, readersOf(roles), options.check ? "would start" : awaits ? "started" : "starts");
     return exitStatusOf(*all);
   }
   Json processes = Json::array();
