@@ -1,6 +1,7 @@
 #include "daemon/wall/wall_loop.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -17,6 +18,8 @@ constexpr Duration kPresentMargin = std::chrono::milliseconds(3);
 // Share of a period that is planned for the first frame after a standstill, which takes longer than
 // predicted: cores wake from sleep, and caches hold data of another frame.
 constexpr double kResumingShare = 0.75;
+// The same for the first frames of another content, whose data no core has in its cache.
+constexpr std::array kNewContentShares{0.4, 0.55, 0.75};
 // The detail step is kept while its cost differs from the budget by less than this share, so that
 // detail does not flicker during motion.
 constexpr double kSameCost = 0.04;
@@ -129,6 +132,7 @@ void WallLoop::returnToInitialView() {
 }
 
 void WallLoop::showContent() {
+  new_frames_ = kNewContentShares.size();
   pace_.show(detail());
   step_ = detail().steps() - 1;
   moving_step_.reset();
@@ -231,11 +235,17 @@ render::frame::PointerMarker::Points WallLoop::pointedAt() const {
   return points;
 }
 
+// Share of a period that is planned for the next frame.
+double WallLoop::plannedShare() const {
+  if (new_frames_ > 0) return kNewContentShares[kNewContentShares.size() - new_frames_];
+  return resuming_ ? kResumingShare : 1;
+}
+
 std::size_t WallLoop::chooseStep(std::int64_t k, Timestamp began) {
   const Duration left = deadline(k) - began;
-  if (!resuming_) return stepFor(left);
-  const Duration share = fromSeconds(kResumingShare * toSeconds(pace_.period()));
-  const std::size_t step = stepFor(std::min(left, share));
+  const double share = plannedShare();
+  if (share == 1) return stepFor(left);
+  const std::size_t step = stepFor(std::min(left, fromSeconds(share * toSeconds(pace_.period()))));
   return step == detail().steps() ? stepFor(left) : step;
 }
 
@@ -295,7 +305,9 @@ void WallLoop::finishMoving(const render::frame::DrawTimes& times, Duration pres
   const bool coarsest = cost <= parts_.governor.least() || step_ + 1 == detail().steps();
   // times.drawing is that of a frame whose operator's view is as fine as the wall: see DrawTimes.
   const Duration fixed = times.fixed + present;
-  if (!resuming_ || !met) parts_.governor.observe({cost, fixed, fixed + times.drawing, !met});
+  const bool usual = plannedShare() == 1;
+  if (usual || !met) parts_.governor.observe({cost, fixed, fixed + times.drawing, !met});
+  if (new_frames_ > 0) --new_frames_;
   if (pace_.observe(!met, coarsest && !parts_.governor.held()))
     turns_.setSizeDivisor(pace_.sizeDivisor());
   pace_.observeOperator(times.gave_way);

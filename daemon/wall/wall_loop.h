@@ -122,6 +122,7 @@ class WallLoop {
   void followPlaylist(const Playlist::Wanted& wanted);
   void followViewer(const WallInput& input, Timestamp now);
   // Returns detail().steps() if there is no time for any frame.
+  double plannedShare() const;
   std::size_t chooseStep(std::int64_t k, Timestamp began);
   std::size_t stepFor(Duration available);
   std::int64_t countDeadlines(std::int64_t k, Timestamp finished);
@@ -152,8 +153,9 @@ class WallLoop {
   // Detail step of the last moving frame that had a whole period.
   std::optional<std::size_t> moving_step_;
   bool full_detail_ = false;
-  bool resuming_ = false;  // the next frame is the first after a standstill
-  bool held_ = false;      // black or frozen: nothing moves the scene
+  bool resuming_ = false;       // the next frame is the first after a standstill
+  std::size_t new_frames_ = 0;  // first moving frames of another content that are still to come
+  bool held_ = false;           // black or frozen: nothing moves the scene
   std::uint64_t frames_ = 0;
   std::uint32_t snapshots_ = 0;  // requested by bound inputs, since the start
   shm::WallStats counted_{};     // only the fields that the loop itself counts

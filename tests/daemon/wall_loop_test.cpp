@@ -86,6 +86,25 @@ TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
   }
 }
 
+// Twice as slow at first, since its data are in no cache; three frames later it has all detail.
+TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentIsInTime) {
+  contents_.push_back({&detail_, &painter_});
+  calibrated_ = true;
+  std::size_t at_change = 0;
+  run(4, [&](Timestamp now) {
+    if (at_change == 0 && now - feed_.begins.front() > std::chrono::seconds(3)) {
+      at_change = frames_.frames.size() + 1;  // it is asked for while a frame begins
+      loop_->show(1);
+    }
+    painter_.slow = at_change > 0 && frames_.frames.size() == at_change ? 2 : 1;
+  });
+  EXPECT_EQ(stats().late, 0u);
+  const auto costOf = [&](std::size_t frame) { return frames_.frames.at(frame).cost; };
+  EXPECT_LT(costOf(at_change), 0.5 * costOf(at_change - 1));
+  EXPECT_GT(costOf(at_change + 1), costOf(at_change));
+  EXPECT_EQ(costOf(at_change + 3), costOf(at_change - 1));
+}
+
 TEST_F(WallLoopTest, ARequestIsDoneBeforeTheNextFrame) {
   feed_.pushed = false;
   Progress progress;
