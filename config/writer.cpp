@@ -1,6 +1,8 @@
 #include "config/writer.h"
 
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,6 +23,12 @@ Json plain(double value) {
   return std::stod(fmt::format("{}", narrow));
 }
 
+// So that the text means the same wherever it is kept.
+std::string absolute(const std::string& path) {
+  std::error_code error;
+  return path.empty() ? "" : std::filesystem::absolute(path, error).lexically_normal().string();
+}
+
 class TextWriter final : public SettingsVisitor {
  public:
   explicit TextWriter(Secrets secrets) : secrets_(secrets) {}
@@ -34,9 +42,11 @@ class TextWriter final : public SettingsVisitor {
   void texts(const char* key, std::vector<std::string>& values, const char*) override {
     (*at_)[key] = values;
   }
-  void path(const char* key, std::string& value, const char*) override { (*at_)[key] = value; }
+  void path(const char* key, std::string& value, const char*) override {
+    (*at_)[key] = absolute(value);
+  }
   void secretFile(const char* key, std::string& value, const char*) override {
-    (*at_)[key] = secrets_ == Secrets::kWritten || value.empty() ? value : kSecretLeftOut;
+    (*at_)[key] = secrets_ == Secrets::kWritten || value.empty() ? absolute(value) : kSecretLeftOut;
   }
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char*) override {

@@ -15,7 +15,8 @@ std::string settingsSchema();
 enum class Secrets { kWritten, kLeftOut };
 inline constexpr const char* kSecretLeftOut = "(left out)";
 
-// A configuration that has every setting with its value in `settings`.
+// A configuration that has every setting with its value in `settings`. Files have absolute names:
+// relative ones are taken from the working directory.
 std::string settingsText(const Settings& settings, Secrets secrets = Secrets::kWritten);
 
 }  // namespace merlin

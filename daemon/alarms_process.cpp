@@ -1,6 +1,7 @@
 #include "daemon/alarms_process.h"
 
 #include <algorithm>
+#include <csignal>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -33,6 +34,7 @@ constexpr Duration kStartIsNews = std::chrono::minutes(10);
 // The end of what is said of a device that the configuration gives no port: nobody misses it. Of
 // one with a port it may be said until that was opened for the first time.
 constexpr std::string_view kNotConfigured = ": absent (not configured)";
+constexpr const char* kTest = "this is a test, asked for by SIGUSR1";
 constexpr Duration kAskAgain = std::chrono::seconds(3);
 constexpr Duration kAnswerWithin = std::chrono::seconds(2);
 
@@ -59,6 +61,15 @@ bool saysThatItWorks(std::string_view sentence, const shm::DeviceSlots* devices)
     return health &&
            sentence == fmt::format("{}: ok ({})", device.device, textIn(health->identity));
   });
+}
+
+// SIGUSR1, which the other roles ignore, waits to be asked for.
+void waitForTests() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  ::sigaddset(&set, SIGUSR1);
+  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  ::signal(SIGUSR1, SIG_DFL);
 }
 
 using Tell = std::function<void(const alarms::AlarmEvent&)>;
@@ -160,7 +171,8 @@ class AlarmsProcess {
     ::sd_notify(0, "READY=1");
     logInfo("ready");
     Asked asked = Asked::kNothing;
-    while ((asked = askedBySignal(kBeat, is_valid)) == Asked::kNothing) {
+    while (!ends(asked = askedBySignal(kBeat, is_valid))) {
+      if (asked == Asked::kTest) events_.add("alarms", alarms::kTestKind, kTest);
       const Timestamp now = clock_.now();
       tend(now);
       if (now - pinged_ < kWatchdogPing) continue;
@@ -172,6 +184,8 @@ class AlarmsProcess {
   }
 
  private:
+  static bool ends(Asked asked) { return asked == Asked::kStop || asked == Asked::kStartAgain; }
+
   void tend(Timestamp now) {
     const Tell tell = [this](const alarms::AlarmEvent& event) { add(event); };
     wall_.update(now, tell);
@@ -203,6 +217,7 @@ class AlarmsProcess {
 }  // namespace
 
 Asked runAlarms(const Settings& settings, Clock& clock, const std::function<bool()>& is_valid) {
+  waitForTests();
   return AlarmsProcess(settings, clock).run(is_valid);
 }
 

@@ -127,6 +127,7 @@ Result<Ok> Daemon::makeRoles() {
     remote_devices_ = *std::move(remote);
   }
   if (options_.wall) {
+    keepCrashFrame();
     auto role = wall::WallRole::make(settings_, std::move(contents_), generation,
                                      endpointsOf(settings_, "wall"), *keeper_, kept_files_,
                                      threads_, clock_);
@@ -154,6 +155,17 @@ void Daemon::makeKeeper() {
   projectors->remember(last, [this](const devices::PersonsSwitch& person) {
     keeper_->change([&](state::State& s) { s.projectors = {person.on, person.at}; });
   });
+}
+
+// Beside the devices' flight recordings; before the wall makes its own frame buffer.
+void Daemon::keepCrashFrame() {
+  auto frame = wall::frameOfCrash(shm::segmentName(settings_.instance, "framebuffer"));
+  if (!frame) return;
+  constexpr std::size_t kKept = 8;
+  crash_frame_ = std::make_unique<wall::CrashFrame>(
+      *std::move(frame),
+      DatedFiles(settings_.run_directory + "/flight", settings_.instance + "-wall", ".png", kKept),
+      threads_);
 }
 
 // Makes what executes commands of the roles, and what serves them.

@@ -29,6 +29,7 @@
 #include "daemon/status/ended_threads.h"
 #include "daemon/status/services.h"
 #include "daemon/status/watchdog.h"
+#include "daemon/wall/crash_frame.h"
 #include "daemon/wall/snapshot_writer.h"
 #include "daemon/wall/wall_role.h"
 
@@ -60,6 +61,7 @@ class Daemon {
   Result<Ok> makeRoles();
   void connectRoles();
   void makeKeeper();
+  void keepCrashFrame();
   void tendState();
   void executeActions();
   void tendLamp(Timestamp now);
@@ -103,6 +105,7 @@ class Daemon {
   std::unique_ptr<LastGoodKeeper> last_good_;  // if DaemonOptions::last_good names a file
   std::optional<RoleCommands> commands_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;  // called by wall_
+  std::unique_ptr<wall::CrashFrame> crash_frame_;    // if the wall's process before this crashed
   std::unique_ptr<wall::WallRole> wall_;
   std::unique_ptr<devices::DevicesRole> devices_;
   std::optional<RoleServers> servers_;  // clients' commands call all members above

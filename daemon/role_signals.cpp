@@ -12,10 +12,11 @@ namespace merlin {
 Asked askedBySignal(Duration wait, const std::function<bool()>& is_valid) {
   sigset_t set;
   ::sigemptyset(&set);
-  for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
+  for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) ::sigaddset(&set, s);
   const timespec limit{0, wait.count()};
   const int signal = ::sigtimedwait(&set, nullptr, &limit);
   if (signal == SIGTERM || signal == SIGINT) return Asked::kStop;
+  if (signal == SIGUSR1) return Asked::kTest;
   return signal == SIGHUP && is_valid() ? Asked::kStartAgain : Asked::kNothing;
 }
 

@@ -19,6 +19,9 @@ struct AlarmEvent {
   std::string what;            // a sentence
 };
 
+// The kind of an event by which a person tests that an alarm arrives: every alarm is for it.
+inline constexpr const char* kTestKind = "test";
+
 // The event as one line of JSON: {"instance", "role", "time_utc", "kind", "what", "left_out"}.
 std::string alarmText(const std::string& instance, const AlarmEvent& event, std::uint64_t left_out);
 

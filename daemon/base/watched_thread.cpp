@@ -4,12 +4,15 @@
 #include <exception>
 #include <utility>
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 namespace merlin {
 
 void giveWay() noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 19); }
+
+void nameThread(const std::string& name) noexcept { ::prctl(PR_SET_NAME, name.c_str()); }
 
 std::vector<ThreadState> ThreadWatch::threads() const {
   const std::lock_guard lock(mutex_);
@@ -45,6 +48,7 @@ WatchedThread::WatchedThread(ThreadWatch& watch, std::string name, Body body)
     : watch_(&watch), entry_(watch.add(std::move(name))) {
   thread_ =
       std::jthread([&watch, entry = entry_, body = std::move(body)](const std::stop_token& stop) {
+        nameThread(entry->name);
         std::string reason = "returned without having been asked to stop";
         try {
           body(stop, entry->progress);

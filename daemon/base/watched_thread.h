@@ -51,6 +51,9 @@ class Progress {
 // drawing frames comes first.
 void giveWay() noexcept;
 
+// Names the calling thread for `top -H` and debuggers, which show the first 15 characters.
+void nameThread(const std::string& name) noexcept;
+
 // State of one thread.
 struct ThreadState {
   std::uint64_t id = 0;  // unique within the watch

@@ -150,6 +150,8 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   if (!slots) return slots.error();
   std::unique_ptr<DevicesRole> role(new DevicesRole({*std::move(segment), *std::move(slots)},
                                                     settings, generation, watch, clock));
+  if (const auto kept = role->flight_.keepForNextRun(settings.devices.list.size()); !kept)
+    logWarning("a crash will leave no flight recordings: {}", kept.error().what);
   const auto trained = loadTrained(settings);
   if (!trained) return trained.error();
   role->addPanel(settings.devices);
@@ -167,6 +169,13 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
     if (const auto opened = role->open(i, settings.devices); !opened) return opened.error();
   }
   return role;
+}
+
+Result<std::string> DevicesRole::mend() {
+  auto mended = segment_.mend();
+  auto flight = flight_.mend();
+  const bool is_whole = mended && mended->empty();
+  return is_whole ? flight : mended;
 }
 
 void DevicesRole::publishFrames(const DevicesSettings& settings, std::size_t device) {

@@ -54,7 +54,7 @@ class DevicesRole {
   void reload(const Settings& settings, const DevicesChanges& changes, const Trained& trained);
 
   void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
-  Result<std::string> mend() { return segment_.mend(); }  // SegmentWriter::mend()
+  Result<std::string> mend();  // SegmentWriter::mend(), and of the flight recorder's memory
   // The role's own slots, found as any reader finds them.
   const shm::DeviceSlots& slots() const { return slots_; }
   // Null if no panel is configured. Thread-safe.

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "daemon/base/dated_files.h"
 #include "daemon/base/files.h"
+#include "daemon/shm/segment.h"
 
 namespace merlin::devices {
 namespace {
@@ -16,29 +18,43 @@ constexpr std::size_t kMostDumps = 8;  // files kept per device
 
 }  // namespace
 
+Result<Ok> FlightRecorder::keepForNextRun(std::size_t devices) {
+  const std::string name = shm::segmentName(instance_, "flight");
+  LeftFlight left = LeftFlight::under(name);
+  auto store = FlightStore::make(name, devices);
+  const std::lock_guard lock(mutex_);
+  left_ = std::move(left);
+  if (!store) return store.error();
+  store_ = *std::move(store);
+  return Ok{};
+}
+
 FlightRing& FlightRecorder::ringOf(std::size_t device, std::string name, std::string driver,
                                    int baud) {
   const std::lock_guard lock(mutex_);
-  auto entry = std::ranges::find(entries_, device, &Entry::device);
-  if (entry == entries_.end())
-    entry = entries_.insert(entry, {device, {}, {}, 0, std::make_unique<FlightRing>()});
-  entry->name = std::move(name);
-  entry->driver = std::move(driver);
-  entry->baud = baud;
+  auto entry = std::ranges::find(entries_, device, &Entry::place);
+  if (entry == entries_.end()) {
+    auto ring = store_ ? std::make_unique<FlightRing>(store_->memory(device))
+                       : std::make_unique<FlightRing>();
+    entry = entries_.insert(entry, {device, {}, std::move(ring)});
+  }
+  entry->device = {std::move(name), std::move(driver), baud};
+  if (store_) store_->describe(device, entry->device);
   return *entry->ring;
 }
 
 void FlightRecorder::expectEnd(std::size_t device) {
   const std::lock_guard lock(mutex_);
-  const auto entry = std::ranges::find(entries_, device, &Entry::device);
+  const auto entry = std::ranges::find(entries_, device, &Entry::place);
   if (entry != entries_.end()) entry->was_well = false;
 }
 
 std::vector<Event> FlightRecorder::check() {
   const std::lock_guard lock(mutex_);
   std::vector<Event> events;
+  writeLeft(events);
   for (Entry& entry : entries_) {
-    const auto health = segment_.health[entry.device].read();
+    const auto health = segment_.health[entry.place].read();
     if (!health) continue;
     const bool well = health->state == HealthState::kOk;
     const bool fell = entry.was_well && !well && std::string_view(health->reason) != "stopped";
@@ -46,10 +62,24 @@ std::vector<Event> FlightRecorder::check() {
     if (!fell) continue;
     const auto file = write(entry, health->reason);
     events.push_back(
-        file ? newsEvent(fmt::format("the last bytes of {} are in {}", entry.name, *file))
+        file ? newsEvent(fmt::format("the last bytes of {} are in {}", entry.device.name, *file))
              : faultEvent(file.error().what));
   }
   return events;
+}
+
+// REQUIRES: mutex_ is held.
+void FlightRecorder::writeLeft(std::vector<Event>& events) {
+  const LeftFlight left = std::exchange(left_, {});
+  const std::vector<FlightDevice> devices = left.devices();
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (devices[i].name.empty()) continue;
+    const auto file = write({devices[i], left.memory(i), ""}, "merlind crashed or was killed");
+    events.push_back(file ? newsEvent(fmt::format("merlind crashed or was killed; the last bytes "
+                                                  "of {} before that are in {}",
+                                                  devices[i].name, *file))
+                          : faultEvent(file.error().what));
+  }
 }
 
 Result<std::vector<std::string>> FlightRecorder::dump() {
@@ -63,19 +93,23 @@ Result<std::vector<std::string>> FlightRecorder::dump() {
   return files;
 }
 
-Result<std::string> FlightRecorder::write(const Entry& entry, std::string_view why) {
-  const DatedFiles files(folder_, fmt::format("{}-{}", instance_, entry.name), ".bytes",
+Result<std::string> FlightRecorder::write(const Entry& entry, std::string_view why) const {
+  const auto health = segment_.health[entry.place].read().value_or(DeviceHealth{});
+  return write(Dump{entry.device, entry.ring->memory(), health.identity}, why);
+}
+
+Result<std::string> FlightRecorder::write(const Dump& dump, std::string_view why) const {
+  const DatedFiles files(folder_, fmt::format("{}-{}", instance_, dump.device.name), ".bytes",
                          kMostDumps);
   const std::time_t now = std::time(nullptr);
   auto path = files.next(now);
   if (!path) return path.error();
   Duration left_out{};
   io::Transcript transcript;
-  transcript.chunks = entry.ring->take(&left_out);
-  const auto health = segment_.health[entry.device].read().value_or(DeviceHealth{});
-  transcript.header = {{"device", health.identity[0] ? health.identity : "not known"},
-                       {"driver", entry.driver},
-                       {"serial", fmt::format("{} 8N1", entry.baud)},
+  transcript.chunks = chunksOf(dump.memory, &left_out);
+  transcript.header = {{"device", dump.identity.empty() ? "not known" : std::string(dump.identity)},
+                       {"driver", dump.device.driver},
+                       {"serial", fmt::format("{} 8N1", dump.device.baud)},
                        {"synthetic", "not known: recorded from the line"},
                        {"by", "merlind's flight recorder"},
                        {"date", fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(now))},

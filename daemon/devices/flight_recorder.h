@@ -1,15 +1,17 @@
 // FlightRecorder: writes the last minutes of a device's bytes to a file when it fails, or on
-// command.
+// command; and those of a process that crashed.
 #pragma once
 
 #include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/base/event_kinds.h"
 #include "daemon/devices/flight_ring.h"
+#include "daemon/devices/flight_store.h"
 #include "daemon/shm/layout.h"
 
 namespace merlin::devices {
@@ -22,14 +24,21 @@ class FlightRecorder {
   FlightRecorder(const shm::DevicesSegment& segment, std::string folder, std::string instance)
       : segment_(segment), folder_(std::move(folder)), instance_(std::move(instance)) {}
 
+  // Has the rings of this many devices in shared memory, /INSTANCE-flight, and takes what a process
+  // that crashed left there; check() writes it to files. To be called before ringOf(). Without it,
+  // or if it fails, the rings end with the process. Errors: as for FlightStore::make().
+  Result<Ok> keepForNextRun(std::size_t devices);
+
   // Returns the ring of the device with this index in DevicesSegment::health, which lives as long
-  // as the recorder; the first call makes it. `name` goes into the names of its dumps, `driver` and
-  // `baud` into their headers. Thread-safe.
+  // as the recorder; the first call makes it. Its name goes into the names of its dumps, driver and
+  // speed into their headers. Thread-safe.
   FlightRing& ringOf(std::size_t device, std::string name, std::string driver, int baud);
+  Result<std::string> mend() { return store_ ? store_->mend() : std::string(); }
   // The device was stopped on purpose: no reason for a dump. Thread-safe.
   void expectEnd(std::size_t device);
 
-  // Dumps each device that has stopped working since the last call; returns a sentence for each.
+  // Dumps each device that has stopped working since the last call, and those of a run before that
+  // crashed; returns a sentence for each.
   std::vector<Event> check();
 
   // Dumps every device and returns the files' names. Errors: kIo.
@@ -37,18 +46,25 @@ class FlightRecorder {
 
  private:
   struct Entry {
-    std::size_t device;
-    std::string name;
-    std::string driver;
-    int baud;
+    std::size_t place;  // of the device, in DevicesSegment::health
+    FlightDevice device;
     std::unique_ptr<FlightRing> ring;
     bool was_well = false;
   };
-  Result<std::string> write(const Entry& entry, std::string_view why);
+  struct Dump {
+    const FlightDevice& device;
+    const FlightMemory& memory;
+    std::string_view identity;  // empty: not known
+  };
+  Result<std::string> write(const Dump& dump, std::string_view why) const;
+  Result<std::string> write(const Entry& entry, std::string_view why) const;
+  void writeLeft(std::vector<Event>& events);
 
   const shm::DevicesSegment& segment_;
   std::string folder_, instance_;
+  std::optional<FlightStore> store_;  // outlives the rings
   std::mutex mutex_;
+  LeftFlight left_;             // guarded by mutex_; of none once it is written
   std::vector<Entry> entries_;  // guarded by mutex_
 };
 

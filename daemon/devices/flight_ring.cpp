@@ -6,20 +6,47 @@
 namespace merlin::devices {
 namespace {
 
+using Cell = FlightMemory::Cell;
+
 constexpr std::int64_t kTogether_ns = 1'000'000;  // bytes that arrive within this time share a cell
+
+// `last`: the track's last cell, which the writer has of its own. `wraps`: a full track begins
+// again, otherwise it takes no more.
+template <std::size_t kSize>
+void addTo(FlightMemory::Track<kSize>& track, Cell& last, const Cell& what,
+           std::span<const std::byte> bytes, bool wraps) noexcept {
+  while (!bytes.empty()) {
+    auto n = track.count.load(std::memory_order_relaxed);
+    const bool grows = last.length > 0 && last.length < sizeof last.bytes &&
+                       last.to_device == what.to_device && what.ns - last.ns < kTogether_ns;
+    if (!grows) {
+      if (!wraps && n == kSize) return;
+      last = what;
+      ++n;
+    }
+    const std::size_t taken = std::min(bytes.size(), sizeof last.bytes - last.length);
+    std::memcpy(last.bytes + last.length, bytes.data(), taken);
+    last.length = static_cast<std::uint8_t>(last.length + taken);
+    track.cells[(n - 1) % kSize].publish(last);
+    track.count.store(n, std::memory_order_release);
+    bytes = bytes.subspan(taken);
+  }
+}
+
+// A length that no writer wrote, of memory that is not ours, counts as no cell.
+template <std::size_t kSize>
+std::optional<Cell> cellOf(const FlightMemory::Track<kSize>& track, std::uint64_t i) {
+  auto cell = track.cells[i % kSize].read();
+  return cell && cell->length <= sizeof cell->bytes ? cell : std::nullopt;
+}
 
 }  // namespace
 
-FlightRing::FlightRing() {
-  beginning_.cells = std::vector<shm::SeqSlot<Cell>>(kBeginning);
-  newest_.cells = std::vector<shm::SeqSlot<Cell>>(kNewest);
-}
-
 void FlightRing::opened(Timestamp) noexcept {
-  beginning_.count.store(0, std::memory_order_release);
-  beginning_.last = {};
-  newest_.last = {};
-  opened_cell_.store(newest_.count.load(std::memory_order_relaxed), std::memory_order_release);
+  memory_.beginning.count.store(0, std::memory_order_release);
+  last_of_beginning_ = last_of_newest_ = {};
+  memory_.opened_cell.store(memory_.newest.count.load(std::memory_order_relaxed),
+                            std::memory_order_release);
 }
 
 void FlightRing::heard(Timestamp at, std::span<const std::byte> bytes) noexcept {
@@ -31,44 +58,27 @@ void FlightRing::said(Timestamp at, std::span<const std::byte> bytes) noexcept {
 }
 
 void FlightRing::add(Timestamp at, bool to_device, std::span<const std::byte> bytes) noexcept {
-  beginning_.add(toNanoseconds(at), to_device, bytes, false);
-  newest_.add(toNanoseconds(at), to_device, bytes, true);
+  const Cell what{toNanoseconds(at), static_cast<std::uint8_t>(to_device), 0, {}};
+  addTo(memory_.beginning, last_of_beginning_, what, bytes, false);
+  addTo(memory_.newest, last_of_newest_, what, bytes, true);
 }
 
-void FlightRing::Track::add(std::int64_t ns, bool to_device, std::span<const std::byte> bytes,
-                            bool wraps) noexcept {
-  while (!bytes.empty()) {
-    auto n = count.load(std::memory_order_relaxed);
-    const bool grows = last.length > 0 && last.length < sizeof last.bytes &&
-                       last.to_device == (to_device ? 1 : 0) && ns - last.ns < kTogether_ns;
-    if (!grows) {
-      if (!wraps && n == cells.size()) return;
-      last = {ns, static_cast<std::uint8_t>(to_device), 0, {}};
-      ++n;
-    }
-    const std::size_t taken = std::min(bytes.size(), sizeof last.bytes - last.length);
-    std::memcpy(last.bytes + last.length, bytes.data(), taken);
-    last.length = static_cast<std::uint8_t>(last.length + taken);
-    cells[(n - 1) % cells.size()].publish(last);
-    count.store(n, std::memory_order_release);
-    bytes = bytes.subspan(taken);
-  }
-}
-
-std::vector<io::TranscriptChunk> FlightRing::take(Duration* left_out) const {
+std::vector<io::TranscriptChunk> chunksOf(const FlightMemory& memory, Duration* left_out) {
+  constexpr std::uint64_t kNewest = FlightMemory::kNewest, kBeginning = FlightMemory::kBeginning;
   *left_out = {};
   std::vector<Cell> cells;
-  const std::uint64_t opened = opened_cell_.load(std::memory_order_acquire);
-  const std::uint64_t begun = beginning_.count.load(std::memory_order_acquire);
-  const std::uint64_t count = newest_.count.load(std::memory_order_acquire);
+  const std::uint64_t opened = memory.opened_cell.load(std::memory_order_acquire);
+  const std::uint64_t begun =
+      std::min(memory.beginning.count.load(std::memory_order_acquire), kBeginning);
+  const std::uint64_t count = memory.newest.count.load(std::memory_order_acquire);
   // The oldest cell is skipped: it may be overwritten while we read.
   const std::uint64_t oldest = count >= kNewest ? count - kNewest + 1 : 0;
   for (std::uint64_t i = 0; i < begun && oldest > opened; ++i) {
-    if (const auto cell = beginning_.cells[i].read()) cells.push_back(*cell);
+    if (const auto cell = cellOf(memory.beginning, i)) cells.push_back(*cell);
   }
   std::int64_t seen_ns = cells.empty() ? 0 : cells.back().ns, gap_ns = 0;
   for (std::uint64_t i = std::max(oldest, opened); i < count; ++i) {
-    auto cell = newest_.cells[i % kNewest].read();
+    auto cell = cellOf(memory.newest, i);
     if (!cell || cell->ns <= seen_ns) continue;
     if (gap_ns == 0 && seen_ns > 0) gap_ns = cell->ns - seen_ns - kTogether_ns;
     cell->ns -= gap_ns;

@@ -13,24 +13,8 @@
 
 namespace merlin::devices {
 
-// Written by the device's thread, wait-free, without locks or allocations; read by any other
-// thread. Keeps the newest bytes, about four and a half minutes of a tracker's 120 records a
-// second, and also the beginning of the current connection, so that a dump begins with the set-up
-// dialogue and can be replayed as a test.
-class FlightRing final : public ByteTap {
- public:
-  FlightRing();
-
-  void opened(Timestamp at) noexcept override;
-  void heard(Timestamp at, std::span<const std::byte> bytes) noexcept override;
-  void said(Timestamp at, std::span<const std::byte> bytes) noexcept override;
-
-  // The contents as the chunks of a transcript: the beginning of the connection, then the newest
-  // bytes of the same connection; without a gap if no bytes between them were overwritten.
-  // `left_out`: set to the length of the gap, whose bytes are no longer stored.
-  std::vector<io::TranscriptChunk> take(Duration* left_out) const;
-
- private:
+// The contents of a ring, without pointers: in shared memory they outlive the process.
+struct FlightMemory {
   // Consecutive bytes in one direction.
   struct Cell {
     std::int64_t ns;
@@ -38,22 +22,52 @@ class FlightRing final : public ByteTap {
     std::uint8_t length;
     std::uint8_t bytes[46];
   };
-  static constexpr std::size_t kBeginning = 1024;  // cells
+  // A sequence of cells; the last one may still grow.
+  template <std::size_t kSize>
+  struct Track {
+    std::atomic<std::uint64_t> count{0};
+    std::array<shm::SeqSlot<Cell>, kSize> cells;
+  };
+  static constexpr std::size_t kBeginning = 1024;
   static constexpr std::size_t kNewest = 32768;
 
-  // A sequence of cells; the last one may still grow.
-  struct Track {
-    std::vector<shm::SeqSlot<Cell>> cells;
-    std::atomic<std::uint64_t> count{0};
-    Cell last{};
+  std::atomic<std::uint64_t> opened_cell{0};  // cell of `newest` where the connection begins
+  Track<kBeginning> beginning;
+  Track<kNewest> newest;
+};
 
-    void add(std::int64_t ns, bool to_device, std::span<const std::byte> bytes,
-             bool wraps) noexcept;
-  };
+// The contents as the chunks of a transcript: the beginning of the connection, then the newest
+// bytes of the same connection; without a gap if no bytes between them were overwritten. The writer
+// may write meanwhile, or may have ended anywhere. `left_out`: set to the length of the gap, whose
+// bytes are no longer stored.
+std::vector<io::TranscriptChunk> chunksOf(const FlightMemory& memory, Duration* left_out);
+
+// Written by the device's thread, wait-free, without locks or allocations; read by any other
+// thread. Keeps the newest bytes, about four and a half minutes of a tracker's 120 records a
+// second, and also the beginning of the current connection, so that a dump begins with the set-up
+// dialogue and can be replayed as a test.
+class FlightRing final : public ByteTap {
+ public:
+  FlightRing() : own_(std::make_unique<FlightMemory>()), memory_(*own_) {}
+  // `memory`: new, and outlives this.
+  explicit FlightRing(FlightMemory& memory) : memory_(memory) {}
+
+  void opened(Timestamp at) noexcept override;
+  void heard(Timestamp at, std::span<const std::byte> bytes) noexcept override;
+  void said(Timestamp at, std::span<const std::byte> bytes) noexcept override;
+
+  // chunksOf() what was written.
+  std::vector<io::TranscriptChunk> take(Duration* left_out) const {
+    return chunksOf(memory_, left_out);
+  }
+  const FlightMemory& memory() const noexcept { return memory_; }
+
+ private:
   void add(Timestamp at, bool to_device, std::span<const std::byte> bytes) noexcept;
 
-  Track beginning_, newest_;
-  std::atomic<std::uint64_t> opened_cell_{0};  // cell of newest_ where the connection begins
+  const std::unique_ptr<FlightMemory> own_;
+  FlightMemory& memory_;
+  FlightMemory::Cell last_of_beginning_{}, last_of_newest_{};
 };
 
 }  // namespace merlin::devices

@@ -5,7 +5,6 @@
 
 #include "daemon/base/log.h"
 #include "render/image/png_writer.h"
-#include "render/out/shared_frame.h"
 
 namespace merlin::wall {
 namespace {
@@ -13,6 +12,16 @@ namespace {
 constexpr auto kStep = std::chrono::milliseconds(500);
 
 }  // namespace
+
+Result<std::string> saveFrame(const render::out::CapturedFrame& frame, const DatedFiles& files) {
+  const std::time_t now = std::time(nullptr);
+  auto path = files.next(now);
+  if (!path) return path;
+  const auto written = render::image::writePng(*path, frame.width, frame.height, frame.pixels);
+  if (!written) return written.error();
+  files.removeOldest(now);
+  return path;
+}
 
 SnapshotWriter::SnapshotWriter(std::string framebuffer, DatedFiles files, ThreadWatch& watch)
     : framebuffer_(std::move(framebuffer)),
@@ -31,13 +40,7 @@ void SnapshotWriter::take() {
 Result<std::string> SnapshotWriter::write() const {
   const auto frame = render::out::captureFrame(framebuffer_, SharedMemory::From::kOwnUserOrRoot);
   if (!frame) return frame.error();
-  const std::time_t now = std::time(nullptr);
-  auto path = files_.next(now);
-  if (!path) return path;
-  const auto written = render::image::writePng(*path, frame->width, frame->height, frame->pixels);
-  if (!written) return written.error();
-  files_.removeOldest(now);
-  return path;
+  return saveFrame(*frame, files_);
 }
 
 void SnapshotWriter::loop(const std::stop_token& stop, Progress& progress) {

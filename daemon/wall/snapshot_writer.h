@@ -9,8 +9,13 @@
 #include "daemon/base/dated_files.h"
 #include "daemon/base/result.h"
 #include "daemon/base/watched_thread.h"
+#include "render/out/shared_frame.h"
 
 namespace merlin::wall {
+
+// Writes the frame as the next of the files, a PNG, and returns its path. Errors: those of
+// writePng() and DatedFiles::next().
+Result<std::string> saveFrame(const render::out::CapturedFrame& frame, const DatedFiles& files);
 
 // Thread-safe.
 class SnapshotWriter {

@@ -60,29 +60,9 @@ std::optional<std::size_t> labelColumn(const std::vector<std::string>& names) {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::string plainName(std::string_view text) {
-  const auto outer = [](char c) { return c == '"' || c == '\'' || c == ' ' || c == '\t'; };
-  while (!text.empty() && outer(text.front())) text.remove_prefix(1);
-  while (!text.empty() && outer(text.back())) text.remove_suffix(1);
-  std::string name;
-  for (const char c : text) {
-    const bool joint = c == ' ' || c == '_';
-    name += joint ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return name;
-}
-
-std::optional<std::string> readHeader(const std::vector<std::string>& names, CsvHeader& header) {
-  std::vector<std::string> plain;
-  for (const std::string& name : names) plain.push_back(plainName(name));
-  const auto label = labelColumn(plain);
-  if (!label)
-    return fmt::format("no column for the label; allowed: one that is named {}",
-                       fmt::join(kLabelNames, ", "));
-  header.label = *label;
-  header.slot.assign(names.size(), kNone);
+// Of the columns that have no name of ours and no choice: the sensors, by their number and order.
+std::optional<std::string> findSensors(const std::vector<std::string>& names,
+                                       const std::vector<std::string>& plain, CsvHeader& header) {
   std::vector<std::size_t> sensors;
   bool named = true;
   for (std::size_t c = 0; c < names.size(); ++c) {
@@ -109,12 +89,80 @@ std::optional<std::string> readHeader(const std::vector<std::string>& names, Csv
   if (slots.empty())
     return fmt::format(
         "{} columns of sensors whose names say no slot (\"{}\"); allowed: 18, 22 or "
-        "23 of them, or the names s0 to s22 or {} to {}",
+        "23 of them, the names s0 to s22 or {} to {}, or a choice of columns",
         sensors.size(), sensors.empty() ? "" : excerpt(names[sensors.front()]), kInputNames.front(),
         kInputNames.back());
   for (std::size_t n = 0; n < sensors.size(); ++n) header.slot[sensors[n]] = slots[n];
   header.notes.push_back(
       fmt::format("{} sensors taken in the order of the glove's mask", sensors.size()));
+  return std::nullopt;
+}
+
+// A name comes before a number: a header may consist of numbers.
+std::optional<std::size_t> columnOf(const std::vector<std::string>& plain,
+                                    const std::string& column) {
+  const auto at = std::ranges::find(plain, plainName(column));
+  if (at != plain.end()) return static_cast<std::size_t>(at - plain.begin());
+  std::size_t number = 0;
+  const auto [end, code] = std::from_chars(column.data(), column.data() + column.size(), number);
+  const bool whole = code == std::errc() && end == column.data() + column.size();
+  return whole && number >= 1 && number <= plain.size() ? std::optional(number - 1) : std::nullopt;
+}
+
+std::optional<std::string> takeChosen(const std::vector<std::string>& plain,
+                                      std::span<const ChosenColumn> chosen,
+                                      std::optional<std::size_t>& label, CsvHeader& header) {
+  for (const ChosenColumn& choice : chosen) {
+    const auto column = columnOf(plain, choice.column);
+    if (!column)
+      return fmt::format("no column \"{}\" for {}; allowed: 1 to {}, or {}", excerpt(choice.column),
+                         excerpt(choice.what), plain.size(),
+                         excerpt(fmt::format("{}", fmt::join(plain, ", "))));
+    const int slot = slotNamed(plainName(choice.what));
+    if (choice.what == "posture")
+      label = column;
+    else if (slot != kNone)
+      header.slot[*column] = slot;
+    else
+      return fmt::format("a column for \"{}\"; allowed: for posture, s0 to s22 or {} to {}",
+                         excerpt(choice.what), kInputNames.front(), kInputNames.back());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string plainName(std::string_view text) {
+  const auto outer = [](char c) { return c == '"' || c == '\'' || c == ' ' || c == '\t'; };
+  while (!text.empty() && outer(text.front())) text.remove_prefix(1);
+  while (!text.empty() && outer(text.back())) text.remove_suffix(1);
+  std::string name;
+  for (const char c : text) {
+    const bool joint = c == ' ' || c == '_';
+    name += joint ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return name;
+}
+
+std::optional<std::string> readHeader(const std::vector<std::string>& names, CsvHeader& header,
+                                      std::span<const ChosenColumn> chosen) {
+  std::vector<std::string> plain;
+  for (const std::string& name : names) plain.push_back(plainName(name));
+  header.slot.assign(names.size(), kNone);
+  std::optional<std::size_t> label;
+  if (auto fault = takeChosen(plain, chosen, label, header)) return fault;
+  if (!label) label = labelColumn(plain);
+  if (!label)
+    return fmt::format("no column for the label; allowed: one that is named {}, or a choice of one",
+                       fmt::join(kLabelNames, ", "));
+  header.label = *label;
+  const bool sensors_are_chosen =
+      std::ranges::any_of(header.slot, [](int slot) { return slot != kNone; });
+  if (!sensors_are_chosen) return findSensors(names, plain, header);
+  if (header.slot[*label] != kNone)
+    return fmt::format("column \"{}\" as label and as sensor; allowed: one of the two",
+                       excerpt(names[*label]));
+  header.notes.push_back("columns that were not chosen are left out");
   return std::nullopt;
 }
 

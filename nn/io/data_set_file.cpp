@@ -85,8 +85,9 @@ std::optional<float> parseValue(std::string_view text) {
 
 class Parser {
  public:
-  Parser(std::string_view text, const std::string& file, std::optional<InputUnit> unit)
-      : lines_(text), file_(file), unit_(unit) {}
+  Parser(std::string_view text, const std::string& file, std::optional<InputUnit> unit,
+         std::span<const ChosenColumn> columns)
+      : lines_(text), file_(file), unit_(unit), columns_(columns) {}
 
   Result<Recording> run() {
     if (auto error = readColumns()) return *std::move(error);
@@ -122,7 +123,7 @@ class Parser {
       break;
     }
     names_ = split(text, separator_);
-    if (const auto fault = readHeader(names_, header_))
+    if (const auto fault = readHeader(names_, header_, columns_))
       return errorInLine(fault->substr(0, fault->find("; allowed: ")),
                          fault->substr(fault->find("; allowed: ") + 11));
     recording_.notes = header_.notes;
@@ -185,6 +186,7 @@ class Parser {
   Lines lines_;
   const std::string& file_;
   std::optional<InputUnit> unit_;
+  std::span<const ChosenColumn> columns_;
   char separator_ = ',';
   std::vector<std::string> names_;
   CsvHeader header_;
@@ -196,17 +198,19 @@ class Parser {
 }  // namespace
 
 Result<Recording> parseRecording(std::string_view text, const std::string& file,
-                                 std::optional<InputUnit> unit) {
+                                 std::optional<InputUnit> unit,
+                                 std::span<const ChosenColumn> columns) {
   if (text.size() > kLargestFile)
     return Error{Errc::kMalformed,
                  fmt::format("{}: found {} bytes; allowed: {}", file, text.size(), kLargestFile)};
-  return Parser(text, file, unit).run();
+  return Parser(text, file, unit, columns).run();
 }
 
-Result<Recording> loadRecording(const std::string& path, std::optional<InputUnit> unit) {
+Result<Recording> loadRecording(const std::string& path, std::optional<InputUnit> unit,
+                                std::span<const ChosenColumn> columns) {
   const auto file = FileCopy::read(path);
   if (!file) return file.error();
-  return parseRecording(file->text(), path, unit);
+  return parseRecording(file->text(), path, unit, columns);
 }
 
 std::string formatRecording(const Recording& recording) {

@@ -9,6 +9,7 @@
 
 #include "daemon/base/result.h"
 #include "nn/data_set.h"
+#include "nn/io/csv_header.h"
 #include "nn/space.h"
 
 namespace merlin::nn {
@@ -22,14 +23,16 @@ struct Recording {
 };
 
 // Reads a whole file or nothing. `unit` is the unit of its numbers; if absent, radians are assumed
-// unless a number is beyond +-6.3. Every error names the file and the line, what was found and what
-// is allowed.
-// Errors: kNotFound, kIo, kMalformed.
-Result<Recording> loadRecording(const std::string& path, std::optional<InputUnit> unit = {});
+// unless a number is beyond +-6.3. `columns`: what is in which column, where the header does not
+// say it. Every error names the file and the line, what was found and what is allowed. Errors:
+// kNotFound, kIo, kMalformed.
+Result<Recording> loadRecording(const std::string& path, std::optional<InputUnit> unit = {},
+                                std::span<const ChosenColumn> columns = {});
 
 // The same for a text; `file` is its name in errors.
 Result<Recording> parseRecording(std::string_view text, const std::string& file,
-                                 std::optional<InputUnit> unit = {});
+                                 std::optional<InputUnit> unit = {},
+                                 std::span<const ChosenColumn> columns = {});
 
 // The exact inverse: reading the text back gives equal values. Writes the measured slots only.
 std::string formatRecording(const Recording& recording);

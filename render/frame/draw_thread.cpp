@@ -2,11 +2,16 @@
 
 #include <cassert>
 
+#include "daemon/base/watched_thread.h"
+
 namespace merlin::render::frame {
 
 Result<std::unique_ptr<DrawThread>> DrawThread::make(const gl::GlContext& first) {
   std::unique_ptr<DrawThread> made(new DrawThread());
-  made->thread_ = std::jthread([&thread = *made] { thread.loop(); });
+  made->thread_ = std::jthread([&thread = *made] {
+    nameThread("second drawing");
+    thread.loop();
+  });
   Result<Ok> ready = Ok{};
   made->run([&] {
     auto context = first.makeFurther();

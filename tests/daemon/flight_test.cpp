@@ -1,8 +1,11 @@
 // The flight recorder keeps the last bytes of a device and the beginning of its connection.
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "daemon/devices/flight_recorder.h"
 #include "drivers/io/recording_stream.h"
@@ -167,6 +170,83 @@ TEST(FlightRecorder, KeepsEightDumpsOfADevice) {
   for ([[maybe_unused]] const auto& f : std::filesystem::directory_iterator(dir / "flight"))
     ++files;
   EXPECT_EQ(files, 8u);
+}
+
+// A process with a recorder, and then another of the same name.
+class FlightOfACrash : public testing::Test {
+ protected:
+  // In a process of its own, which ends without order unless `in_order`.
+  void record(bool in_order) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      {
+        FlightRecorder recorder(*segment_, dir_ / "flight", instance_);
+        if (!recorder.keepForNextRun(3)) ::_exit(1);
+        FlightRing& ring = recorder.ringOf(1, "ball", "spaceball", 9600);
+        const test::FakeClock clock;
+        ring.opened(clock.now());
+        ring.said(clock.now(), asBytes("hello"));
+        ring.heard(clock.now(), asBytes("ball"));
+        if (!in_order) ::_exit(0);
+      }
+      ::_exit(0);
+    }
+    int status = -1;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_EQ(status, 0);
+  }
+  std::vector<std::string> nextRun() {
+    FlightRecorder recorder(*segment_, dir_ / "flight", instance_);
+    EXPECT_TRUE(recorder.keepForNextRun(3));
+    auto sentences = test::told(recorder.check());
+    EXPECT_TRUE(recorder.check().empty()) << "once";
+    return sentences;
+  }
+  std::string sharedMemory() const { return "/dev/shm/" + instance_ + "-flight"; }
+
+  test::TempDir dir_;
+  std::string instance_ = test::privateName("flight");
+  std::unique_ptr<shm::DevicesSegment> segment_ = std::make_unique<shm::DevicesSegment>();
+};
+
+TEST_F(FlightOfACrash, IsWrittenByTheNextRun) {
+  record(false);
+  const auto sentences = nextRun();
+  ASSERT_EQ(sentences.size(), 1U) << "the other two places had no device";
+  const std::string said = "the last bytes of ball before that are in ";
+  const std::size_t at = sentences[0].find(said);
+  ASSERT_NE(at, std::string::npos) << sentences[0];
+  const auto transcript = io::readTranscript(sentences[0].substr(at + said.size()));
+  ASSERT_TRUE(transcript) << transcript.error().what;
+  EXPECT_EQ(all(transcript->chunks), ">hello<ball");
+  EXPECT_EQ((*transcript)["driver"], "spaceball");
+  EXPECT_EQ((*transcript)["serial"], "9600 8N1");
+  EXPECT_TRUE(nextRun().empty()) << "that run ended in order";
+}
+
+TEST_F(FlightOfACrash, ARunThatEndsInOrderLeavesNothing) {
+  record(true);
+  EXPECT_FALSE(std::filesystem::exists(sharedMemory()));
+  EXPECT_TRUE(nextRun().empty());
+}
+
+// Cut, of another form, with a name that leads elsewhere.
+TEST_F(FlightOfACrash, WhatIsDamagedIsLeftOut) {
+  const auto damaged = [&](std::size_t at, const std::string& bytes, std::uintmax_t size) {
+    record(false);
+    std::fstream file(sharedMemory(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(at));
+    file << bytes;
+    file.close();
+    if (size > 0) std::filesystem::resize_file(sharedMemory(), size);
+    return nextRun();
+  };
+  EXPECT_TRUE(damaged(0, "x", 0).empty());
+  EXPECT_TRUE(damaged(8, std::string(1, '\x04'), 0).empty()) << "more devices than there is room";
+  EXPECT_TRUE(damaged(0, "", 4096).empty());
+  EXPECT_TRUE(damaged(0, "", 10).empty());
+  // The names begin behind form and number; the second device is the ball.
+  EXPECT_TRUE(damaged(12 + 68, "../all", 0).empty());
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 #include "daemon/base/watched_thread.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "daemon/base/token_bucket.h"
 #include "tests/support/eventually.h"
+#include "tests/support/temp_dir.h"
 
 namespace merlin {
 namespace {
@@ -26,6 +29,12 @@ TEST(WatchedThread, IsKnownByNameWhileItRunsAndItsProgressGrows) {
     const auto before = watch.threads()[0].progress;
     EXPECT_TRUE(test::eventually([&] { return watch.threads()[0].progress > before; }));
     EXPECT_FALSE(watch.threads()[0].ended);
+    EXPECT_TRUE(test::eventually([] {
+      const std::filesystem::directory_iterator all("/proc/self/task");
+      return std::any_of(begin(all), end(all), [](const auto& task) {
+        return test::readText(task.path() / "comm") == "a server\n";
+      });
+    })) << "top -H shows it";
   }
   EXPECT_TRUE(watch.threads().empty()) << "stopped as it was asked to";
 }

@@ -50,6 +50,40 @@ TEST(Recording, TakesSlotsByNameInAnyOrder) {
   EXPECT_EQ(read->unit, InputUnit::kRadians);
 }
 
+// A header of another program: the choice says what is where, and the rest is left out.
+TEST(Recording, TakesTheColumnsThatWereChosen) {
+  const std::string text = "Frame,Symbol,ThumbRotate,IndexInner,Battery\n7,fist,0.5,0.25,99\n";
+  const auto columns = [&](std::vector<ChosenColumn> chosen) {
+    return parseRecording(text, "f", {}, chosen);
+  };
+  const auto read = columns({{"posture", "symbol"}, {"s0", "ThumbRotate"}, {"index-mcp", "4"}});
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->hands[0].posture, "fist");
+  EXPECT_EQ(read->hands[0].value[0], 0.5F);
+  EXPECT_EQ(read->hands[0].value[4], 0.25F);
+  EXPECT_EQ(std::count(read->measured.begin(), read->measured.end(), true), 2);
+  EXPECT_EQ(read->unit, InputUnit::kRadians) << "the battery is not an angle";
+  const auto label_alone =
+      parseRecording("Symbol,s4\nfist,0.5\n", "f", {}, std::vector<ChosenColumn>{{"posture", "1"}});
+  ASSERT_TRUE(label_alone) << label_alone.error().what;
+  EXPECT_EQ(label_alone->hands[0].value[4], 0.5F) << "sensors by their names, as always";
+  const std::pair<std::vector<ChosenColumn>, const char*> faults[] = {
+      {{{"posture", "Sign"}},
+       "f:1: found no column \"Sign\" for posture; allowed: 1 to 5, or frame"},
+      {{{"posture", "0"}}, "found no column \"0\""},
+      {{{"posture", "6"}}, "found no column \"6\""},
+      {{{"palm", "3"}},
+       "found a column for \"palm\"; allowed: for posture, s0 to s22 or thumb-roll"},
+      {{{"posture", "3"}, {"s0", "3"}}, "found column \"ThumbRotate\" as label and as sensor"},
+      {{{"posture", "2"}, {"s0", "3"}, {"s0", "4"}}, "found two columns \"IndexInner\""},
+      {{{"s0", "3"}}, "found no column for the label"}};
+  for (const auto& [chosen, says] : faults) {
+    const auto wrong = columns(chosen);
+    ASSERT_FALSE(wrong) << says;
+    EXPECT_NE(wrong.error().what.find(says), std::string::npos) << wrong.error().what;
+  }
+}
+
 TEST(Recording, IsItsOwnInverse) {
   Recording recording;
   recording.hands = test::people(hand::shapes(), 1, 2, 3, 1);

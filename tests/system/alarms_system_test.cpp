@@ -65,15 +65,21 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
     return !told(file).empty();
   })) << alarms.output();
   EXPECT_TRUE(isTold(file, "devices", "ball")) << readText(file);
+  const std::string line = dir / (merlind.instance() + "-ball.pty");
+  const Process plugged_in({kMerlin, "emulate", "spaceball", "--link", line, "--script", "still"});
   EXPECT_TRUE(isTold(file, "devices", "ball: ok (")) << "and that it is back: " << readText(file);
   for (const Json& event : told(file)) {
     EXPECT_EQ(event["instance"], merlind.instance());
     EXPECT_FALSE(event["kind"].get<std::string>().empty());
   }
   EXPECT_TRUE(alarms.saysEventually("/no/such/program: cannot be executed"));
+  EXPECT_TRUE(told(broken).empty()) << "no event was of its kind";
+  ::kill(alarms.pid(), SIGUSR1);
+  EXPECT_TRUE(isTold(broken, "alarms", "this is a test"));
+  EXPECT_TRUE(isTold(file, "alarms", "this is a test"));
   merlind.process().kill(SIGKILL);
   EXPECT_TRUE(isTold(file, "alarms", "the role devices has not run for 15 s")) << readText(file);
-  EXPECT_TRUE(told(broken).empty()) << "no event was of its kind";
+  EXPECT_EQ(timesTold(broken, "alarms", ""), 1) << "no other event was for it";
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 

@@ -93,6 +93,25 @@ TEST_F(LastGood, OfTheWallIsWhatThePageStartsWith) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
+// What is kept lies in another folder than the configuration, and names the same files.
+TEST_F(LastGood, NamesFilesThatTheConfigurationNamesFromItsFolder) {
+  json config = valid(7);
+  config["wall"]["model"] = fs::path(model_).filename();
+  writeText(config_, config.dump());
+  config_ = fs::relative(config_).string();
+  auto wall = start();
+  ASSERT_TRUE(wall->saysEventually("ready")) << wall->output();
+  EXPECT_TRUE(keeps("\"rate_hz\": 7"));
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+  writeText(config_, "{");
+  wall = start();
+  ASSERT_TRUE(wall->saysEventually("ready")) << wall->output();
+  EXPECT_TRUE(wall->saysEventually("merlind runs with the last valid configuration"));
+  writeText(config_, config.dump());
+  EXPECT_EQ(run({kMerlin, "reload", "--instance", instance_}).output, "nothing changed\n");
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+}
+
 TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
   writeText(config_, "{");
   EXPECT_EQ(start()->wait(), 2);

@@ -107,7 +107,7 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
   Merlind m(dir, makeModel(dir, 2), "removed");
   ASSERT_TRUE(m.ready()) << m.process().output();
   const std::vector<std::string> objects = m.leftInSharedMemory();
-  ASSERT_EQ(objects.size(), 6u) << "devices, wall, framebuffer and their locks";
+  ASSERT_EQ(objects.size(), 8u) << "devices, flight, wall, framebuffer and their locks";
   for (const std::string& object : objects) std::filesystem::remove(object);
   EXPECT_TRUE(eventually([&] { return m.leftInSharedMemory().size() == objects.size(); }));
   EXPECT_TRUE(m.process().saysEventually("shared memory: works again")) << m.process().output();

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/log.h"
+#include "daemon/base/printable_text.h"
 #include "drivers/cyberglove/settings.h"
 #include "drivers/hand/recording.h"
 
@@ -45,31 +46,50 @@ std::optional<nn::InputUnit> unitNamed(const std::string& name) {
   return std::nullopt;
 }
 
-void addUnits(Command command, std::string& units) {
+void addForm(Command command, RecordingForm& form) {
   command
-      .option("--units", units,
+      .option("--units", form.units,
               "Unit of the recording: rad (radians), raw (counts, degrees or any other unit of the "
               "sensors), or auto (raw if the absolute value of any number is above 6.3)")
       .oneOf({"auto", "rad", "raw"})
       .showDefault();
+  command
+      .option("--columns", form.columns,
+              "What is in which column of the CSV, where its header does not say it: posture, for "
+              "the label, and sensors by joint or slot, each with the column's name or its number "
+              "from 1. With a sensor among them, columns that are not named are left out: "
+              "--columns posture=class,thumb-roll=3,index-mcp=IndexKnuckle")
+      .typeName("WHAT=COLUMN,...")
+      .repeatable()
+      .separated(',');
 }
 
-Result<nn::Recording> readRecording(const std::string& path, std::optional<nn::InputUnit> unit) {
-  auto recording = nn::loadRecording(path, unit);
+Result<nn::Recording> readRecording(const std::string& path, const RecordingForm& form) {
+  std::vector<nn::ChosenColumn> columns;
+  for (const std::string& text : form.columns) {
+    const std::size_t at = text.find('=');
+    if (at == std::string::npos)
+      return Error{Errc::kInvalidArgument,
+                   fmt::format("--columns: \"{}\" is not WHAT=COLUMN, such as posture=class",
+                               excerpt(text))};
+    columns.push_back({text.substr(0, at), text.substr(at + 1)});
+  }
+  auto recording = nn::loadRecording(path, unitNamed(form.units), columns);
   if (!recording) return recording;
   for (const std::string& note : recording->notes) printError("{}: {}\n", path, note);
   return recording;
 }
 
 Result<nn::Recording> readFor(const nn::PostureNetwork& network, const std::string& path,
-                              std::optional<nn::InputUnit> unit) {
+                              RecordingForm form) {
   const bool raw = network.unit == nn::InputUnit::kRaw;
-  if (raw && unit == nn::InputUnit::kRadians)
+  if (raw && form.units == "rad")
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: has angles, but the network takes raw counts; give --units raw "
                              "if the numbers have the unit that the network was trained with",
                              path)};
-  auto recording = readRecording(path, raw ? nn::InputUnit::kRaw : unit);
+  if (raw) form.units = "raw";
+  auto recording = readRecording(path, form);
   if (!recording || recording->unit == network.unit) return recording;
   return toRadians(*std::move(recording), path);
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/cli/arguments.h"
 #include "daemon/cli/command.h"
@@ -19,18 +20,24 @@ void addPostureSynthesize(Command posture, Run& run);
 
 // The unit with the name "raw" or "rad"; nothing for "auto", which lets the reader decide.
 std::optional<nn::InputUnit> unitNamed(const std::string& name);
-// Adds the option --units.
-void addUnits(Command command, std::string& units);
 
-// Reads a recording of labelled hands and prints the reader's notes to stderr. `unit`: of the
-// numbers; nothing: the reader decides by their size. Errors: those of nn::loadRecording().
-Result<nn::Recording> readRecording(const std::string& path, std::optional<nn::InputUnit> unit);
+// How a recording is to be read.
+struct RecordingForm {
+  std::string units = "auto";        // as for unitNamed()
+  std::vector<std::string> columns;  // "WHAT=COLUMN": see nn::ChosenColumn
+};
+// Adds the options --units and --columns.
+void addForm(Command command, RecordingForm& form);
+
+// Reads a recording of labelled hands and prints the reader's notes to stderr. Errors: those of
+// nn::loadRecording(); kInvalidArgument (a column is not WHAT=COLUMN).
+Result<nn::Recording> readRecording(const std::string& path, const RecordingForm& form);
 
 // Reads a recording in the input unit of the network. If the network takes angles, raw counts are
 // converted with the shipped calibration. Errors: those of readRecording(); kInvalidArgument if
-// `unit` is radians and the network takes raw counts, or if a raw count is not from 0 to 255.
+// the units are radians and the network takes raw counts, or if a raw count is not from 0 to 255.
 Result<nn::Recording> readFor(const nn::PostureNetwork& network, const std::string& path,
-                              std::optional<nn::InputUnit> unit);
+                              RecordingForm form);
 
 // Settings of synthesize(): `people` synthetic people, numbered from `first`. Each of them takes
 // each of the first `postures` of hand::allShapes() `takes` times, with `per_take` samples each.

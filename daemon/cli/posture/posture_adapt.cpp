@@ -14,7 +14,8 @@ namespace merlin::cli {
 namespace {
 
 struct AdaptOptions {
-  std::string network, data, output, units = "auto";
+  std::string network, data, output;
+  RecordingForm form;
   std::uint64_t seed = 1998;
 };
 
@@ -25,7 +26,7 @@ int adapt(const AdaptOptions& options) {
     return fail({Errc::kInvalidArgument,
                  options.network + ": has no /memory, the statistics of its training data, "
                                    "which are needed to adapt it: train the network again"});
-  const auto recording = readFor(file->network, options.data, unitNamed(options.units));
+  const auto recording = readFor(file->network, options.data, options.form);
   if (!recording) return fail(recording.error());
   const SystemClock clock;
   const Timestamp began = clock.now();
@@ -78,7 +79,7 @@ void addPostureAdapt(Command posture, Run& run) {
       .required()
       .typeName("FILE.json");
   command.option("--seed", options->seed, "Seed of all random numbers").showDefault();
-  addUnits(command, options->units);
+  addForm(command, options->form);
   command.callback([options, &run] { run = [options] { return adapt(*options); }; });
 }
 

@@ -19,13 +19,14 @@ constexpr std::size_t kUnseen = 1001;
 constexpr std::size_t kShown = 10;  // maximum number of confusions in the table
 
 struct TestOptions {
-  std::string network = "config/postures.json", data, beside, units = "auto";
+  std::string network = "config/postures.json", data, beside;
+  RecordingForm form;
   double margin = 0.3;
   bool json = false, follow = false;
 };
 
 Result<nn::Recording> testHands(const TestOptions& options, const nn::PostureNetwork& network) {
-  if (!options.data.empty()) return readFor(network, options.data, unitNamed(options.units));
+  if (!options.data.empty()) return readFor(network, options.data, options.form);
   return synthesize(
       {.first = kUnseen, .people = 20, .takes = 5, .per_take = 10, .postures = 8, .seed = 2});
 }
@@ -93,7 +94,7 @@ int test(const TestOptions& options) {
   const nn::Evaluation& e = *evaluation;
   auto json = toJson(e, recording->synthetic);
   if (!options.beside.empty()) {
-    const auto train = readFor(file->network, options.beside, unitNamed(options.units));
+    const auto train = readFor(file->network, options.beside, options.form);
     if (!train) return fail(train.error());
     const nn::Neighbours n = nn::neighbours(train->hands, recording->hands);
     json["nearest_mean"] = n.mean;
@@ -134,7 +135,7 @@ void addPostureTest(Command posture, Run& run) {
               "Margin, 0 to 1, below which the recognition of a hand counts as unsure")
       .range(0.0, 1.0)
       .showDefault();
-  addUnits(command, options->units);
+  addForm(command, options->form);
   command.flag("--follow-drift", options->follow,
                "Follow the drift of the glove's sensors, without looking at the labels; for hands "
                "of one person in the order in which they were recorded");

@@ -17,7 +17,8 @@ namespace merlin::cli {
 namespace {
 
 struct TrainOptions {
-  std::string data, output, curve, units = "auto", phi = "sigmoid";
+  std::string data, output, curve, phi = "sigmoid";
+  RecordingForm form;
   nn::FitSettings fit;
   std::size_t folds = 0;
   bool json = false;
@@ -26,7 +27,7 @@ struct TrainOptions {
 // The hands to train on; without a file, those of the synthetic people that the shipped network was
 // trained on.
 Result<nn::Recording> trainingHands(const TrainOptions& options) {
-  if (!options.data.empty()) return readRecording(options.data, unitNamed(options.units));
+  if (!options.data.empty()) return readRecording(options.data, options.form);
   return synthesize({.people = 20, .takes = 2, .postures = 8});
 }
 
@@ -140,7 +141,7 @@ void addPostureTrain(Command posture, Run& run) {
               "parts; "
               "for each part, train on the others and test on it")
       .range(2, 100);
-  addUnits(command, options->units);
+  addForm(command, options->form);
   command.callback([options, output, &run] {
     if (options->folds == 0 && !output.isGiven()) lacks("-o or --folds");
     run = [options] { return train(*options); };

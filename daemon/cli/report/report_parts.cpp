@@ -30,6 +30,7 @@ using std::chrono::seconds;
 
 constexpr std::size_t kMega = 1 << 20;
 constexpr std::size_t kMostFlightBytes = 2 * kMega;  // of one recording
+constexpr std::size_t kMostCrashFrame = 8 * kMega;
 constexpr const char* kUnits[] = {"merlin-devices.service", "merlin-wall.service",
                                   "merlin-page.service",    "merlin-alarms.service",
                                   "merlin-rfb.service",     "merlin.target"};
@@ -133,14 +134,16 @@ void collectJournal(PartFolder& folder) {
   collectOutput("journal.txt", arguments, folder);
 }
 
-// The recordings of the last day in the daemon's folder for them (devices_role), the newest first.
+// What the last day left in the daemon's folder for it, the newest first: devices' recordings
+// (devices_role), and the last frames of walls that crashed (crash_frame).
 std::vector<std::string> recordings(const ReportSubject& subject) {
   std::vector<std::pair<fs::file_time_type, std::string>> found;
   const auto day_ago = fs::file_time_type::clock::now() - std::chrono::hours(24);
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(subject.run_directory + "/flight", error)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(subject.instance + "-") || !name.ends_with(".bytes")) continue;
+    const bool is_kind = name.ends_with(".bytes") || name.ends_with(".png");
+    if (!name.starts_with(subject.instance + "-") || !is_kind) continue;
     if (const auto time = entry.last_write_time(error); !error && time >= day_ago)
       found.emplace_back(time, entry.path().string());
   }
@@ -154,7 +157,7 @@ std::vector<std::string> recordings(const ReportSubject& subject) {
 void collectFlight(const ReportSubject& subject, PartFolder& folder) {
   std::set<std::string> taken;
   for (const std::string& path : recordings(subject)) {
-    folder.copy(path, kMostFlightBytes);
+    folder.copy(path, path.ends_with(".png") ? kMostCrashFrame : kMostFlightBytes);
     taken.insert(path);
   }
   const auto files = askRole(subject.instance, "devices", {"flight", "", seconds(10)});
@@ -217,8 +220,10 @@ std::vector<ReportPart> reportParts(const ReportSubject& s) {
        "time of each step of the last frames, as by merlin trace; for ui.perfetto.dev"},
       {{"journal", false, seconds(30), 8 * kMega, collectJournal},
        "the journal of MERLIN's units of the last day, at most 20000 lines"},
-      {{"flight", true, seconds(20), 8 * kMega, [&s](PartFolder& f) { collectFlight(s, f); }},
-       "bytes of the devices' lines: recordings of the last day and of now, as by merlin flight"}};
+      {{"flight", true, seconds(20), 24 * kMega, [&s](PartFolder& f) { collectFlight(s, f); }},
+       "bytes of the devices' lines: recordings of the last day and of now, as by merlin flight; "
+       "and "
+       "the last frames of walls that crashed on that day"}};
 }
 
 }  // namespace merlin::cli
