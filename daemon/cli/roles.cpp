@@ -110,11 +110,17 @@ Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon) {
   return roles;
 }
 
+// While a process starts another program it has no command line for a moment. A name it always has:
+// that of a program which was started by the link /proc/self/exe is "exe" until it gives itself
+// another (ProgramRestart). One that has ended and waits for its parent has no command line either.
 bool isMerlind(std::uint32_t pid) {
-  std::ifstream file(fmt::format("/proc/{}/cmdline", pid));
-  std::string program;
-  std::getline(file, program, '\0');
-  return std::filesystem::path(program).filename() == "merlind";
+  std::string program, state;  // "1234 (merlind) S ..."
+  std::getline(std::ifstream(fmt::format("/proc/{}/cmdline", pid)), program, '\0');
+  if (!program.empty()) return std::filesystem::path(program).filename() == "merlind";
+  std::getline(std::ifstream(fmt::format("/proc/{}/stat", pid)), state);
+  const bool is_named =
+      state.find("(merlind) ") != std::string::npos || state.find("(exe) ") != std::string::npos;
+  return is_named && state.find(") Z ") == std::string::npos;
 }
 
 Result<std::string> instanceOf(std::uint32_t pid) {
