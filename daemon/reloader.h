@@ -48,9 +48,9 @@ class Reloader {
 
   // The command: "now" and "check", which only says what would be done, return {"request": N}; N
   // as the argument returns {"pending": true} until the request was executed, then its answer
-  // (reload::answerText()). The last 32 answers are kept. Once the process is
-  // to start again, N is the request for which it does. Errors: kInvalidArgument; kBusy (8 requests
-  // wait). Returns at once. Thread-safe.
+  // (reload::answerText()). The last 32 answers are kept. Once the process is to start again, N is
+  // the request for which it does. Errors: kInvalidArgument; kBusy (8 requests wait). Returns at
+  // once. Thread-safe.
   Result<std::string> run(const std::string& argument);
   // As by "now"; whoever asks hears of it by log and events. Thread-safe.
   void request();
