@@ -1,13 +1,12 @@
 #include "config/writer.h"
 
 #include <cmath>
-#include <filesystem>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "config/visitor.h"
+#include "daemon/base/absolute_path.h"
 
 namespace merlin {
 namespace {
@@ -21,12 +20,6 @@ Json plain(double value) {
   const auto narrow = static_cast<float>(value);
   if (static_cast<double>(narrow) != value) return value;
   return std::stod(fmt::format("{}", narrow));
-}
-
-// So that the text means the same wherever it is kept.
-std::string absolute(const std::string& path) {
-  std::error_code error;
-  return path.empty() ? "" : std::filesystem::absolute(path, error).lexically_normal().string();
 }
 
 class TextWriter final : public SettingsVisitor {
@@ -43,10 +36,11 @@ class TextWriter final : public SettingsVisitor {
     (*at_)[key] = values;
   }
   void path(const char* key, std::string& value, const char*) override {
-    (*at_)[key] = absolute(value);
+    (*at_)[key] = absolutePath(value);
   }
   void secretFile(const char* key, std::string& value, const char*) override {
-    (*at_)[key] = secrets_ == Secrets::kWritten || value.empty() ? absolute(value) : kSecretLeftOut;
+    (*at_)[key] =
+        secrets_ == Secrets::kWritten || value.empty() ? absolutePath(value) : kSecretLeftOut;
   }
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char*) override {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "config/writer.h"
+#include "daemon/base/absolute_path.h"
 #include "daemon/base/files.h"
 #include "daemon/base/log.h"
 #include "daemon/state/state_folder.h"
@@ -17,17 +18,12 @@ namespace fs = std::filesystem;
 
 constexpr Duration kStep = std::chrono::milliseconds(200);
 
-std::string absolute(const std::string& path) {
-  std::error_code error;
-  return fs::absolute(path, error).lexically_normal();
-}
-
 }  // namespace
 
 // "etc-merlin-merlin.json.wall.last-good": configurations of the same name may be in several
 // folders, and each role checks other files. A dash of the name is doubled.
 std::string lastGoodFile(const std::string& configuration, const std::string& role) {
-  const std::string folder = state::stateFolder(), path = absolute(configuration);
+  const std::string folder = state::stateFolder(), path = absolutePath(configuration);
   if (folder.empty() || path.empty()) return {};
   std::string name;
   for (const char c : path.substr(1)) name += c == '/' ? "-" : c == '-' ? "--" : std::string(1, c);

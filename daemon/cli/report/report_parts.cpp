@@ -222,8 +222,7 @@ std::vector<ReportPart> reportParts(const ReportSubject& s) {
        "the journal of MERLIN's units of the last day, at most 20000 lines"},
       {{"flight", true, seconds(20), 24 * kMega, [&s](PartFolder& f) { collectFlight(s, f); }},
        "bytes of the devices' lines: recordings of the last day and of now, as by merlin flight; "
-       "and "
-       "the last frames of walls that crashed on that day"}};
+       "and the last frames of walls that crashed on that day"}};
 }
 
 }  // namespace merlin::cli
