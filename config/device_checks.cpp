@@ -155,10 +155,7 @@ void checkOwnSocket(const DeviceSettings& device, const std::string& at, LoadedS
 void checkOwnVrpn(const DeviceSettings& device, const std::string& at, LoadedSettings& loaded) {
   const auto port = parsePort(device.line.port);
   const bool of_vrpn = device.line.driver == "vrpn" || device.line.driver == "vrpn_pad";
-  if (!of_vrpn || !port || port->kind != PortKind::kTcp) return;
-  const bool here =
-      port->path == "localhost" || port->path == "::1" || port->path.starts_with("127.");
-  if (!here || port->service != std::to_string(loaded.settings.serve.vrpn_port)) return;
+  if (!of_vrpn || !port || !isOwnVrpnServer(*port, loaded.settings.serve)) return;
   loaded.addFinding(at + "/port",
                     fmt::format("is \"{}\", where merlind itself serves by /serve/vrpn_port; the "
                                 "device's own server is needed here, and another number there",
@@ -309,6 +306,11 @@ void checkStations(LoadedSettings& loaded) {
 }
 
 }  // namespace
+
+bool isOwnVrpnServer(const PortAddress& port, const ServeSettings& serve) {
+  const bool here = port.path == "localhost" || port.path == "::1" || port.path.starts_with("127.");
+  return port.kind == PortKind::kTcp && here && port.service == std::to_string(serve.vrpn_port);
+}
 
 void addFaults(const SettingFaults& faults, const std::string& group, LoadedSettings& loaded,
                const std::string& prefix) {

@@ -100,10 +100,11 @@ class PortClaim {
 // One client: the numbers that it gave to senders and types, and the state of what was sent to it.
 class VrpnSession final : public net::Session {
  public:
-  VrpnSession(const shm::DeviceSlots& devices, const Clock& clock,
+  VrpnSession(const shm::DeviceSlots& devices, const std::string& instance, const Clock& clock,
               std::unique_ptr<PortClaim> port = nullptr)
       : devices_(devices),
         named_(devices),
+        instance_(instance),
         clock_(clock),
         port_(std::move(port)),
         buttons_(devices.balls.size()) {}
@@ -125,6 +126,7 @@ class VrpnSession final : public net::Session {
 
   const shm::DeviceSlots& devices_;
   const Senders named_;
+  const std::string& instance_;
   const Clock& clock_;
   std::unique_ptr<PortClaim> port_;  // if we connected to the client
   bool greeted_ = false;             // its cookie has arrived
@@ -164,6 +166,7 @@ void VrpnSession::open(std::string& output) {
          output);
   for (std::int32_t i = 0; i < std::ssize(kTypes); ++i)
     send(i, kVrpnDescribeType, vrpnName(kTypes[i]), now_ns, output);
+  send(std::ssize(kTypes), kVrpnDescribeType, vrpnName(kVrpnInstance + instance_), now_ns, output);
   // A button may already be pressed.
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     const auto ball = devices_.balls[i].samples->newest();
@@ -222,21 +225,23 @@ void VrpnSession::sendButtons(std::size_t ball, const BallSample& s, std::string
 }
 
 Result<std::unique_ptr<VrpnServer>> VrpnServer::start(int port, const shm::DeviceSlots& devices,
-                                                      ThreadWatch& watch, const Clock& clock) {
+                                                      ThreadWatch& watch, const Clock& clock,
+                                                      std::string instance) {
   auto tcp = net::listenTcp("127.0.0.1", port);
   if (!tcp) return tcp.error();
   auto udp = listenUdp(net::portOf(tcp->get()));
   if (!udp) return udp.error();
-  return std::unique_ptr<VrpnServer>(
-      new VrpnServer(*std::move(tcp), *std::move(udp), devices, watch, clock));
+  return std::unique_ptr<VrpnServer>(new VrpnServer({*std::move(tcp), *std::move(udp)}, devices,
+                                                    watch, clock, std::move(instance)));
 }
 
-VrpnServer::VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DeviceSlots& devices,
-                       ThreadWatch& watch, const Clock& clock)
-    : udp_(std::move(udp)),
-      port_(net::portOf(tcp.get())),
+VrpnServer::VrpnServer(Sockets sockets, const shm::DeviceSlots& devices, ThreadWatch& watch,
+                       const Clock& clock, std::string instance)
+    : udp_(std::move(sockets.udp)),
+      port_(net::portOf(sockets.tcp.get())),
       devices_(devices),
       clock_(clock),
+      instance_(std::move(instance)),
       server_("VRPN", limits(), clock),
       datagrams_(kDatagrams, kDatagrams),
       waker_(
@@ -256,8 +261,8 @@ VrpnServer::VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DeviceSlots& devic
     auto& seen = seen_trackers_.emplace_back();
     for (std::size_t i = 0; i < kStations; ++i) seen[i] = tracker.stations[i]->count();
   }
-  server_.listen(std::move(tcp), [this](const net::Peer&) {
-    return std::make_unique<VrpnSession>(devices_, clock_);
+  server_.listen(std::move(sockets.tcp), [this](const net::Peer&) {
+    return std::make_unique<VrpnSession>(devices_, instance_, clock_);
   });
   thread_ = net::ServerThread(watch, "VRPN", [this] { round(); });
 }
@@ -295,7 +300,7 @@ void VrpnServer::connectBack(int port) {
   net::Peer peer;
   peer.address = INADDR_LOOPBACK;
   server_.add(std::move(fd), peer, [this, port](const net::Peer&) {
-    return std::make_unique<VrpnSession>(devices_, clock_,
+    return std::make_unique<VrpnSession>(devices_, instance_, clock_,
                                          std::make_unique<PortClaim>(connected_back_, port));
   });
 }

@@ -30,10 +30,12 @@ class VrpnSession;
 // by UDP to be connected to. Owns its threads; reads shared memory as any client does.
 class VrpnServer final : public net::Server {
  public:
-  // `port` 0 takes any free one. Errors: those of listenTcp(). `devices`, `watch` and `clock` must
-  // outlive the server.
+  // `port` 0 takes any free one. `instance`: the daemon's, which the server tells its clients
+  // (kVrpnInstance). Errors: those of listenTcp(). `devices`, `watch` and `clock` must outlive the
+  // server.
   static Result<std::unique_ptr<VrpnServer>> start(int port, const shm::DeviceSlots& devices,
-                                                   ThreadWatch& watch, const Clock& clock);
+                                                   ThreadWatch& watch, const Clock& clock,
+                                                   std::string instance = "merlin");
   ~VrpnServer() override;
   VrpnServer(const VrpnServer&) = delete;
   VrpnServer& operator=(const VrpnServer&) = delete;
@@ -43,8 +45,11 @@ class VrpnServer final : public net::Server {
   std::string failure() const override { return thread_.failure(); }
 
  private:
-  VrpnServer(UniqueFd tcp, UniqueFd udp, const shm::DeviceSlots& devices, ThreadWatch& watch,
-             const Clock& clock);
+  struct Sockets {
+    UniqueFd tcp, udp;
+  };
+  VrpnServer(Sockets sockets, const shm::DeviceSlots& devices, ThreadWatch& watch,
+             const Clock& clock, std::string instance);
   void round();
   void answerDatagrams();
   void connectBack(int port);
@@ -57,6 +62,7 @@ class VrpnServer final : public net::Server {
   int port_;
   shm::DeviceSlots devices_;
   const Clock& clock_;
+  std::string instance_;
   std::set<int> connected_back_;  // clients' ports that we are connected to; must outlive server_
   net::ConnectionServer server_;
   TokenBucket datagrams_;

@@ -36,6 +36,10 @@ inline constexpr const char* kVrpnButtonType = "vrpn_Button Change";   // of one
 inline constexpr const char* kVrpnButtonsType = "vrpn_Button States";  // of all of a device
 inline constexpr const char* kVrpnChannelsType = "vrpn_Analog Channel";
 
+// A server of MERLIN also describes a type of this name with its instance after it. No message has
+// the type: it says whose the server is, so that no merlind is offered its own devices.
+inline constexpr const char* kVrpnInstance = "MERLIN instance ";
+
 // The most buttons and channels that VRPN knows of one device; both are numbered from 0.
 inline constexpr std::size_t kVrpnButtons = 256, kVrpnChannels = 128;
 

@@ -41,11 +41,7 @@ Result<std::string> Client::open(ByteStream& stream, const std::function<const c
   if (const auto sent = dialogue.send(vrpnCookie()); !sent) return sent.error();
   const auto cookie = dialogue.readExactly(kVrpnCookieLength, kCookieTime, "VRPN's greeting");
   if (!cookie) return cookie.error();
-  if (!vrpnCookieFits(*cookie)) {
-    return Error{Errc::kMalformed, fmt::format("the greeting \"{}\" is not that of a server of "
-                                               "VRPN 7",
-                                               quoteBytes(*cookie))};
-  }
+  if (const auto fits = checkGreeting(*cookie); !fits) return fits.error();
   if (const auto sent = dialogue.send(introduction()); !sent) return sent.error();
   opening_ = true;
   const auto complete = await(stream, lacks);

@@ -1,6 +1,17 @@
 #include "drivers/vrpn/protocol.h"
 
+#include <fmt/format.h>
+
+#include "drivers/port/dialogue.h"
+
 namespace merlin::vrpn {
+
+Result<Ok> checkGreeting(std::string_view cookie) {
+  if (vrpnCookieFits(cookie)) return Ok{};
+  return Error{
+      Errc::kMalformed,
+      fmt::format("the greeting \"{}\" is not that of a server of VRPN 7", quoteBytes(cookie))};
+}
 
 std::optional<Message> Parser::feed(std::byte byte) noexcept {
   if (broken_) return std::nullopt;

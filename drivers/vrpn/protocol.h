@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "daemon/base/result.h"
 #include "drivers/port/vrpn_line.h"
 
 namespace merlin::vrpn {
@@ -15,6 +16,10 @@ struct Message {
   VrpnHeader header;
   std::string_view payload;  // cut after Parser::kMostPayload; valid until the next byte is fed
 };
+
+// Whether the first kVrpnCookieLength bytes are those of a server of VRPN 7. Errors: kMalformed,
+// with the bytes.
+Result<Ok> checkGreeting(std::string_view cookie);
 
 // Reads what follows the cookie.
 class Parser {

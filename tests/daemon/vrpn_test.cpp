@@ -201,6 +201,20 @@ void checkSamples(Client& client, shm::DevicesSegment& segment) {
   EXPECT_GT(pose->header.seconds, 1'600'000'000) << "the time of day";
 }
 
+TEST(VrpnServer, SaysWhoseItIs) {
+  const SystemClock clock;
+  ThreadWatch threads;
+  const test::LocalDevices segment;
+  const auto server = VrpnServer::start(0, segment.slots(), threads, clock, "lab");
+  ASSERT_TRUE(server) << server.error().what;
+  const sockaddr_in address = loopback((*server)->port());
+  UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  ASSERT_EQ(::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  Client client(::dup(fd.get()));
+  ASSERT_TRUE(client.next("vrpn_Button States"));
+  EXPECT_EQ(client.types.rbegin()->second, "MERLIN instance lab");
+}
+
 TEST(VrpnServer, ServesAClientThatConnects) {
   const SystemClock clock;
   ThreadWatch threads;

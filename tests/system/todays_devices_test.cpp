@@ -12,6 +12,8 @@
 #include "daemon/net/connection_server.h"
 #include "drivers/io/pty_master.h"
 #include "drivers/port/evdev_line.h"
+#include "tests/support/vrpn_messages.h"
+#include "tests/support/vrpn_speaker.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -300,6 +302,113 @@ TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAn
   EXPECT_EQ(client.devices()->ball("wand")->samples->newest()->buttons, 0u);
   server.process().kill(SIGKILL);
   EXPECT_TRUE(client.healthIs("wand", HealthState::kAbsent));
+}
+
+// What `merlin devices --json` says about the VRPN server at this port, with these options besides.
+nlohmann::json vrpnServerAt(int port, std::vector<std::string> options = {}) {
+  const std::string host = fmt::format("127.0.0.1:{}", port);
+  options.insert(options.begin(), {kMerlin, "devices", "--json", "--vrpn", host});
+  const auto all = nlohmann::json::parse(run(options).output, nullptr, false);
+  for (const auto& server : all.value("vrpn_servers", nlohmann::json::array())) {
+    if (server["port"] == "tcp://" + host) return server;
+  }
+  return {};
+}
+
+// The entry by which the driver reads the server's device; null if there is none.
+nlohmann::json entryFor(const nlohmann::json& server, const std::string& device,
+                        const std::string& driver) {
+  for (const auto& one : server.value("devices", nlohmann::json::array())) {
+    for (const auto& entry : one["as"]) {
+      if (one["name"] == device && entry["driver"] == driver) return entry;
+    }
+  }
+  return {};
+}
+
+TEST(TodaysDevices, AVrpnServersDevicesAreListedWithTheEntryThatMakesThemDevices) {
+  const TempDir dir;
+  const int port = freePort();
+  Merlind server(dir, "", "server", vrpnServer(port));
+  ASSERT_TRUE(server.ready()) << server.process().output();
+  nlohmann::json listed, entry;
+  // A busy machine may take longer than the half second that a server has.
+  ASSERT_TRUE(eventually([&] {
+    listed = vrpnServerAt(port);
+    entry = entryFor(listed, "Tracker0", "vrpn");
+    return !entry.is_null() && entryFor(listed, "Tracker0", "vrpn_pad").is_null();
+  })) << listed;
+  EXPECT_EQ(listed["version"], "07.38");
+  EXPECT_FALSE(listed["own"]);
+  EXPECT_EQ(entryFor(listed, "Ball0", "vrpn_pad")["vrpn_pad"]["device"], "Ball0");
+  MerlindOptions options;
+  options.role = "devices";
+  options.emulate = false;
+  options.also = onlyDevice(entry);
+  Merlind client(dir, "", "client", options);
+  EXPECT_TRUE(client.healthIs(entry["name"], HealthState::kOk)) << client.process().output();
+  EXPECT_TRUE(eventually([&] {
+    listed = vrpnServerAt(port, {"-c", client.config()});
+    return listed["answers"] == true;
+  }));
+  EXPECT_TRUE(entryFor(listed, "Tracker0", "vrpn").is_null()) << "it is configured now";
+  EXPECT_FALSE(entryFor(listed, "Ball0", "vrpn_pad").is_null());
+}
+
+TEST(TodaysDevices, MerlindIsNotOfferedWhatItServesItself) {
+  const TempDir dir;
+  const int port = freePort();
+  Merlind server(dir, "", "server", vrpnServer(port));
+  ASSERT_TRUE(server.ready()) << server.process().output();
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--instance", server.instance()}, {"-c", server.config()}}) {
+    nlohmann::json listed;
+    EXPECT_TRUE(eventually([&] {
+      listed = vrpnServerAt(port, options);
+      return listed["answers"] == true;
+    }));
+    EXPECT_TRUE(listed["own"]) << listed;
+    EXPECT_EQ(listed["devices"].size(), 0u) << listed;
+  }
+}
+
+TEST(TodaysDevices, AVrpnServerThatLiesOrNeverAnswersHarmsNoList) {
+  const TempDir dir;
+  const auto silent = net::listenTcp("127.0.0.1", 0);
+  const std::string evil = R"(a "b"}, {"name": "evil)";
+  std::string lies = vrpnCookie() + vrpnType(4, kVrpnPoseType) + vrpnSender(1, evil) +
+                     vrpnSender(2, "\x1B]0;title\x07\x1B[2J") +
+                     vrpnSender(3, std::string(5000, 'x')) +
+                     vrpnSender(4,
+                                "\xC2\x9B"
+                                "31m") +
+                     vrpnMessage(99, 4, "x");
+  for (int i = 0; i < 2000; ++i) lies += vrpnSender(100 + i, fmt::format("many{}", i));
+  lies += std::string(64, '\xFF');
+  const VrpnSpeaker liar(lies);
+  const auto list = [&](const char* json) {
+    return run({kMerlin, "devices", "--vrpn", fmt::format("127.0.0.1:{}", liar.port()), "--vrpn",
+                fmt::format("localhost:{}", net::portOf(silent->get())), json});
+  };
+  Outcome text;
+  EXPECT_TRUE(eventually([&] {
+    text = list("--instance=none");
+    return text.output.find("an invalid length") != std::string::npos;
+  })) << text.output;
+  EXPECT_EQ(text.status, 0);
+  EXPECT_EQ(text.output.find_first_of("\x1B\x07\xC2"), std::string::npos) << text.output;
+  EXPECT_EQ(text.output.find(std::string(100, 'x')), std::string::npos);
+  EXPECT_NE(text.output.find(R"("vrpn": {"device": "a \"b\"}, {\"name\": \"evil"})"),
+            std::string::npos)
+      << text.output;
+  EXPECT_NE(text.output.find(": no answer within 0.5 s\n"), std::string::npos) << text.output;
+  EXPECT_LT(std::ranges::count(text.output, '\n'), 250) << "at most 64 devices of a server";
+  const Outcome asked = list("--json");
+  const auto json = nlohmann::json::parse(asked.output, nullptr, false);
+  EXPECT_TRUE(json.is_object()) << asked.output;
+  EXPECT_EQ(asked.output.find('\x1B'), std::string::npos);
+  EXPECT_EQ(run({kMerlin, "devices", "--vrpn", "a b"}).status, 2);
+  EXPECT_EQ(run({kMerlin, "devices", "-c", dir / "none.json"}).status, 2);
 }
 
 }  // namespace

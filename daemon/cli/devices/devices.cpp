@@ -1,5 +1,5 @@
 // merlin devices: the devices that a running merlind reads, and what is plugged into this machine
-// and not configured.
+// or served by VRPN servers and not configured.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -10,9 +10,14 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "config/loader.h"
+#include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/devices/live_table.h"
 #include "daemon/cli/devices/plugged.h"
+#include "daemon/cli/devices/vrpn_offers.h"
+#include "daemon/cli/devices/vrpn_servers.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/stop_signals.h"
@@ -25,9 +30,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kRedraw_ms = 100;
+constexpr Duration kVrpnWait = std::chrono::milliseconds(500);  // for the answers of all servers
+constexpr const char* kUsualConfig = "/etc/merlin/merlin.json";
 
 struct DevicesOptions {
-  std::string instance = "merlin";
+  std::string instance = "merlin", config;
+  std::vector<std::string> vrpn;
   bool json = false, watch = false;
   double seconds = 0;
 };
@@ -48,10 +56,12 @@ std::string pathOf(const std::string& port) {
 
 // Of a merlind that runs; empty otherwise.
 Result<std::vector<Configured>> configuredDevices(const std::string& instance) {
-  const auto reader = shm::DevicesReader::open(shm::segmentName(instance, "devices"));
+  const std::string segment = shm::segmentName(instance, "devices");
+  const auto reader = shm::DevicesReader::open(segment);
   if (!reader) return reader.error();
   const Timestamp now = SystemClock().now();
-  if (!reader->alive(now)) return Error{Errc::kNotFound, "it has ended"};
+  if (!shm::isRunning(segment, *(**reader).header, now))
+    return Error{Errc::kNotFound, "it has ended"};
   std::vector<Configured> all;
   for (const auto& [device, slot] : (*reader)->health) {
     const auto health = slot->read();
@@ -131,29 +141,73 @@ Json jsonOf(const Plugged& plugged, const Configured* reader) {
           {"usual", plugged.usual},       {"as", std::move(entries)}};
 }
 
-// What is plugged in, under names that no configured device has. A device without a port keeps
-// its name free: it is a place for one.
-std::vector<Plugged> pluggedBeside(const std::vector<Configured>& configured) {
+// Of the file that the option names, or of the usual one where it can be read; otherwise the
+// defaults.
+Result<Settings> settingsOf(const DevicesOptions& options) {
+  if (options.config.empty() && !fileStamp(kUsualConfig)) return Settings{};
+  const std::string file = options.config.empty() ? kUsualConfig : options.config;
+  const LoadedSettings loaded = loadSettingsFile(file);
+  if (loaded.verdict() != LoadedSettings::Verdict::kInvalid) return loaded.settings;
+  const std::string what = file + ": the configuration is invalid or cannot be read";
+  if (!options.config.empty()) return Error{Errc::kInvalidArgument, what};
+  printNote(what + ", so the VRPN servers that it names are not asked");
+  return Settings{};
+}
+
+// Names of configured devices. One without a port keeps its name free: it is a place for a device.
+std::vector<std::string> takenNames(const std::vector<Configured>& running,
+                                    const Settings& settings) {
   std::vector<std::string> taken;
-  for (const Configured& device : configured) {
+  for (const Configured& device : running) {
     if (device.health.port[0]) taken.push_back(device.name);
   }
-  std::vector<Plugged> all = findPlugged();
-  nameApart(all, taken);
-  return all;
+  for (const DeviceSettings& device : settings.devices.list) {
+    if (!device.line.port.empty()) taken.push_back(device.name);
+  }
+  return taken;
+}
+
+// What there is beside the devices of the running merlind, with names that are free.
+struct Found {
+  std::vector<Plugged> plugged;
+  std::vector<VrpnListing> vrpn;
+};
+
+Result<Found> findBeside(const std::vector<Configured>& running, const DevicesOptions& options) {
+  const auto settings = settingsOf(options);
+  if (!settings) return settings.error();
+  std::vector<std::string> taken = takenNames(running, *settings), servers;
+  for (const std::string& text : options.vrpn) servers.push_back(*vrpnPort(text));
+  Found found;
+  found.plugged = findPlugged();
+  nameApart(found.plugged, taken);
+  for (const Plugged& plugged : found.plugged) {
+    for (const Plugged::Use& use : plugged.uses) taken.push_back(use.name);
+  }
+  const auto answers = askServers(serversToAsk(settings->devices, servers), kVrpnWait);
+  found.vrpn = listOffers(answers, *settings, options.instance, taken);
+  return found;
+}
+
+void printFoundJson(bool running, const std::vector<Configured>& configured, const Found& found) {
+  Json json = {{"running", running},
+               {"configured", Json::array()},
+               {"plugged", Json::array()},
+               {"vrpn_servers", Json::array()}};
+  for (const Configured& device : configured) json["configured"].push_back(jsonOf(device));
+  for (const Plugged& plugged : found.plugged)
+    json["plugged"].push_back(jsonOf(plugged, readerOf(plugged, configured)));
+  for (const VrpnListing& listing : found.vrpn) json["vrpn_servers"].push_back(toJson(listing));
+  printJsonLine(json);
 }
 
 int list(const DevicesOptions& options) {
   const auto running = configuredDevices(options.instance);
   const std::vector<Configured> configured = running ? *running : std::vector<Configured>();
-  const std::vector<Plugged> all = pluggedBeside(configured);
+  const auto found = findBeside(configured, options);
+  if (!found) return fail(found.error());
   if (options.json) {
-    Json json = {
-        {"running", running.ok()}, {"configured", Json::array()}, {"plugged", Json::array()}};
-    for (const Configured& device : configured) json["configured"].push_back(jsonOf(device));
-    for (const Plugged& plugged : all)
-      json["plugged"].push_back(jsonOf(plugged, readerOf(plugged, configured)));
-    printJsonLine(json);
+    printFoundJson(running.ok(), configured, *found);
     return kExitDone;
   }
   if (running)
@@ -161,17 +215,23 @@ int list(const DevicesOptions& options) {
   else
     printOut("No merlind with devices runs as \"{}\".\n", options.instance);
   printConfigured(configured);
-  printOut("{}\n", all.empty()
+  printOut("{}\n", found->plugged.empty()
                        ? "Nothing is plugged in that could be a device."
                        : "Plugged in, with the entry for the configuration's list \"devices\":");
-  for (const Plugged& plugged : all) printPlugged(plugged, readerOf(plugged, configured));
+  for (const Plugged& plugged : found->plugged)
+    printPlugged(plugged, readerOf(plugged, configured));
+  printOut(
+      "VRPN servers, with the entry for each device that is not configured (others are asked by "
+      "--vrpn HOST):\n");
+  for (const VrpnListing& listing : found->vrpn) printOut("{}", toText(listing));
   return kExitDone;
 }
 
 // On a terminal each table replaces the one before.
 int watch(const DevicesOptions& options) {
   const UniqueFd stop = stopSignals();
-  const auto reader = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
+  const std::string segment = shm::segmentName(options.instance, "devices");
+  const auto reader = shm::DevicesReader::open(segment);
   if (!reader && reader.error().code == Errc::kNotFound) {
     return fail({Errc::kNotFound,
                  fmt::format("no merlind with devices runs as \"{}\": start it first, or give "
@@ -183,7 +243,8 @@ int watch(const DevicesOptions& options) {
   const Timestamp began = clock.now();
   const bool terminal = ::isatty(STDOUT_FILENO) == 1;
   while (options.seconds <= 0 || toSeconds(clock.now() - began) < options.seconds) {
-    if (!reader->alive(clock.now())) return fail({Errc::kClosed, "merlind has ended"});
+    if (!shm::isRunning(segment, *(**reader).header, clock.now()))
+      return fail({Errc::kClosed, "merlind has ended"});
     if (terminal) fmt::print("\x1b[H\x1b[J");
     printOut("{}\n", liveTable(**reader, clock.now()));
     std::fflush(stdout);
@@ -201,12 +262,23 @@ void addDevices(Command app, Run& run) {
       "devices",
       "List the devices that merlind reads and how they are, and what is plugged into this machine "
       "and not configured (serial adapters, gamepads, space mice, clickers, touch screens), with "
-      "the entry for "
-      "the "
-      "configuration's list \"devices\" that makes it a device, and the axes and keys of input "
-      "devices by the names that the configuration uses. No device is opened.\nExample: merlin "
-      "devices; merlin devices --watch");
+      "the entry for the configuration's list \"devices\" that makes it a device, and the axes and "
+      "keys of input devices by the names that the configuration uses. No device is opened. VRPN "
+      "servers are asked for their devices: that of this machine at port 3883, those that the "
+      "configuration names and those of --vrpn, for half a second.\n"
+      "Example: merlin devices; merlin devices --vrpn lab; merlin devices --watch");
   addInstance(command, options->instance);
+  command
+      .option("-c,--config", options->config,
+              "The configuration whose VRPN servers are asked and whose devices are not offered "
+              "again; /etc/merlin/merlin.json if none is named")
+      .typeName("FILE");
+  command.option("--vrpn", options->vrpn, "Another VRPN server that is asked; may be repeated")
+      .typeName("HOST[:PORT]")
+      .repeatable()
+      .check([](const std::string& text) {
+        return vrpnPort(text) ? "" : excerpt(text) + " is neither HOST nor HOST:PORT";
+      });
   command.flag("--json", options->json, "Print one JSON document");
   command.flag("--watch", options->watch,
                "Show what the devices measure, ten times a second, until interrupted");

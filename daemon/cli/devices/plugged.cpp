@@ -217,13 +217,16 @@ std::vector<Plugged> findPlugged(const std::string& root) {
   return all;
 }
 
+std::string freeName(const std::string& wanted, const std::vector<std::string>& taken) {
+  std::string name = wanted;
+  for (int n = 2; std::ranges::find(taken, name) != taken.end(); ++n)
+    name = fmt::format("{}_{}", wanted, n);
+  return name;
+}
+
 void nameApart(std::vector<Plugged>& all, std::vector<std::string> taken) {
   for (Plugged& plugged : all) {
-    for (Plugged::Use& use : plugged.uses) {
-      const std::string wanted = use.name;
-      for (int n = 2; std::ranges::find(taken, use.name) != taken.end(); ++n)
-        use.name = fmt::format("{}_{}", wanted, n);
-    }
+    for (Plugged::Use& use : plugged.uses) use.name = freeName(use.name, taken);
     if (plugged.uses.size() == 1) taken.push_back(plugged.uses.front().name);
   }
 }

@@ -33,6 +33,9 @@ struct Plugged {
 // read are listed too. Cost: a few files for each input device.
 std::vector<Plugged> findPlugged(const std::string& root = "");
 
+// The name, or where it is taken the first free one of "mouse_2", "mouse_3" ...
+std::string freeName(const std::string& wanted, const std::vector<std::string>& taken);
+
 // Changes names of uses so that they differ from the names in `taken`, and those of things that
 // have only one use from each other: "mouse_2".
 void nameApart(std::vector<Plugged>& all, std::vector<std::string> taken);
