@@ -24,8 +24,8 @@ namespace merlin::shm {
 
 inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
 inline constexpr std::uint32_t kVersion = 5;
-inline constexpr std::size_t kMostFields = 512;          // of the wall's segment
-inline constexpr std::size_t kMostDevicesFields = 1664;  // of the devices' segment
+inline constexpr std::size_t kMostFields = 704;          // of the wall's segment
+inline constexpr std::size_t kMostDevicesFields = 2304;  // of the devices' segment
 
 // A reader only needs to know the first 40 bytes beforehand: they have the offset of the table of
 // fields, which describes everything else. They are the same in the frame buffer's segment.
@@ -50,7 +50,7 @@ static_assert(offsetof(Header, field_offset) == 24 && offsetof(Header, heartbeat
 static_assert(offsetof(Header, status_endpoint) == 64 && sizeof(Header) == 280);
 
 // Maximum number of actions (daemon/base/commands.h).
-inline constexpr std::size_t kMostActions = 32;
+inline constexpr std::size_t kMostActions = 64;
 
 // Actions that the inputs of one device are bound to. Written when one begins or ends. Index of the
 // arrays: kActions of daemon/base/commands.h; other processes find an action by its field's name.
@@ -62,7 +62,7 @@ struct ActionState {
   std::uint32_t sequence;             // actions of all kinds that have begun
   std::uint8_t recent[12];            // index of the n-th of them, at n % 12
 };
-static_assert(sizeof(ActionState) == 192);
+static_assert(sizeof(ActionState) == 352);
 
 // Slots of one glove. Writer: its device thread, which writes what follows from a sample before it.
 struct GloveSlots {

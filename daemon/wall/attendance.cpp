@@ -89,7 +89,8 @@ bool Attendance::moves(const WallInput& input) {
   const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
   const auto& touch = input.scene.touch;  // a wheel moves it without a finger
   const bool pushed = (ball && isPushed(*ball)) || touch.fingers > 0 || touch.moves() ||
-                      input.panel_pushed || input.align.push != state::Offset{};
+                      input.scene.held.moves() || input.panel_pushed ||
+                      input.align.push != state::Offset{};
   return handMoves(input.scene) || pushed || pressed != 0;
 }
 

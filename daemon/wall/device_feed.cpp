@@ -50,6 +50,18 @@ bool holdsOneOf(const actions::ActionCounts& counts, std::span<const std::size_t
   return std::any_of(actions.begin(), actions.end(), [&](std::size_t i) { return counts.held[i]; });
 }
 
+render::scene::HeldMotion motionOf(const actions::ActionCounts& used) {
+  const auto between = [&](std::size_t minus, std::size_t plus) {
+    return static_cast<int>(used.held[plus]) - static_cast<int>(used.held[minus]);
+  };
+  return {.right = between(actionIndex("move_left"), actionIndex("move_right")),
+          .up = between(actionIndex("move_down"), actionIndex("move_up")),
+          .nearer = between(actionIndex("zoom_out"), actionIndex("zoom_in")),
+          .turn_right = between(actionIndex("turn_left"), actionIndex("turn_right")),
+          .turn_up = between(actionIndex("turn_down"), actionIndex("turn_up")),
+          .roll_right = between(actionIndex("roll_left"), actionIndex("roll_right"))};
+}
+
 // Its index in kAlignActions; kAlignActionCount: it is none of them.
 std::uint8_t alignActionOf(std::size_t action) {
   if (action >= kActions.size()) return kAlignActionCount;  // of a newer release's devices
@@ -267,6 +279,7 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
   input.scene.grab = used.held[actionIndex("grab")];
   input.scene.fly = used.held[actionIndex("fly")];
   input.scene.point_at = used.held[actionIndex("point_at")];
+  input.scene.held = motionOf(used);
   input.scene.reset_view = begun(actionIndex("reset_view"));
   input.scene.next_mode = begun(actionIndex("next_mode"));
   input.next_content = begun(actionIndex("next_content"));

@@ -132,11 +132,13 @@ SceneView Scene::update(const SceneInput& input, Timestamp now) {
   const bool pushed = moveByBall(input, step_s);
   const bool stepped = moveByStep(input);
   const bool touched = moveByTouch(input.touch);
+  const bool held = moveByHeld(input.held, step_s);
   const bool turned = turnByItself(input, step_s);
   const bool carried = moveByHand(input, input.grab);
   const bool flown = flyByHand(input, input.fly && !input.grab, step_s);
   bound();
-  if (std::exchange(jumped_, false) || pushed || stepped || touched || turned || carried || flown)
+  if (std::exchange(jumped_, false) || pushed || stepped || touched || held || turned || carried ||
+      flown)
     last_motion_ = now;
   view_.T_eye_model = poses_.T_wall_eye.inverse() * poses_.T_wall_content;
   view_.mode = mode_;
@@ -196,6 +198,28 @@ bool Scene::moveByTouch(const TouchMotion& touch) {
   // A plane and a panorama take the way to their zoom by the exponential function themselves.
   push.way_m.z() = object ? away * (1 - std::exp(-touch.spread)) : away * touch.spread;
   navigator_->push(poses_, push, BallMode::kObject);
+  return true;
+}
+
+// As fast as a ball that is pushed half way; a key can't be pushed less. Returns whether anything
+// is held.
+bool Scene::moveByHeld(const HeldMotion& held, float seconds) {
+  constexpr float kShare = 0.5F;  // of a full push
+  constexpr float kNearerPerSecond = std::numbers::ln2_v<float>;
+  if (!held.moves()) return false;
+  const Eigen::Vector3f way(static_cast<float>(held.right), static_cast<float>(held.up), 0);
+  const Eigen::Vector3f turn(static_cast<float>(-held.turn_up), static_cast<float>(held.turn_right),
+                             0);
+  // To turn the view is to turn what is seen the other way round.
+  const bool view = navigation_ == content::Navigation::kPanorama ||
+                    (navigation_ == content::Navigation::kObject && mode_ == BallMode::kFly);
+  const Eigen::Vector3f roll(0, 0, static_cast<float>(-held.roll_right));
+  const Push push{
+      way.cwiseProduct(vector(settings_.ball_speed_m_s).cwiseAbs()) * kShare * seconds,
+      (roll + (view ? -turn : turn)).cwiseProduct(vector(settings_.ball_turn_deg_s).cwiseAbs()) *
+          kRadian * kShare * seconds};
+  navigator_->push(poses_, push, mode_);
+  moveByTouch({.spread = static_cast<float>(held.nearer) * kNearerPerSecond * seconds});
   return true;
 }
 

@@ -20,6 +20,18 @@
 
 namespace merlin::render::scene {
 
+// What keys, buttons and postures move as long as they are held: each -1, 0 or 1. A model turns as
+// named; in a panorama and in the mode fly the view does.
+struct HeldMotion {
+  int right = 0, up = 0, nearer = 0;
+  int turn_right = 0, turn_up = 0, roll_right = 0;
+
+  bool moves() const {
+    return right != 0 || up != 0 || nearer != 0 || turn_right != 0 || turn_up != 0 ||
+           roll_right != 0;
+  }
+};
+
 // Input of one frame. A device that is absent, or has failed for some time, has no sample.
 struct SceneInput {
   std::optional<BallSample> ball;
@@ -28,6 +40,7 @@ struct SceneInput {
   std::uint32_t reset_view = 0, next_mode = 0;  // how often each was requested since the last frame
   TouchMotion touch;                            // of the fingers on a touch surface
   std::vector<TrackerSample> other_pointers;    // hands that point, besides `hand`
+  HeldMotion held;
   Push step;             // requested by the command move since the last frame: applied at once
   float turn_rad_s = 0;  // speed at which the content turns by itself: see Navigator::turn()
 };
@@ -81,6 +94,7 @@ class Scene {
   bool moveByBall(const SceneInput& input, float seconds);
   bool moveByStep(const SceneInput& input);
   bool moveByTouch(const TouchMotion& touch);
+  bool moveByHeld(const HeldMotion& held, float seconds);
   bool turnByItself(const SceneInput& input, float seconds);
   bool moveByHand(const SceneInput& input, bool grab);
   bool flyByHand(const SceneInput& input, bool fly, float seconds);

@@ -52,6 +52,7 @@ class AttendanceTest : public testing::Test {
 TEST_F(AttendanceTest, EveryTouchShowsThePictureAgain) {
   const std::function<void()> touches[] = {
       [&] { push(0.1F); },
+      [&] { input_.scene.held.nearer = 1; },
       [&] { input_.scene.ball.emplace().rotation[2] = -0.1F; },
       [&] { input_.scene.ball.emplace().buttons = 1U << 7; },
       [&] { input_.scene.step.way_m.x() = 0.1F; },

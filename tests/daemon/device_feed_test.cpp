@@ -206,6 +206,31 @@ TEST_F(DeviceFeedTest, GivesTheActionsOfDevicesThatWork) {
   EXPECT_FALSE(read().scene.grab) << "the ball is lost";
 }
 
+TEST_F(DeviceFeedTest, HeldMovesOfTwoDirectionsCancel) {
+  shm::ActionState held{};
+  const auto hold = [&](std::initializer_list<std::size_t> actions) {
+    held = {};
+    for (const std::size_t action : actions) held.held[action] = 1;
+    (*segment_)->actions[test::kBall].publish(held);
+    return read().scene.held;
+  };
+  push();
+  EXPECT_FALSE(hold({}).moves());
+  EXPECT_EQ(hold({actionIndex("move_left")}).right, -1);
+  EXPECT_EQ(hold({actionIndex("move_right")}).right, 1);
+  EXPECT_EQ(hold({actionIndex("move_up")}).up, 1);
+  EXPECT_EQ(hold({actionIndex("move_down")}).up, -1);
+  EXPECT_EQ(hold({actionIndex("turn_left")}).turn_right, -1);
+  EXPECT_EQ(hold({actionIndex("turn_right")}).turn_right, 1);
+  EXPECT_EQ(hold({actionIndex("turn_up")}).turn_up, 1);
+  EXPECT_EQ(hold({actionIndex("turn_down")}).turn_up, -1);
+  EXPECT_EQ(hold({actionIndex("roll_left")}).roll_right, -1);
+  EXPECT_EQ(hold({actionIndex("roll_right")}).roll_right, 1);
+  EXPECT_EQ(hold({actionIndex("zoom_in")}).nearer, 1);
+  EXPECT_EQ(hold({actionIndex("zoom_out")}).nearer, -1);
+  EXPECT_FALSE(hold({actionIndex("zoom_in"), actionIndex("zoom_out")}).moves());
+}
+
 TEST_F(DeviceFeedTest, WithoutADaemonThereIsNothing) {
   push();
   EXPECT_TRUE(read().scene.ball);

@@ -270,7 +270,8 @@ TEST(PageCommands, EveryCommandOfTheListThatHasAButtonCanBeSent) {
               std::string::npos);
   }
   EXPECT_GE(buttons, 20);
-  for (const char* held : {"grab", "fly", "point_at", "align_push", "status", "flight", "signal"})
+  for (const char* held :
+       {"grab", "fly", "point_at", "align_push", "zoom_in", "status", "flight", "signal"})
     EXPECT_EQ(statusOf(post(R"({"command":")" + std::string(held) + "\"}")), 400U) << held;
 }
 

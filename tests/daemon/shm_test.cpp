@@ -172,7 +172,7 @@ TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
                          "gpio.wake 4",
                          "gpio.wait_s's ring 8",
                          "gpio.health.rate_hz 4",
-                         "actions.d_hand.recent 24",
+                         "actions.d_hand.recent 56",
                          "hand.gesture.name 32"}));
 }
 

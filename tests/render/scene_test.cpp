@@ -75,6 +75,61 @@ TEST(SceneStep, MovesTheViewerInModeFly) {
   expectAt(play, kStart + Vector3f(0, 0, 0.5F));
 }
 
+TEST(SceneHeld, MovesAsABallThatIsPushedHalfWayWhicheverSignItsSpeedHas) {
+  ScenePlay play({.ball_speed_m_s = {-1, 2, 4}, .ball_turn_deg_s = {100, -200, 300}});
+  play.input.held = {.right = 1, .up = -1};
+  EXPECT_TRUE(play.update(100).moving);
+  expectAt(play, kStart + Vector3f(0.05F, -0.1F, 0));
+  play.input.held = {.right = -1, .up = 1};
+  play.update(100);
+  play.input.held = {.turn_right = 1};
+  play.update(100);
+  expectAt(play, kStart, turnedBy(10, kY));
+  play.input.held = {.turn_right = -1};
+  play.update(100);
+  play.input.held = {.turn_up = 1};
+  play.update(100);
+  expectAt(play, kStart, turnedBy(-5, kX));
+  play.input.held = {.turn_up = -1};
+  play.update(100);
+  play.input.held = {.roll_right = 1};
+  play.update(100);
+  expectAt(play, kStart, turnedBy(-15, kZ));
+}
+
+TEST(SceneHeld, ZoomHalvesAndDoublesTheDistanceInASecond) {
+  for (const bool fly : {false, true}) {
+    ScenePlay play;
+    if (fly) play.scene.nextMode();
+    play.input.held = {.nearer = 1};
+    for (int i = 0; i < 10; ++i) play.update(100);
+    expectAt(play, kStart / 2);
+    play.input.held = {.nearer = -1};
+    for (int i = 0; i < 20; ++i) play.update(100);
+    expectAt(play, kStart * 2);
+  }
+}
+
+// In the mode fly "right" is where the viewer looks, so that the model moves to the left.
+TEST(SceneHeld, TurnsTheViewInModeFlyAndInAPanorama) {
+  ScenePlay fly({.ball_turn_deg_s = {100, 100, 100}});
+  fly.scene.nextMode();
+  fly.input.held = {.turn_right = 1, .turn_up = 1};
+  for (int i = 0; i < 4; ++i) fly.update(100);
+  const Vector3f seen = fly.scene.view().T_eye_model.translation();
+  EXPECT_LT(seen.x(), -0.1F);
+  EXPECT_LT(seen.y(), -0.1F);
+  ScenePlay panorama({.ball_turn_deg_s = {100, 100, 100}});
+  panorama.scene.setNavigation(content::Navigation::kPanorama);
+  const auto before = panorama.scene.view().T_eye_model;
+  panorama.input.held = {.turn_right = 1, .turn_up = 1};
+  for (int i = 0; i < 4; ++i) panorama.update(100);
+  const Vector3f was_ahead =
+      panorama.scene.view().T_eye_model.linear() * before.linear().transpose() * -kZ;
+  EXPECT_LT(was_ahead.x(), -0.1F);
+  EXPECT_LT(was_ahead.y(), -0.1F);
+}
+
 TEST(SceneBall, TurnsAboutTheAxisOfTheWholeTwist) {
   ScenePlay play({.ball_turn_deg_s = {90, 90, 180}});
   play.push(Vector3f::Zero(), {1, 0, 0.5F});
