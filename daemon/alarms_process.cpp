@@ -31,9 +31,6 @@ constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kWatchdogPing = std::chrono::seconds(1);
 // A run that began longer ago has its start behind it: what it said then is not told any more.
 constexpr Duration kStartIsNews = std::chrono::minutes(10);
-// The end of what is said of a device that the configuration gives no port: nobody misses it. Of
-// one with a port it may be said until that was opened for the first time.
-constexpr std::string_view kNotConfigured = ": absent (not configured)";
 constexpr const char* kTest = "this is a test, asked for by SIGUSR1";
 constexpr Duration kAskAgain = std::chrono::seconds(3);
 constexpr Duration kAnswerWithin = std::chrono::seconds(2);
@@ -139,6 +136,7 @@ class Alarm {
       program_.reset();
     }
     const auto next = queue_.next(now);
+    sayWhatWaits();
     if (!next) return;
     logInfo("the alarm {} is told: {}", settings_.run.front(), next->event.what);
     auto started = alarms::ChildProgram::start(
@@ -151,9 +149,22 @@ class Alarm {
   }
 
  private:
+  // Once, until nothing waits any more.
+  void sayWhatWaits() {
+    const bool waits = queue_.waiting() > 0;
+    if (waits && !told_that_some_wait_) {
+      logWarning(
+          "the alarm {} has been started as often as most_per_hour ({}) allows for now; "
+          "events wait, faults first",
+          settings_.run.front(), settings_.most_per_hour);
+    }
+    told_that_some_wait_ = waits;
+  }
+
   AlarmSettings settings_;
   std::string instance_;
   alarms::AlarmQueue queue_;
+  bool told_that_some_wait_ = false;
   std::optional<alarms::ChildProgram> program_;
 };
 
@@ -193,13 +204,12 @@ class AlarmsProcess {
     for (const page::LoggedEvent& event : events_.after(seen_)) {
       seen_ = event.number;
       if (event.role == "page") continue;  // what the watches say of roles: RoleState is patient
-      add({event.role, event.time_utc, event.kind, event.what});
+      add({event.role, event.time_utc, event.kind, event.what, event.severity});
     }
     for (Alarm& alarm : alarms_) alarm.tend(now);
   }
 
   void add(const alarms::AlarmEvent& event) {
-    if (event.what.ends_with(kNotConfigured)) return;
     if (!told_.take(event, saysThatItWorks(event.what, devices_.segment()))) return;
     for (Alarm& alarm : alarms_) alarm.add(event);
   }

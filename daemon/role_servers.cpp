@@ -118,7 +118,8 @@ void RoleServers::startServersForOthers(const shm::DeviceSlots& devices) {
   }
   if (s.vrpn_port > 0) {
     servers_.keep("VRPN", [this, &s, &devices]() -> Result<std::unique_ptr<net::Server>> {
-      auto server = serve::VrpnServer::start(s.vrpn_port, devices, watch_, clock_);
+      auto server =
+          serve::VrpnServer::start(s.vrpn_port, devices, watch_, clock_, parts_.settings.instance);
       if (!server) return errorAt("/serve/vrpn_port", server.error());
       return std::unique_ptr<net::Server>(*std::move(server));
     });
@@ -214,10 +215,9 @@ Result<Ok> RoleServers::startWall() {
 
 namespace {
 
-// Sentences of a kind whose events are all faults, or none is.
-std::vector<Event> eventsOf(std::vector<std::string> sentences, bool are_faults) {
+std::vector<Event> faultsOf(std::vector<std::string> sentences) {
   std::vector<Event> events;
-  for (std::string& sentence : sentences) events.push_back({std::move(sentence), are_faults});
+  for (std::string& sentence : sentences) events.push_back(faultEvent(std::move(sentence)));
   return events;
 }
 
@@ -229,7 +229,7 @@ void RoleServers::add(RoleEvents& to, const EventKind& kind,
   for (const Event& event : events) {
     to.logger.log(kind, event, clock_.now());
     if (parts_.wall) parts_.wall->tell(event.what);
-    to.documents.push_back(status::event(kind.name, event.what, clock_.now()));
+    to.documents.push_back(status::event(kind.name, event, clock_.now()));
   }
 }
 
@@ -247,7 +247,7 @@ std::vector<std::string> RoleServers::deviceEvents(RoleEvents& events,
   if (devices::Projectors* const projectors = parts_.devices->projectors())
     add(events, kProjectorEvent, projectors->takeEvents());
   if (!parts_.wall && parts_.keeper)
-    add(events, kStateEvent, eventsOf(parts_.keeper->takeNotices(), true));
+    add(events, kStateEvent, faultsOf(parts_.keeper->takeNotices()));
   add(events, kFlightEvent, parts_.devices->flight().check());
   add(events, kServerEvent, servers_.events("devices"));
   return taken(events);
@@ -261,7 +261,7 @@ std::vector<std::string> RoleServers::wallEvents(RoleEvents& events, status::Wal
   add(events, kPictureEvent, wall.takePictures());
   add(events, kWallEvent, parts_.wall->viewerEvents());
   add(events, kModelEvent, parts_.wall->contentEvents());
-  add(events, kStateEvent, eventsOf(parts_.keeper->takeNotices(), true));
+  add(events, kStateEvent, faultsOf(parts_.keeper->takeNotices()));
   if (remote) {
     add(events, kDeviceEvent, remote->take(clock_.now()));
     add(events, kGestureEvent, remote->takeGestures());

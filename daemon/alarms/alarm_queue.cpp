@@ -23,11 +23,11 @@ std::string alarmText(const std::string& instance, const AlarmEvent& event,
 // reserve for bursts, and the other half come over time.
 AlarmQueue::AlarmQueue(const AlarmSettings& settings)
     : settings_(settings),
-      starts_(std::max(settings.most_per_hour / 2.0, 0.5) / 3600,
-              std::max(settings.most_per_hour / 2.0, 1.0)) {}
+      at_once_(std::max(settings.most_per_hour / 2.0, 1.0)),
+      starts_(std::max(settings.most_per_hour / 2.0, 0.5) / 3600, at_once_) {}
 
 bool AlarmQueue::isFor(const AlarmEvent& event) const {
-  if (event.kind == kGestureEvent.name) return false;
+  if (event.severity == Severity::kRoutine) return false;
   return settings_.kinds.empty() || event.kind == kTestKind ||
          std::ranges::find(settings_.kinds, event.kind) != settings_.kinds.end();
 }
@@ -36,19 +36,36 @@ void AlarmQueue::add(const AlarmEvent& event) {
   if (!isFor(event)) return;
   waiting_.push_back({event, std::nullopt});
   if (waiting_.size() <= kMost) return;
-  waiting_.pop_front();
+  const auto news = std::ranges::find_if(waiting_, [](const Waiting& w) { return !isFault(w); });
+  waiting_.erase(news == waiting_.end() ? waiting_.begin() : news);
   ++left_out_;
+}
+
+std::deque<AlarmQueue::Waiting>::iterator AlarmQueue::mostUrgent() {
+  return std::ranges::min_element(waiting_, {}, [](const Waiting& waiting) {
+    if (waiting.event.kind == kTestKind) return 0;
+    return isFault(waiting) ? 1 : 2;
+  });
+}
+
+bool AlarmQueue::mayStart(const AlarmEvent& event, Timestamp now) {
+  if (event.kind == kTestKind) return true;
+  const bool leaves_one = event.severity == Severity::kFault || at_once_ < 2;
+  return starts_.available(now) >= (leaves_one ? 1 : 2) && starts_.take(1, now);
 }
 
 std::optional<AlarmQueue::Next> AlarmQueue::next(Timestamp now) {
   for (Waiting& waiting : waiting_) {
     if (!waiting.since) waiting.since = now;
   }
-  left_out_ += std::erase_if(
-      waiting_, [&](const Waiting& waiting) { return now - *waiting.since > kLongestWait; });
-  if (waiting_.empty() || !starts_.take(1, now)) return std::nullopt;
-  Next next{std::move(waiting_.front().event), std::exchange(left_out_, 0)};
-  waiting_.pop_front();
+  left_out_ += std::erase_if(waiting_, [&](const Waiting& waiting) {
+    return now - *waiting.since > (isFault(waiting) ? kLongestFaultWait : kLongestWait);
+  });
+  if (waiting_.empty()) return std::nullopt;
+  const auto urgent = mostUrgent();
+  if (!mayStart(urgent->event, now)) return std::nullopt;
+  Next next{std::move(urgent->event), std::exchange(left_out_, 0)};
+  waiting_.erase(urgent);
   return next;
 }
 

@@ -9,6 +9,7 @@
 
 #include "daemon/alarms/settings.h"
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/base/token_bucket.h"
 
 namespace merlin::alarms {
@@ -17,6 +18,7 @@ struct AlarmEvent {
   std::string role;            // "wall", "devices", "alarms"
   std::string time_utc, kind;  // ISO 8601; a word
   std::string what;            // a sentence
+  Severity severity = Severity::kFault;
 };
 
 // The kind of an event by which a person tests that an alarm arrives: every alarm is for it.
@@ -30,32 +32,41 @@ class AlarmQueue {
  public:
   explicit AlarmQueue(const AlarmSettings& settings);
 
-  // Takes an event, if it is of a kind that the alarm is for. At most kMost wait; of more the
-  // oldest is left out.
+  // Takes an event, if it is of a kind that the alarm is for and not routine. At most kMost wait;
+  // of more the oldest that is no fault is left out, and if all are faults the oldest.
   void add(const AlarmEvent& event);
+
+  std::size_t waiting() const noexcept { return waiting_.size(); }
 
   struct Next {
     AlarmEvent event;
     std::uint64_t left_out = 0;  // events since the last one that nobody was told of
   };
-  // The event for which the program is to be started now; nothing if none waits, or while the
-  // program was started most_per_hour times within the last hour. Those that wait longer than
-  // kLongestWait are left out, since an alarm of yesterday would mislead.
+  // The event for which the program is to be started now, faults first; nothing if none waits, or
+  // while the program was started most_per_hour times within the last hour. The last start that is
+  // allowed at once is for a fault. A test is told whatever was told before. Those that wait longer
+  // than kLongestWait, or as a fault kLongestFaultWait, are left out, since an alarm of yesterday
+  // would mislead.
   std::optional<Next> next(Timestamp now);
 
   static constexpr std::size_t kMost = 32;
   static constexpr Duration kLongestWait = std::chrono::minutes(10);
+  static constexpr Duration kLongestFaultWait = std::chrono::hours(1);
 
  private:
   struct Waiting {
     AlarmEvent event;
     std::optional<Timestamp> since;  // of the first call of next() that saw it
   };
+  static bool isFault(const Waiting& waiting) { return waiting.event.severity == Severity::kFault; }
   bool isFor(const AlarmEvent& event) const;
+  std::deque<Waiting>::iterator mostUrgent();
+  bool mayStart(const AlarmEvent& event, Timestamp now);
 
   AlarmSettings settings_;
+  double at_once_;  // starts that are allowed at once, after a quiet time
   TokenBucket starts_;
-  std::deque<Waiting> waiting_;
+  std::deque<Waiting> waiting_;  // the oldest first
   std::uint64_t left_out_ = 0;
 };
 

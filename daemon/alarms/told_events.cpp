@@ -19,6 +19,7 @@ AlarmEvent eventOf(const std::string& role, const JsonNode& document) {
     if (key == "time_utc") event.time_utc = value.text;
     if (key == "kind") event.kind = value.text;
     if (key == "what") event.what = value.text;
+    if (key == "severity") event.severity = severityOf(value.text);
   }
   return event;
 }

@@ -3,18 +3,40 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace merlin {
 
-// What has happened. A fault becomes a warning in the log; a recovery, and what people did, do not.
+// kFault: somebody should look; a warning in the log. kNews: a recovery, or a change by itself.
+// kRoutine: what people did, and what each start does: no alarm is told of it.
+enum class Severity { kFault, kNews, kRoutine };
+
+inline constexpr std::array<std::string_view, 3> kSeverityNames = {"fault", "news", "routine"};
+constexpr std::string_view nameOf(Severity severity) {
+  return kSeverityNames[static_cast<std::size_t>(severity)];
+}
+
+// Of a name that is none of them: kFault, so that nobody misses what a newer release says.
+constexpr Severity severityOf(std::string_view name) {
+  for (const Severity severity : {Severity::kNews, Severity::kRoutine}) {
+    if (nameOf(severity) == name) return severity;
+  }
+  return Severity::kFault;
+}
+
+// What has happened.
 struct Event {
   std::string what;  // a sentence
-  bool is_fault;
+  Severity severity;
+
+  bool isFault() const { return severity == Severity::kFault; }
 };
-inline Event faultEvent(std::string what) { return {std::move(what), true}; }
-inline Event newsEvent(std::string what) { return {std::move(what), false}; }
+inline Event faultEvent(std::string what) { return {std::move(what), Severity::kFault}; }
+inline Event newsEvent(std::string what) { return {std::move(what), Severity::kNews}; }
+inline Event routineEvent(std::string what) { return {std::move(what), Severity::kRoutine}; }
 
 struct EventKind {
   const char* name;
@@ -40,7 +62,7 @@ inline constexpr EventKind kModelEvent{
     "before it is still shown"};
 inline constexpr EventKind kProjectorEvent{
     "projector",
-    "a projector was switched, does not answer, or refuses: look at its network, its "
+    "a projector does not answer, or refuses: look at its network, its "
     "lamp, its password"};
 inline constexpr EventKind kServiceEvent{
     "service",
@@ -60,7 +82,7 @@ inline constexpr EventKind kRoleEvent{
     "role",
     "merlind ended and was not back within 15 s, or is back; only alarms tell it: look at "
     "`systemctl status 'merlin-*'` and the journal"};
-// No alarm is for it: it happens whenever somebody moves a hand in that way.
+// Routine: it happens whenever somebody moves a hand in that way.
 inline constexpr EventKind kGestureEvent{"gesture", "a hand has made a gesture"};
 
 // Those that alarms can be for.

@@ -31,7 +31,7 @@ EventLogger::Subject& EventLogger::subject(const EventKind& kind, const Event& e
   const TokenBucket bucket(kSentencesPerSecond, kSentences);
   Subject& found = sentences_.try_emplace(key, Subject{kind, {}, false, bucket}).first->second;
   found.sentence = event.what;
-  found.is_fault = event.is_fault;
+  found.is_fault = event.isFault();
   found.used = now;
   return found;
 }
@@ -53,7 +53,7 @@ void EventLogger::log(const EventKind& kind, const Event& event, Timestamp now) 
   } else if (!all.bucket.take(1, now)) {
     ++all.left_out;
   } else {
-    write_(levelOf(event.is_fault), event.what, {kind.name, role_});
+    write_(levelOf(event.isFault()), event.what, {kind.name, role_});
   }
 }
 

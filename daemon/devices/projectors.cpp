@@ -106,8 +106,8 @@ std::optional<bool> Projectors::due() {
   }
   if (person) wanted = by_person_->on;
   notices_.push_back(
-      newsEvent(fmt::format("projectors: switched {} {}", *wanted ? "on" : "off",
-                            person ? "again, as by a person before" : "by the schedule")));
+      routineEvent(fmt::format("projectors: switched {} {}", *wanted ? "on" : "off",
+                               person ? "again, as by a person before" : "by the schedule")));
   return wanted;
 }
 
@@ -148,7 +148,11 @@ std::vector<Event> Projectors::takeEvents() {
                     state.reason.empty() ? "" : fmt::format(" ({})", state.reason));
     if (sentence == entry->last) continue;
     entry->last = sentence;
-    events.push_back({std::move(sentence), state.health != pjlink::Health::kOk});
+    const bool is_fault = state.health != pjlink::Health::kOk;
+    const bool was_fault = std::exchange(entry->was_fault, is_fault);
+    // One that works is switched on and off every day.
+    const Severity severity = was_fault ? Severity::kNews : Severity::kRoutine;
+    events.push_back({std::move(sentence), is_fault ? Severity::kFault : severity});
   }
   return events;
 }

@@ -83,7 +83,8 @@ class Projectors {
     std::unique_ptr<pjlink::ProjectorLoop> loop;
     Progress* progress = nullptr;  // set when its thread starts
     std::string name;
-    std::string last;  // its last event
+    std::string last;        // its last event
+    bool was_fault = false;  // by the last event
   };
   Entry& add(const PjlinkSettings& settings);
   Result<Ok> switchPanel(bool on);

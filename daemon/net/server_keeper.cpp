@@ -59,7 +59,7 @@ std::vector<Event> ServerKeeper::takeEvents(Timestamp now) {
       events.push_back(faultEvent(fmt::format("{}: failed ({}); retried every {:.0f} s", name_,
                                               failure_, toSeconds(kRetry))));
     else
-      events.push_back(newsEvent(name_ + ": running"));
+      events.push_back(told_ ? newsEvent(name_ + ": running") : routineEvent(name_ + ": running"));
     told_ = true;
     told_failure_ = failure_;
   }

@@ -39,6 +39,7 @@ void EventLog::addDocument(const std::string& role, const std::string& document)
     if (key == "time_utc") event.time_utc = cut(value.text);
     if (key == "kind") event.kind = cut(value.text);
     if (key == "what") event.what = cut(value.text);
+    if (key == "severity") event.severity = severityOf(value.text);
   }
   if (!event.what.empty()) keep(std::move(event));
 }

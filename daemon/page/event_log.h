@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 
 namespace merlin::page {
 
@@ -16,6 +17,7 @@ struct LoggedEvent {
   std::string role;                  // "wall", "devices", "page"
   std::string time_utc = {};         // ISO 8601
   std::string kind = {}, what = {};  // a word and a sentence
+  Severity severity = Severity::kFault;
 };
 
 // Thread-safe. Keeps 500 events.

@@ -363,11 +363,12 @@ std::string wallMetrics(const shm::WallSegment& segment) {
 
 std::string textList(const std::vector<std::string>& texts) { return dump(OrderedJson(texts)); }
 
-std::string event(std::string_view kind, std::string_view what, Timestamp now) {
+std::string event(std::string_view kind, const Event& event, Timestamp now) {
   return dump({{"now_ns", toNanoseconds(now)},
                {"time_utc", isoUtc(toNanoseconds(now) + realtimeOffset().count())},
                {"kind", std::string(kind)},
-               {"what", std::string(what)}});
+               {"severity", std::string(nameOf(event.severity))},
+               {"what", event.what}});
 }
 
 }  // namespace merlin::status

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/event_kinds.h"
 #include "daemon/net/server_keeper.h"
 #include "daemon/shm/device_slots.h"
 
@@ -51,8 +52,8 @@ std::string newestSamples(const shm::DeviceSlots& devices, Timestamp now);
 // Topic "metrics" of either role: a flat list of counters and gauges for a metrics collector.
 std::string devicesMetrics(const shm::DeviceSlots& devices);
 std::string wallMetrics(const shm::WallSegment& segment);
-// Topic "event": one thing that happened. `kind` is a word, `what` a sentence.
-std::string event(std::string_view kind, std::string_view what, Timestamp now);
+// Topic "event": one thing that happened. `kind` is a word.
+std::string event(std::string_view kind, const Event& event, Timestamp now);
 
 // A list of texts, as a command's reply.
 std::string textList(const std::vector<std::string>& texts);

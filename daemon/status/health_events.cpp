@@ -36,7 +36,9 @@ std::vector<Event> HealthEvents::take(Timestamp now) {
     if (sentence == last_[i]) continue;
     last_[i] = sentence;
     const bool works = state == "ok" && health->reason[0] == '\0';
-    events.push_back({std::move(sentence), !works && !isIntended(health->reason)});
+    const Severity unless_it_works =
+        isIntended(health->reason) ? Severity::kRoutine : Severity::kFault;
+    events.push_back({std::move(sentence), works ? Severity::kNews : unless_it_works});
   }
   return events;
 }
@@ -48,8 +50,8 @@ std::vector<Event> HealthEvents::takeGestures() {
     if (!gesture || gesture->counter == last_gestures_[i]) continue;
     last_gestures_[i] = gesture->counter;
     if (gesture->counter > 0)
-      events.push_back(
-          newsEvent(fmt::format("{}: gesture {}", devices_.hands[i].name, textIn(gesture->name))));
+      events.push_back(routineEvent(
+          fmt::format("{}: gesture {}", devices_.hands[i].name, textIn(gesture->name))));
   }
   return events;
 }

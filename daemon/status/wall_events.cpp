@@ -41,15 +41,16 @@ std::vector<Event> WallEvents::take() {
                                     rate_hz, s->rate_asked_hz)));
   }
   if (const auto was = std::exchange(held_, s->held_cost); was != held_) {
-    events.push_back(newsEvent(held_ != 0 ? fmt::format("{} {} while moving, set by hand", held_,
-                                                        std::string_view(s->cost_unit))
-                                          : "detail chosen by the governor again"));
+    events.push_back(routineEvent(held_ != 0 ? fmt::format("{} {} while moving, set by hand", held_,
+                                                           std::string_view(s->cost_unit))
+                                             : "detail chosen by the governor again"));
   }
   if (const auto was = std::exchange(asked_hz_, s->rate_asked_hz); was != asked_hz_ && was != 0)
-    events.push_back(newsEvent(fmt::format("the desired frame rate is {:.3g} Hz now", asked_hz_)));
+    events.push_back(
+        routineEvent(fmt::format("the desired frame rate is {:.3g} Hz now", asked_hz_)));
   if (const auto was = std::exchange(returned_, s->returned); was != returned_)
     events.push_back(
-        newsEvent("the start view has returned: no tile of the wall showed any of the content"));
+        routineEvent("the start view has returned: no tile of the wall showed any of the content"));
   takeOutputs(events);
   return events;
 }

@@ -18,8 +18,9 @@ using test::TempDir;
 
 Timestamp at(double after_s) { return Timestamp(fromSeconds(1000 + after_s)); }
 
-AlarmEvent event(const std::string& what, const std::string& kind = "device") {
-  return {"devices", "2026-11-25T12:00:00.000000Z", kind, what};
+AlarmEvent event(const std::string& what, const std::string& kind = "device",
+                 Severity severity = Severity::kFault) {
+  return {"devices", "2026-11-25T12:00:00.000000Z", kind, what, severity};
 }
 
 AlarmSettings settings(int most_per_hour, std::vector<std::string> kinds = {}) {
@@ -48,11 +49,67 @@ TEST(AlarmQueue, LeavesOutOtherKinds) {
   EXPECT_FALSE(queue.next(at(0)));
 }
 
-TEST(AlarmQueue, IsNeverForAGesture) {
+TEST(AlarmQueue, IsNeverForWhatIsRoutine) {
   AlarmQueue queue(settings(12));
-  queue.add(event("hand: gesture push", "gesture"));
+  queue.add(event("hand: gesture push", "gesture", Severity::kRoutine));
   queue.add(event("an output", "output"));
   EXPECT_EQ(queue.next(at(0))->event.what, "an output");
+}
+
+TEST(AlarmQueue, TellsFaultsFirstAndKeepsTheLastStartForOne) {
+  AlarmQueue queue(settings(12));  // six at once
+  for (int i = 0; i < 8; ++i) queue.add(event("news", "device", Severity::kNews));
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(queue.next(at(0))->event.what, "news") << i;
+  EXPECT_FALSE(queue.next(at(0)));
+  EXPECT_EQ(queue.waiting(), 3u);
+  queue.add(event("the wall is gone", "role"));
+  EXPECT_EQ(queue.next(at(0))->event.what, "the wall is gone");
+  queue.add(event("and the devices", "role"));
+  EXPECT_FALSE(queue.next(at(0)));
+  EXPECT_EQ(queue.next(at(600))->event.what, "and the devices") << "one in ten minutes";
+}
+
+TEST(AlarmQueue, WhereOneMayStartAtOnceItMayBeForNews) {
+  AlarmQueue queue(settings(2));
+  queue.add(event("news", "device", Severity::kNews));
+  EXPECT_TRUE(queue.next(at(0)));
+}
+
+TEST(AlarmQueue, WhenItIsFullNewsAreLeftOutBeforeFaults) {
+  AlarmQueue queue(settings(2000));
+  queue.add(event("a fault"));
+  for (std::size_t i = 0; i < AlarmQueue::kMost; ++i)
+    queue.add(event("news", "device", Severity::kNews));
+  const auto first = queue.next(at(0));
+  EXPECT_EQ(first->event.what, "a fault");
+  EXPECT_EQ(first->left_out, 1u);
+  for (std::size_t i = 0; i < AlarmQueue::kMost + 1; ++i) queue.add(event(std::to_string(i)));
+  EXPECT_EQ(queue.next(at(0))->event.what, "1") << "the oldest fault, if there is nothing else";
+}
+
+TEST(AlarmQueue, AFaultWaitsLongerThanNews) {
+  AlarmQueue queue(settings(2));
+  queue.add(event("first"));
+  EXPECT_TRUE(queue.next(at(0)));
+  queue.add(event("a fault"));
+  queue.add(event("news", "device", Severity::kNews));
+  EXPECT_FALSE(queue.next(at(1)));
+  EXPECT_EQ(queue.next(at(3600))->event.what, "a fault");
+  EXPECT_EQ(queue.waiting(), 0u);
+}
+
+TEST(AlarmQueue, ATestIsToldWhateverWasToldBefore) {
+  AlarmQueue queue(settings(2));
+  queue.add(event("one"));
+  queue.add(event("two"));
+  EXPECT_TRUE(queue.next(at(0)));
+  EXPECT_FALSE(queue.next(at(0)));
+  for (int i = 0; i < 3; ++i) {
+    queue.add(event("a test", kTestKind));
+    const auto next = queue.next(at(0));
+    ASSERT_TRUE(next) << i;
+    EXPECT_EQ(next->event.what, "a test");
+  }
 }
 
 TEST(AlarmQueue, NeverStartsMoreThanAllowedWithinAnHour) {
@@ -76,7 +133,7 @@ TEST(AlarmQueue, SaysHowManyEventsWereLeftOut) {
   for (std::size_t i = 0; i < AlarmQueue::kMost + 5; ++i) queue.add(event(std::to_string(i)));
   EXPECT_FALSE(queue.next(at(1)));
   queue.add(event("later"));
-  const auto next = queue.next(at(3600));  // those that waited are too old by now
+  const auto next = queue.next(at(3605));  // those that waited are too old by now
   ASSERT_TRUE(next);
   EXPECT_EQ(next->event.what, "later");
   EXPECT_EQ(next->left_out, AlarmQueue::kMost + 5);
@@ -201,12 +258,15 @@ TEST(EventsOf, AreThoseOfAnAnswerInTheirOrder) {
   const auto events =
       eventsOf("devices",
                R"([{"now_ns": 7, "time_utc": "T1", "kind": "device", "what": "ball: absent"},
-          {"kind": "device"}, 3, {"time_utc": "T2", "kind": "flight", "what": "bytes"}])");
+          {"kind": "device"}, 3,
+          {"time_utc": "T2", "kind": "flight", "severity": "news", "what": "bytes"}])");
   ASSERT_EQ(events.size(), 2u);
   EXPECT_EQ(events[0].role, "devices");
   EXPECT_EQ(events[0].time_utc, "T1");
   EXPECT_EQ(events[0].what, "ball: absent");
+  EXPECT_EQ(events[0].severity, Severity::kFault) << "of an older release";
   EXPECT_EQ(events[1].kind, "flight");
+  EXPECT_EQ(events[1].severity, Severity::kNews);
   for (const char* const none : {"", "[", "{}", "[]", "null"})
     EXPECT_TRUE(eventsOf("wall", none).empty()) << none;
 }

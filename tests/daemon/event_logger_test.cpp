@@ -12,7 +12,7 @@ using Lines = std::vector<std::string>;
 class EventLoggerTest : public testing::Test {
  protected:
   void log(const std::string& what, bool is_fault = true, const EventKind& kind = kDeviceEvent) {
-    logger_.log(kind, {what, is_fault}, now_);
+    logger_.log(kind, is_fault ? faultEvent(what) : newsEvent(what), now_);
   }
   // For so many seconds, ten times a second, as merlind does.
   void wait(int for_s) {

@@ -249,7 +249,8 @@ TEST_F(DocumentsTest, EachSaysTheTimeOfDayBesideTheMonotonicOne) {
   EXPECT_EQ(json::parse(newestSamples(devices_.slots(), kNow))["time_utc"], then);
   EXPECT_EQ(json::parse(devicesStatus(devices_.slots(), kNow))["time_utc"], then);
   EXPECT_EQ(json::parse(wallStatus(*wall_, kNow))["time_utc"], then);
-  const std::string today = json::parse(event("x", "y", SystemClock().now()))["time_utc"];
+  const std::string today =
+      json::parse(event("x", newsEvent("y"), SystemClock().now()))["time_utc"];
   EXPECT_EQ(today.size(), 27u);
   EXPECT_GT(today, "2024");
 }

@@ -13,7 +13,7 @@ using Sentences = std::vector<std::string>;
 inline Sentences told(const std::vector<Event>& events) {
   Sentences sentences;
   for (const Event& event : events)
-    sentences.push_back((event.is_fault ? "fault: " : "") + event.what);
+    sentences.push_back((event.isFault() ? "fault: " : "") + event.what);
   return sentences;
 }
 

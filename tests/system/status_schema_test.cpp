@@ -48,7 +48,8 @@ TEST(StatusSchema, KeepsEveryPromiseAndListsEveryMember) {
 
 TEST(StatusSchema, SaysWhatIsWrong) {
   const JsonSchema s = schema();
-  const json good = {{"now_ns", 1}, {"time_utc", ""}, {"kind", "wall"}, {"what", "x"}};
+  const json good = {
+      {"now_ns", 1}, {"time_utc", ""}, {"kind", "wall"}, {"severity", "fault"}, {"what", "x"}};
   EXPECT_TRUE(s.faults("event", good).empty());
   const auto with = [&](const char* name, const json& value) {
     json changed = good;

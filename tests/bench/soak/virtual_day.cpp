@@ -199,7 +199,7 @@ void VirtualDay::takeEvents(Timestamp now) {
 
 void VirtualDay::add(const char* role, const EventKind& kind, const std::vector<Event>& events) {
   for (const Event& event : events) {
-    log_.addDocument(role, status::event(kind.name, event.what, parts_.clock.now()));
+    log_.addDocument(role, status::event(kind.name, event, parts_.clock.now()));
     board_.add(parts_.clock.now(), event.what);
   }
 }
