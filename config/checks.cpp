@@ -136,13 +136,18 @@ void checkContents(const WallSettings& wall, LoadedSettings& loaded) {
   }
 }
 
-void checkPanel(const WallSettings& wall, LoadedSettings& loaded) {
+void checkOperator(const WallSettings& wall, LoadedSettings& loaded) {
   const render::tiles::TilesSettings& tiles = wall.tiles;
+  const auto isOperators = [](const render::tiles::TileSettings& tile) {
+    return tile.kind == render::tiles::TileKind::kOperator;
+  };
   const bool fits = std::ranges::any_of(tiles.tiles, [&](const render::tiles::TileSettings& tile) {
-    return tile.kind == render::tiles::TileKind::kOperator &&
-           (tile.width > 0 ? tile.width : tiles.tile_width) >= 320 &&
+    return isOperators(tile) && (tile.width > 0 ? tile.width : tiles.tile_width) >= 320 &&
            (tile.height > 0 ? tile.height : tiles.tile_height) >= 240;
   });
+  if (wall.operator_tile.overlay && !std::ranges::any_of(tiles.tiles, isOperators)) {
+    loaded.addFinding("/wall/operator/overlay", "needs a tile of kind operator; the wall has none");
+  }
   if (wall.operator_tile.panel && !fits) {
     loaded.addFinding("/wall/operator/panel",
                       "needs a tile of kind operator of at least 320 x 240 pixels; the wall has "
@@ -180,7 +185,7 @@ void checkTogether(LoadedSettings& loaded) {
   addFaults(validate(s.wall.governor), "/wall/rate", loaded);
   checkContents(s.wall, loaded);
   checkSnapshots(s.wall, loaded);
-  checkPanel(s.wall, loaded);
+  checkOperator(s.wall, loaded);
   checkBindings(s, loaded);
   checkNeeds(loaded);
 }

@@ -169,8 +169,9 @@ void describeOutputs(std::vector<render::out::OutputSettings>& outputs, Settings
                   "Whether the tile is mirrored, for rear projection: horizontal exchanges left "
                   "and right, vertical exchanges top and bottom.");
               v.oneOf("turn_deg", p.turn, render::out::kTurnNames,
-                      "Clockwise rotation of the tile after mirroring, in degrees, for a projector "
-                      "or display that is mounted on its side or upside down.");
+                      "Clockwise rotation of the tile after mirroring, in degrees and in quotes, "
+                      "\"180\", for a projector or display that is mounted on its side or upside "
+                      "down.");
             });
         v.group("correction",
                 "What is done to the picture so that it looks as meant on this output's screen: "

@@ -88,7 +88,9 @@ class Loader final : public SettingsVisitor {
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char*) override {
     const std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
-    const JsonNode* node = take(key, JsonNode::Kind::kString, allowed);
+    // In quotes for whoever wrote the number 180 instead of "180".
+    const JsonNode* node = take(key, JsonNode::Kind::kString,
+                                fmt::format("one of \"{}\"", fmt::join(names, "\", \"")));
     if (!node) return;
     const auto found =
         std::find_if(names.begin(), names.end(), [&](const char* n) { return node->text == n; });
