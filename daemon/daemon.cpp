@@ -289,7 +289,7 @@ void Daemon::tellEnd() const {
 void Daemon::keepLastGood() {
   if (!instead_of_.empty()) services_.failed("configuration", instead_of_);
   if (options_.last_good.empty()) return;
-  last_good_ = std::make_unique<LastGoodKeeper>(options_.last_good, threads_);
+  last_good_ = std::make_unique<LastGoodKeeper>(options_.last_good, file_, threads_);
   if (instead_of_.empty()) last_good_->keep(reloader_->configured());
 }
 

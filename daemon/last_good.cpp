@@ -4,12 +4,12 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "config/writer.h"
 #include "daemon/base/absolute_path.h"
-#include "daemon/base/files.h"
 #include "daemon/base/log.h"
-#include "daemon/state/state_folder.h"
+#include "daemon/base/restricted_file.h"
 
 namespace merlin {
 namespace {
@@ -18,17 +18,26 @@ namespace fs = std::filesystem;
 
 constexpr Duration kStep = std::chrono::milliseconds(200);
 
-}  // namespace
-
-// "etc-merlin-merlin.json.wall.last-good": configurations of the same name may be in several
-// folders, and each role checks other files. A dash of the name is doubled.
-std::string lastGoodFile(const std::string& configuration, const std::string& role) {
-  const std::string folder = state::stateFolder(), path = absolutePath(configuration);
-  if (folder.empty() || path.empty()) return {};
-  std::string name;
-  for (const char c : path.substr(1)) name += c == '/' ? "-" : c == '-' ? "--" : std::string(1, c);
-  return fmt::format("{}/{}.{}.last-good", folder, name, role);
+// Takes away what not everybody may do with the file.
+void restrictTo(const fs::path& file, mode_t& mode) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) == 0) mode &= status.st_mode;
 }
+
+// The permissions of what is kept. Under systemd's units the roles page and alarms, other users of
+// the group merlin, read it.
+mode_t modeLike(const std::string& configuration) {
+  mode_t mode = 0640;
+  restrictTo(configuration, mode);
+  std::error_code error;
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(configuration).parent_path() / "conf.d", error)) {
+    if (entry.path().extension() == ".json") restrictTo(entry.path(), mode);
+  }
+  return mode | 0600;
+}
+
+}  // namespace
 
 std::optional<Configuration> readLastGood(const std::string& file, const Configuration& broken,
                                           const DaemonOptions& options) {
@@ -46,8 +55,10 @@ std::optional<Configuration> readLastGood(const std::string& file, const Configu
   return kept;
 }
 
-LastGoodKeeper::LastGoodKeeper(std::string file, ThreadWatch& watch)
+LastGoodKeeper::LastGoodKeeper(std::string file, const std::string& configuration,
+                               ThreadWatch& watch)
     : file_(std::move(file)),
+      configuration_(absolutePath(configuration)),
       thread_(watch, "last good configuration",
               [this](const std::stop_token& stop, Progress& progress) { loop(stop, progress); }) {}
 
@@ -82,7 +93,7 @@ void LastGoodKeeper::loop(const std::stop_token& stop, Progress& progress) {
 void LastGoodKeeper::write(const std::string& text) {
   std::error_code ignored;
   fs::create_directories(fs::path(file_).parent_path(), ignored);
-  const auto written = writeFile(file_, text);
+  const auto written = writeRestrictedFile(file_, text, modeLike(configuration_));
   const std::string why = written ? std::string() : written.error().what;
   if (!why.empty() && why != logged_)
     logWarning("the last good configuration is not kept: {}: {}", file_, why);

@@ -13,21 +13,19 @@
 
 namespace merlin {
 
-// The file in which a process of this role keeps the last good settings of this configuration: in
-// the folder of the state (state::stateFolder()), or empty if there is none. Reads the environment:
-// to be called before any thread starts.
-std::string lastGoodFile(const std::string& configuration, const std::string& role);
-
-// The configuration that `file` keeps instead of that in `broken`, checked as any other, with the
-// reason why it is used; nothing if none is kept, or if what is kept is not valid (any more).
+// The configuration that `file` (state::lastGoodFile()) keeps instead of that in `broken`, checked
+// as any other, with the reason why it is used; nothing if none is kept, or if what is kept is not
+// valid (any more).
 std::optional<Configuration> readLastGood(const std::string& file, const Configuration& broken,
                                           const DaemonOptions& options);
 
 // Writes on a thread of its own: a disk may take its time, and holds nobody up. Thread-bound.
 class LastGoodKeeper {
  public:
-  // `watch` outlives this.
-  LastGoodKeeper(std::string file, ThreadWatch& watch);
+  // `configuration`: the file whose settings are kept in `file`, which at most those may read who
+  // may read each file of the configuration, and never others than its owner and its group: it has
+  // all that stands in them. `watch` outlives this.
+  LastGoodKeeper(std::string file, const std::string& configuration, ThreadWatch& watch);
   ~LastGoodKeeper();  // writes what is not written yet
   LastGoodKeeper(const LastGoodKeeper&) = delete;
   LastGoodKeeper& operator=(const LastGoodKeeper&) = delete;
@@ -39,7 +37,7 @@ class LastGoodKeeper {
   void loop(const std::stop_token& stop, Progress& progress);
   void write(const std::string& text);
 
-  const std::string file_;
+  const std::string file_, configuration_;
   std::mutex mutex_;  // guards waiting_
   std::condition_variable_any wake_;
   std::optional<std::string> waiting_;

@@ -23,6 +23,7 @@
 #include "daemon/last_good.h"
 #include "daemon/page_process.h"
 #include "daemon/program_restart.h"
+#include "daemon/state/state_folder.h"
 #include "render/gl/gl_context.h"
 
 namespace merlin {
@@ -46,9 +47,11 @@ manual::PageSettings page() {
           .files = {{"/etc/merlin/merlin.json", "the configuration, described in merlin.json(5)"},
                     {"/etc/merlin/conf.d/*.json",
                      "merged over the configuration in the order of their names"},
-                    {"/usr/share/merlin/merlin-devices.service.d, merlin-wall.service.d",
+                    {"/usr/share/merlin/merlin-devices.service.d, merlin-wall.service.d, "
+                     "merlin-alarms.service.d",
                      "drop-ins for these services, each of which allows one more thing"},
-                    {"/var/lib/merlin", "models, and what people changed while the wall ran"},
+                    {"/var/lib/merlin",
+                     "models, what people changed while the wall ran, and the last good settings"},
                     {"/run/merlin", "sockets of status and commands, for the group merlin"}},
           .see_also = {"merlin(1)", "merlin.json(5)", "systemctl(1)"}};
 }
@@ -64,7 +67,7 @@ DaemonOptions daemonOptions(const Options& options) {
           options.emulate,
           options.role == "page",
           options.role == "alarms",
-          options.last_good ? lastGoodFile(options.config, options.role) : std::string()};
+          options.last_good ? state::lastGoodFile(options.config, options.role) : std::string()};
 }
 
 // The settings to start with when the configuration is invalid. The page and the alarms, which keep
@@ -74,7 +77,7 @@ std::optional<Configuration> lastGood(const Options& options, const Configuratio
   if (!options.last_good) return std::nullopt;
   if (!with.page && !with.alarms) return readLastGood(with.last_good, broken, with);
   for (const char* role : {"wall", "devices", "all"}) {
-    auto kept = readLastGood(lastGoodFile(options.config, role), broken, with);
+    auto kept = readLastGood(state::lastGoodFile(options.config, role), broken, with);
     if (kept) return kept;
   }
   return std::nullopt;
@@ -108,7 +111,7 @@ int checkConfig(const Options& options) {
       return 1;
     case LoadedSettings::Verdict::kInvalid: break;
   }
-  fmt::print("{}: invalid, {} findings\n", file, findings);
+  fmt::print("{}: invalid, {} finding{}\n", file, findings, findings == 1 ? "" : "s");
   return kExitBadInput;
 }
 
@@ -221,15 +224,17 @@ int runProgram(int argc, char** argv) {
   app.add_option("--role", options.role,
                  "Role of this process: it reads the devices, draws the wall, or does both; or it "
                  "serves the operator's web page, or starts the programs of alarms, beside a "
-                 "merlind that does")
+                 "merlind that does. SIGUSR1 has the role alarms tell every alarm of a test")
       ->check(CLI::IsMember({"devices", "wall", "all", "page", "alarms"}))
       ->capture_default_str();
   app.add_flag("--emulate", options.emulate,
                "Start an emulator for each device, on a pseudo-terminal");
   app.add_flag("--last-good", options.last_good,
-               "Keep the settings beside the state whenever merlind runs with them, and start with "
-               "those if the configuration is invalid, which an event tells. The roles page and "
-               "alarms start with those of the wall or the devices");
+               "Keep the settings whenever merlind runs with them, and start with those if the "
+               "configuration is invalid, which an event tells. The roles page and alarms start "
+               "with those of the wall or the devices. Wherever /state_file is, they are kept in "
+               "the folder that systemd sets (StateDirectory=), else in /var/lib/merlin for root, "
+               "else in $XDG_STATE_HOME/merlin or ~/.local/state/merlin");
   app.add_flag("--print-config", options.print_config,
                "Print the configuration with every setting, including defaults, and exit");
   app.add_flag("--print-schema", options.print_schema,

@@ -46,7 +46,10 @@ Answer request(const Parts& p, wall::WallLoop::Request what) {
 }
 
 Answer triangles(const Parts& p, const std::string& argument) {
-  const auto number = numberOrAuto(argument, {4, 1e9});
+  constexpr wall::Pace::Limits kWidest{4, 1'000'000'000};
+  const wall::Pace::Limits limits = p.wall->holdLimits().value_or(kWidest);
+  const auto number =
+      numberOrAuto(argument, {static_cast<double>(limits.least), static_cast<double>(limits.most)});
   if (!number) return number.error();
   p.wall->hold(*number ? std::optional(static_cast<std::size_t>(**number)) : std::nullopt);
   return done();

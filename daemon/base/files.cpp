@@ -16,6 +16,7 @@
 #include <sys/stat.h>
 
 #include "daemon/base/process_memory.h"
+#include "daemon/base/restricted_file.h"
 #include "daemon/base/unique_fd.h"
 
 namespace merlin {
@@ -175,6 +176,8 @@ Result<Ok> writeFile(const std::string& path, const std::function<bool(const Wri
 
 namespace {
 
+constexpr mode_t kUsualMode = 0666;  // without the process' umask
+
 std::string folderOf(const std::string& path) {
   const auto slash = path.rfind('/');
   return slash == std::string::npos ? "." : path.substr(0, slash + 1);
@@ -184,12 +187,12 @@ std::string folderOf(const std::string& path) {
 // has no name until then, so that a killed process leaves nothing behind.
 class FreshFile {
  public:
-  explicit FreshFile(const std::string& path)
+  FreshFile(const std::string& path, mode_t mode)
       : path_(path), named_(fmt::format("{}.{}.tmp", path, ::getpid())) {
     removeLeftOvers();
-    fd_.reset(::open(folderOf(path).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666));
+    fd_.reset(::open(folderOf(path).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, mode));
     if (fd_.valid()) return;
-    fd_.reset(::open(named_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    fd_.reset(::open(named_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
     has_name_ = fd_.valid();
   }
   ~FreshFile() {
@@ -241,7 +244,7 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
                              const std::function<bool(const WriteBytes&)>& fill,
                              const std::function<std::span<const std::byte>()>& head) {
   if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
-  FreshFile fresh(path);
+  FreshFile fresh(path, kUsualMode);
   if (fresh.fd() < 0) return fileError(path, errno);
   Buffered buffer(fresh.fd());
   const auto seek = [&](std::size_t at) {
@@ -251,6 +254,16 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
       seek(head_size) &&
       fill([&](std::span<const std::byte> bytes) { return buffer.write(bytes); }) &&
       buffer.flush() && seek(0) && writeAll(fresh.fd(), head()) && fresh.replace();
+  return written ? Result<Ok>(Ok{}) : fileError(path, errno);
+}
+
+Result<Ok> writeRestrictedFile(const std::string& path, std::string_view content, mode_t mode) {
+  if (auto replaceable = checkReplaceable(path); !replaceable) return replaceable;
+  FreshFile fresh(path, mode);
+  if (fresh.fd() < 0) return fileError(path, errno);
+  const bool written =
+      writeAll(fresh.fd(), std::as_bytes(std::span(content.data(), content.size()))) &&
+      fresh.replace();
   return written ? Result<Ok>(Ok{}) : fileError(path, errno);
 }
 

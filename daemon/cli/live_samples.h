@@ -24,7 +24,8 @@ class LiveSamples {
   // DevicesReader::open() and SlotTable::channel().
   static Result<LiveSamples> open(const std::string& instance, const std::string& slot,
                                   const std::string& device) {
-    auto reader = shm::DevicesReader::open(shm::segmentName(instance, "devices"));
+    const std::string segment = shm::segmentName(instance, "devices");
+    auto reader = shm::DevicesReader::open(segment);
     if (!reader && reader.error().code == Errc::kNotFound)
       return Error{Errc::kNotFound,
                    fmt::format("no merlind with devices runs as \"{}\": start it first, or give "
@@ -36,7 +37,7 @@ class LiveSamples {
     if (!channel) return channel.error();
     const auto health = reader->table().template slot<DeviceHealth>(device + ".health");
     if (!health) return health.error();
-    LiveSamples samples(*std::move(reader), **channel, **health);
+    LiveSamples samples(segment, *std::move(reader), **channel, **health);
     if (const auto alive = samples.checkAlive(); !alive) return alive.error();
     return samples;
   }
@@ -67,9 +68,10 @@ class LiveSamples {
   const shm::DeviceSlots& devices() const { return *reader_; }
 
  private:
-  LiveSamples(shm::DevicesReader reader, const shm::Channel<Sample>& channel,
+  LiveSamples(std::string segment, shm::DevicesReader reader, const shm::Channel<Sample>& channel,
               const shm::SeqSlot<DeviceHealth>& health_slot)
-      : reader_(std::move(reader)),
+      : segment_(std::move(segment)),
+        reader_(std::move(reader)),
         channel_(channel),
         health_slot_(health_slot),
         next_(channel.count()) {}
@@ -89,7 +91,7 @@ class LiveSamples {
   }
 
   Result<Ok> checkAlive() const {
-    if (reader_.alive(clock_.now())) return Ok{};
+    if (shm::isRunning(segment_, *(*reader_).header, clock_.now())) return Ok{};
     return Error{Errc::kClosed, "merlind has ended; nothing was changed"};
   }
 
@@ -100,6 +102,7 @@ class LiveSamples {
   }
 
   SystemClock clock_;
+  std::string segment_;
   shm::DevicesReader reader_;
   const shm::Channel<Sample>& channel_;
   const shm::SeqSlot<DeviceHealth>& health_slot_;

@@ -25,15 +25,26 @@ std::optional<FoundRole> find(const std::string& instance, const char* role,
   const std::string name = shm::segmentName(instance, role);
   const auto segment = shm::SegmentReader<Segment>::open(name);
   if (!segment && segment.error().code == Errc::kIo) denied = segment.error();
-  // On a machine that is too busy the heartbeat may be late; the lock says that it still runs, to
-  // the same user.
-  if (!segment || !(segment->alive(SystemClock().now()) || SharedMemory::owned(name)))
+  if (!segment || !shm::isRunning(name, (*segment)->header, SystemClock().now()))
     return std::nullopt;
   const shm::Header& h = (*segment)->header;
   // Without an endpoint the segment is a copy of another machine's devices, and no process on this
   // machine executes their commands.
   if (h.command_endpoint[0] == '\0') return std::nullopt;
   return FoundRole{role, {h.status_endpoint, h.command_endpoint}, h.pid, h.generation};
+}
+
+template <typename Segment>
+std::optional<LostRole> findLost(const std::string& instance, const char* role) {
+  const std::string name = shm::segmentName(instance, role);
+  const auto segment = shm::SegmentReader<Segment>::open(name);
+  if (!segment) return std::nullopt;
+  const shm::Header& h = (*segment)->header;
+  const Timestamp now = SystemClock().now();
+  // Without an endpoint it is the wall's copy of another machine's devices.
+  if (h.command_endpoint[0] == '\0' || shm::isRunning(name, h, now)) return std::nullopt;
+  const Timestamp last = fromNanoseconds(h.heartbeat_ns.load(std::memory_order_relaxed));
+  return LostRole{role, now - last, isMerlind(h.pid) ? h.pid : 0};
 }
 
 // The other daemon's public key: `given` is the key, or the name of a file that has it.
@@ -98,6 +109,21 @@ Result<std::vector<FoundRole>> findRoles(const std::string& instance) {
   return Error{Errc::kIo, fmt::format("no merlind runs as \"{0}\" (there is no shared memory "
                                       "/{0}-wall or /{0}-devices of a running merlind)",
                                       instance)};
+}
+
+std::string LostRole::what() const {
+  const double silent_s = toSeconds(silent);
+  if (pid == 0) return fmt::format("does not run; it ended {:.0f} s ago", silent_s);
+  return fmt::format("hangs; the last sign of life of its process, {}, was {:.0f} s ago", pid,
+                     silent_s);
+}
+
+std::vector<LostRole> lostRoles(const std::string& instance) {
+  std::vector<LostRole> lost;
+  if (auto role = findLost<shm::WallSegment>(instance, "wall")) lost.push_back(*std::move(role));
+  if (auto role = findLost<shm::DevicesSegment>(instance, "devices"))
+    lost.push_back(*std::move(role));
+  return lost;
 }
 
 Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon) {

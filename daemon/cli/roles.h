@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/clock.h"
 #include "daemon/base/result.h"
 #include "daemon/shm/segment.h"
 #include "daemon/status/client.h"
@@ -38,6 +39,20 @@ struct FoundRole {
 // The running roles of this instance. Errors: kIo if no role runs, or if its shared memory may not
 // be read.
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
+
+// A role whose process has left its shared memory behind, or gives no sign of life: it was killed,
+// has crashed or hangs. One that ended in order removes its shared memory.
+struct LostRole {
+  std::string role;
+  Duration silent{};      // since its last heartbeat
+  std::uint32_t pid = 0;  // of the process that hangs; 0: it has ended
+
+  // "does not run; it ended 12 s ago"
+  std::string what() const;
+};
+
+// The lost roles of this instance; none if no merlind ever ran under this name.
+std::vector<LostRole> lostRoles(const std::string& instance);
 
 // The same for any daemon. One of another machine is not asked, and its roles are unknown. Errors:
 // those of findRoles() and of reading the keys; kInvalidArgument (a key is missing or invalid).

@@ -101,6 +101,10 @@ bool isAlive(const Header& header, Timestamp now) {
   return now - fromNanoseconds(header.heartbeat_ns.load(std::memory_order_relaxed)) < kGone;
 }
 
+bool isRunning(const std::string& name, const Header& header, Timestamp now) {
+  return isAlive(header, now) || SharedMemory::owned(name);
+}
+
 Result<DevicesReader> DevicesReader::open(const std::string& name, SharedMemory::From from) {
   auto memory = SharedMemory::open(name, from);
   if (!memory) return memory.error();

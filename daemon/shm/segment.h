@@ -64,6 +64,10 @@ class SegmentWriter {
 // Whether the daemon that writes the segment's heartbeat still runs.
 bool isAlive(const Header& header, Timestamp now);
 
+// The same, also on a machine that is too busy for a heartbeat: a process of the same user is seen
+// to hold the lock of the segment `name`. Cost: microseconds, if the heartbeat is late.
+bool isRunning(const std::string& name, const Header& header, Timestamp now);
+
 // Maps a segment read-only, and reads it by its layout. For the devices' segment use DevicesReader.
 template <typename Segment>
 class SegmentReader {

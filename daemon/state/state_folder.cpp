@@ -11,12 +11,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "daemon/base/absolute_path.h"
 #include "daemon/base/files.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/json/json_tree.h"
 
 namespace merlin::state {
 namespace {
+
+constexpr const char* kServiceFolder = "/var/lib/merlin";  // of the installed services
 
 Error failed(const std::string& path, int error) {
   return {Errc::kIo, fmt::format("{}: {}", path, std::strerror(error))};
@@ -64,7 +67,7 @@ std::string firstOf(std::string_view list) { return std::string(list.substr(0, l
 std::string stateFolder() {
   // NOLINTBEGIN(concurrency-mt-unsafe): read once, at the start
   if (const char* given = std::getenv("STATE_DIRECTORY"); given && *given) return firstOf(given);
-  if (::geteuid() == 0) return "/var/lib/merlin";
+  if (::geteuid() == 0) return kServiceFolder;
   if (const char* own = std::getenv("XDG_STATE_HOME"); own && *own == '/')
     return fmt::format("{}/merlin", own);
   if (const char* home = std::getenv("HOME"); home && *home == '/')
@@ -100,8 +103,39 @@ std::string stateFile(const std::string& wanted, const std::string& instance, bo
 
 std::string findStateFile(const std::string& wanted, const std::string& instance) {
   const std::string own = stateFile(wanted, instance, true);
-  const std::string service = fmt::format("/var/lib/merlin/{}.state.json", instance);
+  const std::string service = fmt::format("{}/{}.state.json", kServiceFolder, instance);
   return wanted.empty() && !fileStamp(own) && fileStamp(service) ? service : own;
+}
+
+namespace {
+
+// "etc-merlin-merlin.json.wall.last-good": configurations of the same name may be in several
+// folders, and each role checks other files. A dash of the name is doubled.
+std::string lastGoodIn(const std::string& folder, const std::string& configuration,
+                       std::string_view role) {
+  const std::string path = absolutePath(configuration);
+  if (folder.empty() || path.empty()) return {};
+  std::string name;
+  for (const char c : path.substr(1)) name += c == '/' ? "-" : c == '-' ? "--" : std::string(1, c);
+  return fmt::format("{}/{}.{}.last-good", folder, name, role);
+}
+
+}  // namespace
+
+std::string lastGoodFile(const std::string& configuration, const std::string& role) {
+  return lastGoodIn(stateFolder(), configuration, role);
+}
+
+std::vector<std::string> findLastGoodFiles(const std::string& configuration) {
+  for (const std::string& folder : {stateFolder(), std::string(kServiceFolder)}) {
+    std::vector<std::string> found;
+    for (const char* role : {"wall", "devices", "all"}) {
+      const std::string file = lastGoodIn(folder, configuration, role);
+      if (fileStamp(file)) found.push_back(file);
+    }
+    if (!found.empty()) return found;
+  }
+  return {};
 }
 
 std::string shownFolder(const std::string& wanted, const std::string& file,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "daemon/state/state_files.h"
 
@@ -39,6 +40,15 @@ std::string stateFile(const std::string& wanted, const std::string& instance, bo
 // environment: stateFile() of a process with a wall, or, if there is no such file, that of the
 // installed service in /var/lib/merlin if that exists.
 std::string findStateFile(const std::string& wanted, const std::string& instance);
+
+// The file in which a process of this role keeps the last good settings of this configuration: in
+// stateFolder(), or empty if there is none. Reads the environment: to be called before any thread
+// starts.
+std::string lastGoodFile(const std::string& configuration, const std::string& role);
+
+// Those files that exist, as another program than merlind finds them: in stateFolder(), or, if
+// there are none, in the installed services' /var/lib/merlin.
+std::vector<std::string> findLastGoodFiles(const std::string& configuration);
 
 // The content folder that is used, as a whole path, which other programs can use: `wanted`, or, if
 // that is empty, INSTANCE.shown beside the state's `file`, from stateFile(). Empty if there is

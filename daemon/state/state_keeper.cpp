@@ -15,6 +15,16 @@ Result<State> parsed(const Result<std::string>& text, const std::string& name) {
   return parseState(*text, name);
 }
 
+// Of a damaged file: what became of the one before it.
+const char* outcomeOf(const Result<State>& previous) {
+  if (previous) return "the previous state is used";
+  if (previous.error().code == Errc::kNotFound)
+    return "there is no previous one: the configuration holds";
+  if (previous.error().code == Errc::kMalformed)
+    return "the previous one is damaged too: the configuration holds";
+  return "the previous one cannot be used either: the configuration holds";
+}
+
 }  // namespace
 
 StateKeeper::StateKeeper(std::unique_ptr<StateFiles> files, ThreadWatch& watch, Duration try_again)
@@ -60,14 +70,13 @@ void StateKeeper::load() {
 
 void StateKeeper::loadPrevious(const Error& why) {
   auto previous = parsed(files_->readPrevious(), files_->name() + ".previous");
-  const bool usable = previous.ok();
-  if (usable) state_ = *std::move(previous);
+  const char* const outcome = outcomeOf(previous);
+  if (previous) state_ = *std::move(previous);
   const auto aside = files_->putAside();
-  notices_.push_back(fmt::format(
-      "the state file is damaged: {}; {}; {}", why.what,
-      usable ? "the previous state is used" : "there is no previous one: the configuration holds",
-      aside ? fmt::format("the damaged file is {}.damaged now", files_->name())
-            : aside.error().what));
+  notices_.push_back(
+      fmt::format("the state file is damaged: {}; {}; {}", why.what, outcome,
+                  aside ? fmt::format("the damaged file is {}.damaged now", files_->name())
+                        : aside.error().what));
 }
 
 State StateKeeper::state() const {

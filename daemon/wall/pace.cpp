@@ -13,7 +13,9 @@ Pace::Pace(render::governor::Governor& governor)
     : governor_(governor),
       configured_hz_(1 / toSeconds(governor.period())),
       asked_hz_(configured_hz_),
-      period_(governor.period()) {}
+      period_(governor.period()) {
+  noteLimits();
+}
 
 void Pace::hold(std::optional<std::size_t> cost) noexcept {
   held_cost_.store(cost ? static_cast<std::int64_t>(*cost) : -1);
@@ -31,9 +33,16 @@ void Pace::show(const render::content::DetailAxis& detail) {
     governor_.hold(std::nullopt);
   }
   unit_ = unit;
+  noteLimits();
+}
+
+void Pace::noteLimits() noexcept {
+  least_cost_.store(governor_.least());
+  most_cost_.store(governor_.most());
 }
 
 bool Pace::update() {
+  noteLimits();
   const std::int64_t held = held_cost_.load();
   governor_.hold(held < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(held)));
   const double set_hz = set_rate_hz_.load();

@@ -18,7 +18,7 @@
 
 namespace merlin::wall {
 
-// Thread-bound, except hold() and setRate().
+// Thread-bound, except hold(), setRate() and limits().
 class Pace {
  public:
   // `governor` must outlive this object.
@@ -29,6 +29,12 @@ class Pace {
   // nullopt: the configured one. REQUIRES: rate_hz > 0.
   void hold(std::optional<std::size_t> cost) noexcept;
   void setRate(std::optional<double> rate_hz) noexcept;
+  // The costs that may be fixed, for the content that is shown: what is outside is not used. May be
+  // called on any thread.
+  struct Limits {
+    std::size_t least, most;
+  };
+  Limits limits() const noexcept { return {least_cost_.load(), most_cost_.load()}; }
 
   // To be called when another content is shown, and for the first one: sets the governor's lower
   // limit by it. If its detail has another unit than the one before, a cost that hold() has fixed
@@ -60,6 +66,7 @@ class Pace {
 
  private:
   bool betterFits() const;
+  void noteLimits() noexcept;
 
   render::governor::Governor& governor_;
   std::string unit_;  // of the content's detail; empty: none was shown
@@ -70,6 +77,7 @@ class Pace {
   render::governor::DegradationLadder ladder_{3};
   render::governor::DegradationLadder operator_ladder_{1};
   std::uint32_t changes_ = 0;
+  std::atomic<std::size_t> least_cost_{0}, most_cost_{0};
   std::atomic<std::int64_t> held_cost_{-1};  // -1: the governor chooses
   std::atomic<double> set_rate_hz_{0};       // 0: the configured rate
 };

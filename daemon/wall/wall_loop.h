@@ -103,6 +103,8 @@ class WallLoop {
   // Thread-safe; applied before the next frame: see Pace.
   void hold(std::optional<std::size_t> cost) noexcept { pace_.hold(cost); }
   void setRate(std::optional<double> rate_hz) noexcept { pace_.setRate(rate_hz); }
+  // Thread-safe.
+  Pace::Limits holdLimits() const noexcept { return pace_.limits(); }
 
  private:
   Timestamp deadline(std::int64_t k) const { return parts_.frame_clock.deadline(k); }

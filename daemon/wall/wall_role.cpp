@@ -484,6 +484,11 @@ void WallRole::hold(std::optional<std::size_t> cost) {
   if (WallLoop* loop = loop_.load()) loop->hold(cost);
 }
 
+std::optional<Pace::Limits> WallRole::holdLimits() const {
+  const WallLoop* const loop = loop_.load();
+  return loop ? std::optional(loop->holdLimits()) : std::nullopt;
+}
+
 void WallRole::setRate(std::optional<double> rate_hz) {
   if (WallLoop* loop = loop_.load()) loop->setRate(rate_hz);
 }

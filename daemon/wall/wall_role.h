@@ -91,6 +91,8 @@ class WallRole {
   void move(const Eigen::Vector3f& way_radii, const Eigen::Vector3f& turn_deg);
   void hold(std::optional<std::size_t> cost);
   void setRate(std::optional<double> rate_hz);
+  // Thread-safe: what hold() may fix, of the content that is shown; nothing before the loop runs.
+  std::optional<Pace::Limits> holdLimits() const;
   Aligner& aligner() { return *aligner_; }
   SignalTaps& signals() { return *signals_; }
   // For its thread-safe members; null: there is no panel on the operator's tile.

@@ -101,6 +101,7 @@ class Governor {
   std::size_t least() const noexcept {
     return std::min(settings_.min_triangles, least_useful_.value_or(settings_.min_triangles));
   }
+  std::size_t most() const noexcept { return settings_.max_triangles; }  // its upper limit
 
  private:
   struct Model {

@@ -195,7 +195,8 @@ TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
   const TempDir dir;
   writeText(dir / "merlin.json",
             R"({"projectors": [{"name": "left", "address": "h", "password_file": "pw"}],
-                "serve": {"samples_keys": "kk"}})");
+                "serve": {"samples_endpoint": "tcp://127.0.0.1:1", "samples_keys": "kk",
+                          "samples_clients": "clients"}})");
   const std::vector<PackedFile> files = configurationFiles(dir);
   ASSERT_EQ(files.size(), 3u);
   for (const PackedFile& file : files) {

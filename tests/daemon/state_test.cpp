@@ -319,13 +319,20 @@ TEST_F(StateKeeping, OfADamagedFileThePreviousOneIsUsedAndKept) {
   EXPECT_EQ(rateOf(disk_.last), 22);
 }
 
+TEST_F(StateKeeping, OfADamagedFileWithoutAPreviousOneTheConfigurationHolds) {
+  disk_.last = "{";
+  EXPECT_NE(keeper()->takeNotices().at(0).find("there is no previous one: the configuration holds"),
+            std::string::npos);
+}
+
 TEST_F(StateKeeping, WhereBothAreDamagedTheConfigurationHolds) {
   disk_.last = "{";
   disk_.previous = "";
   const auto only = keeper();
   EXPECT_FALSE(only->state().rate_hz);
-  EXPECT_NE(only->takeNotices().at(0).find("there is no previous one: the configuration holds"),
-            std::string::npos);
+  EXPECT_NE(
+      only->takeNotices().at(0).find("the previous one is damaged too: the configuration holds"),
+      std::string::npos);
   setRate(*only, 22);
   EXPECT_EQ(rateOf(disk_.last), 22);
 }

@@ -142,6 +142,20 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   EXPECT_GT(frames_.frames.back().cost, 2300u);
 }
 
+// What a person may ask for is what is used.
+TEST_F(WallPaceTest, TheLimitsOfTrianglesByHandAreThoseOfTheContent) {
+  contents_.push_back({&picture_, &painter_});
+  std::vector<std::size_t> least;
+  run(4, [&](Timestamp) {
+    if (since() < std::chrono::seconds(static_cast<int>(least.size()) + 1)) return;
+    least.push_back(loop_->holdLimits().least);
+    EXPECT_EQ(loop_->holdLimits().most, 4'000'000u);
+    loop_->show(1);
+  });
+  least.resize(2);
+  EXPECT_EQ(least, (std::vector<std::size_t>{100, 16})) << "of the model, and of the picture";
+}
+
 // 100 kilotexels, as many as the fewest triangles, would be two steps finer.
 TEST_F(WallPaceTest, APictureGetsAsCoarseAsItCan) {
   contents_.push_back({&picture_, &painter_});

@@ -48,5 +48,84 @@ TEST(Crash, LeavesTheLastBytesOfEachDeviceAndTheLastFrame) {
       << "the one before ended in order: " << third.output();
 }
 
+// The two roles as two processes, of which one is killed.
+class KilledRole : public testing::Test {
+ protected:
+  KilledRole() : model_(makeModel(dir_, 2)) {}
+
+  void start(const std::string& role) {
+    auto& process = role == "wall" ? wall_ : devices_;
+    process = std::make_unique<Merlind>(dir_, model_, "lost",
+                                        MerlindOptions{.role = role, .emulate = role == "devices"});
+    ASSERT_TRUE(process->ready()) << process->process().output();
+  }
+  // Returns once its heartbeat is late.
+  static void killed(Merlind& merlind, const char* role) {
+    merlind.process().kill(SIGKILL);
+    const std::string name = shm::segmentName(merlind.instance(), role);
+    EXPECT_TRUE(eventually([&] {
+      const auto memory = SharedMemory::open(name);
+      return memory && !shm::isAlive(*reinterpret_cast<const shm::Header*>(memory->data()),
+                                     SystemClock().now());
+    }));
+  }
+  Outcome merlin(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), kMerlin);
+    arguments.insert(arguments.end(), {"--instance", devices_->instance()});
+    return run(arguments);
+  }
+
+  TempDir dir_;
+  std::string model_;
+  std::unique_ptr<Merlind> devices_, wall_;
+};
+
+TEST_F(KilledRole, OfTheWallIsSaidByStatusReloadAndSnapshot) {
+  start("devices");
+  start("wall");
+  EXPECT_TRUE(eventually([&] { return wall_->wall().frames > 2; }));
+  EXPECT_EQ(merlin({"snapshot", "-o", dir_ / "before.png"}).status, 0);
+  killed(*wall_, "wall");
+
+  const Outcome status = merlin({"status"});
+  EXPECT_EQ(status.status, 0);
+  EXPECT_TRUE(status.output.starts_with("wall     does not run; it ended ")) << status.output;
+  EXPECT_NE(status.output.find("ball "), std::string::npos) << "the devices have their lines";
+  const auto json = devices_->status();
+  EXPECT_EQ(json["roles"].size(), 1u) << json;
+  EXPECT_GE(json["lost_roles"]["wall"]["silent_s"], 1) << json;
+
+  const Outcome reload = merlin({"reload"});
+  EXPECT_EQ(reload.status, 1);
+  EXPECT_NE(reload.output.find(": the role wall does not run; it ended "), std::string::npos)
+      << reload.output;
+  EXPECT_NE(reload.output.find("nothing changed\n"), std::string::npos) << "that of the devices";
+
+  const Outcome snapshot = merlin({"snapshot", "-o", dir_ / "after.png"});
+  EXPECT_EQ(snapshot.status, 1);
+  EXPECT_NE(snapshot.output.find("does not run; it ended "), std::string::npos) << snapshot.output;
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "after.png"));
+
+  start("wall");
+  EXPECT_EQ(merlin({"status"}).output.find("does not run"), std::string::npos);
+  EXPECT_EQ(merlin({"reload"}).status, 0);
+}
+
+TEST_F(KilledRole, OfTheDevicesIsSaidAndOneThatEndedInOrderIsNot) {
+  start("devices");
+  start("wall");
+  EXPECT_TRUE(eventually([&] { return wall_->wall().frames > 2; }));
+  killed(*devices_, "devices");
+  EXPECT_TRUE(merlin({"status"}).output.starts_with("devices  does not run; it ended "));
+  const Outcome reload = merlin({"reload", "--json"});
+  EXPECT_EQ(reload.status, 1) << reload.output;
+  EXPECT_EQ(merlin({"snapshot", "-o", dir_ / "wall.png"}).status, 0);
+
+  start("devices");
+  EXPECT_EQ(devices_->process().kill(SIGTERM), 0);
+  EXPECT_EQ(merlin({"status"}).output.find("does not run"), std::string::npos);
+  EXPECT_EQ(merlin({"reload"}).status, 0);
+}
+
 }  // namespace
 }  // namespace merlin::test

@@ -112,6 +112,26 @@ TEST_F(LastGood, NamesFilesThatTheConfigurationNamesFromItsFolder) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
+// It may have a token, among the arguments of an alarm's program.
+TEST_F(LastGood, IsReadableByNoMoreThanEachFileOfTheConfiguration) {
+  const std::string more = dir_ / "conf.d/more.json";
+  fs::create_directories(dir_ / "conf.d");
+  writeText(more, "{}");
+  const auto kept_mode = [&](fs::perms of_file, fs::perms of_more) {
+    fs::permissions(config_, of_file);
+    fs::permissions(more, of_more);
+    const auto wall = start();
+    EXPECT_TRUE(wall->saysEventually("ready")) << wall->output();
+    EXPECT_EQ(wall->kill(SIGTERM), 0);
+    for (const auto& entry : fs::directory_iterator(state_))
+      if (entry.path().extension() == ".last-good") return entry.status().permissions();
+    return fs::perms::none;
+  };
+  EXPECT_EQ(kept_mode(fs::perms{0600}, fs::perms{0644}), fs::perms{0600});
+  EXPECT_EQ(kept_mode(fs::perms{0644}, fs::perms{0644}), fs::perms{0640});
+  EXPECT_EQ(kept_mode(fs::perms{0644}, fs::perms{0400}), fs::perms{0600});
+}
+
 TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
   writeText(config_, "{");
   EXPECT_EQ(start()->wait(), 2);

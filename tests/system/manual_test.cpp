@@ -85,6 +85,8 @@ TEST(ManPage, OfEachProgramIsCleanAndComplete) {
     const char* has;
   } pages[] = {{{kMerlin, "--print-manual"}, "merlin mesh reduce"},
                {{kMerlind, "--print-manual"}, "--check-config FILE"},
+               {{kMerlind, "--print-manual"}, "merlin-alarms.service.d"},
+               {{kMerlind, "--print-manual"}, "SIGUSR1"},
                {{kMerlind, "--print-config-manual"}, "/wall/tiles/tiles/0"}};
   for (const auto& page : pages) {
     const test::TempDir dir;

@@ -38,7 +38,7 @@ inline std::string makeModel(const TempDir& dir, int percent = 20) {
 struct MerlindOptions {
   std::string script = "visit", role = "all";
   double rate_hz = 10;  // 30 Hz is too fast for a sanitizer's build
-  bool emulate = true;
+  bool emulate = true, last_good = false;
   std::map<std::string, std::string> environment = {};
   nlohmann::json also = nlohmann::json::object();  // merged into the configuration
 };
@@ -74,6 +74,7 @@ class Merlind {
     writeText(config_, config.dump(2));
     std::vector<std::string> arguments = {kMerlind, "--config", config_, "--role", options.role};
     if (options.emulate) arguments.emplace_back("--emulate");
+    if (options.last_good) arguments.emplace_back("--last-good");
     process_ = std::make_unique<Process>(std::move(arguments), options.environment);
   }
 

@@ -125,6 +125,45 @@ TEST(Report, OfAWallThatDoesNotRunSaysSoAndQuotesNoFile) {
   expectNowhere(files, kPassword);
 }
 
+// merlind runs with what it has kept, and a token that the broken file lost is still one.
+TEST(Report, OfABrokenConfigurationHasTheLastGoodOne) {
+  const TempDir dir;
+  MerlindOptions options;
+  options.role = "devices";
+  options.also = {{"alarms", {{{"run", {"/usr/bin/tell", std::string("--token=") + kToken}}}}},
+                  {"people", {{"stale_after_s", 0.7}}}};
+  options.environment = {{"STATE_DIRECTORY", dir.path()}};
+  options.last_good = true;
+  Merlind devices(dir, "", "broken", options);
+  ASSERT_TRUE(devices.ready()) << devices.process().output();
+  const auto kept = [&] {
+    for (const auto& entry : std::filesystem::directory_iterator(dir.path()))
+      if (entry.path().extension() == ".last-good") return entry.path().filename().string();
+    return std::string();
+  };
+  ASSERT_TRUE(eventually([&] { return !kept().empty(); }));
+  std::filesystem::create_directory(dir / "flight");
+  writeText(dir / ("flight/" + devices.instance() + "-old.bytes"),
+            std::string("# --token=") + kToken);
+  writeText(devices.config(), "{");
+
+  Process made({kMerlin, "report", "-o", dir / "wall.tar.gz", "-c", devices.config()},
+               {{"STATE_DIRECTORY", dir.path()}});
+  ASSERT_EQ(made.wait(), 0) << made.output();
+  const std::string missing =
+      "missing: settings.json: the configuration is invalid: " + devices.config() + ":1: ";
+  EXPECT_NE(made.output().find(missing), std::string::npos) << made.output();
+  const auto files = unpack(dir, dir / "wall.tar.gz");
+  EXPECT_FALSE(files.contains("wall/configuration/settings.json"));
+  const std::string name = "wall/configuration/" + kept() + ".json";
+  ASSERT_TRUE(files.contains(name)) << made.output();
+  EXPECT_EQ(json::parse(files.at(name))["people"]["stale_after_s"], 0.7);
+  EXPECT_TRUE(files.contains("wall/status.json")) << "of the instance that they name";
+  EXPECT_NE(files.at("wall/README.txt").find("or, where it is invalid, the last good ones"),
+            std::string::npos);
+  expectNowhere(files, kToken);
+}
+
 TEST(Report, TheJournalIsThatOfTheUnitsWithoutSecrets) {
   const TempDir dir;
   const std::string journalctl = dir / "journalctl";  // found before the real one

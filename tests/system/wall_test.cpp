@@ -64,6 +64,24 @@ TEST_F(Wall, ShowsFullDetailWhenNobodyIsThere) {
   EXPECT_EQ(m.wall().detail_step, 0u);
 }
 
+TEST_F(Wall, ANumberOfTrianglesThatIsNotUsedIsRefusedWithTheRange) {
+  Merlind m(*dir_, model_, "by-hand", {.script = "still"});
+  ASSERT_TRUE(m.ready()) << m.process().output();
+  const auto hold = [&](const char* number) {
+    return run({kMerlin, "wall", "--triangles", number, "--instance", m.instance()});
+  };
+  for (const char* number : {"10", "499", "4000001"}) {
+    const Outcome refused = hold(number);
+    EXPECT_NE(refused.status, 0) << number;
+    EXPECT_NE(refused.output.find("\"" + std::string(number) +
+                                  "\" is not a number from 500 to 4000000, or auto\n"),
+              std::string::npos)
+        << refused.output;
+  }
+  EXPECT_EQ(hold("500").output, "triangles: 500\n");
+  EXPECT_TRUE(eventually([&] { return m.wall().held_cost == 500; }));
+}
+
 TEST_F(Wall, AFistWithTheTrackerGrabs) {
   Merlind m(*dir_, model_, "grabs", {.script = "grabbing"});
   ASSERT_TRUE(m.ready()) << m.process().output();

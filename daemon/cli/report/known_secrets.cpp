@@ -22,12 +22,16 @@ constexpr std::size_t kMostFileBytes = 65536;
 }  // namespace
 
 KnownSecrets::KnownSecrets(const Settings& settings, const std::vector<std::string>& others) {
+  for (const std::string& path : others) {
+    if (fileStamp(path)) addFile(path);
+  }
+  add(settings);
+}
+
+void KnownSecrets::add(const Settings& settings) {
   for (const std::string& path : secretFilesOf(settings)) {
     add(path);
     addFile(path);
-  }
-  for (const std::string& path : others) {
-    if (fileStamp(path)) addFile(path);
   }
   for (const AlarmSettings& alarm : settings.alarms) {
     for (std::size_t i = 1; i < alarm.run.size(); ++i) {

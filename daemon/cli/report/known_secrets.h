@@ -21,6 +21,9 @@ class KnownSecrets {
   KnownSecrets(const Settings& settings, const std::vector<std::string>& others);
   explicit KnownSecrets(const std::vector<std::string>& texts);
 
+  // Those of other settings too.
+  void add(const Settings& settings);
+
   // The text with each secret replaced by kSecretLeftOut. O(text x secrets).
   std::string without(std::string_view text) const;
   bool isIn(std::string_view text) const;

@@ -15,6 +15,7 @@
 #include "daemon/cli/report/report_parts.h"
 #include "daemon/cli/roles.h"
 #include "daemon/cli/stop_signals.h"
+#include "daemon/state/state_folder.h"
 
 namespace merlin::cli {
 namespace {
@@ -40,8 +41,12 @@ std::string runDirectoryOf(const std::string& instance, const Settings& settings
 
 ReportSubject subjectOf(const ReportOptions& options) {
   ReportSubject subject{options.config, loadSettingsFile(options.config), options.instance, {}};
-  if (subject.instance.empty()) subject.instance = subject.loaded.settings.instance;
-  subject.run_directory = runDirectoryOf(subject.instance, subject.loaded.settings);
+  if (!subject.isValid()) {
+    for (const std::string& file : state::findLastGoodFiles(options.config))
+      subject.kept.push_back({file, loadSettingsFile(file)});
+  }
+  if (subject.instance.empty()) subject.instance = subject.settings().instance;
+  subject.run_directory = runDirectoryOf(subject.instance, subject.settings());
   return subject;
 }
 
@@ -82,7 +87,8 @@ int report(const ReportOptions& options) {
     return fail(named.error());
   if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   const ReportSubject subject = subjectOf(options);
-  const KnownSecrets secrets(subject.loaded.settings, otherSecretFiles(subject));
+  KnownSecrets secrets(subject.loaded.settings, otherSecretFiles(subject));
+  for (const KeptSettings& kept : subject.kept) secrets.add(kept.loaded.settings);
   const auto parts = collect(subject, secrets, !options.json);
   if (!parts) return fail(parts.error());
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());

@@ -57,13 +57,34 @@ std::string changesText(const Settings& settings) {
   return text;
 }
 
+// Why there are no settings of the configuration's file, and those of the last good ones.
+void collectKept(const ReportSubject& subject, PartFolder& folder) {
+  const std::string findings = findingsText(subject.config, subject.loaded);
+  folder.lacks(fmt::format("settings.json: the configuration is invalid: {}; {}",
+                           findings.substr(0, findings.find('\n')),
+                           subject.kept.empty() ? "no last good settings of it are kept"
+                                                : "the last good settings of it are here"));
+  for (const KeptSettings& kept : subject.kept) {
+    const std::string name = fs::path(kept.file).filename().string();
+    if (kept.loaded.parsed)
+      folder.put(name + ".json",
+                 settingsText(forStrangers(kept.loaded.settings), Secrets::kLeftOut));
+    else
+      folder.lacks(findingsText(kept.file, kept.loaded));
+  }
+}
+
 void collectConfiguration(const ReportSubject& subject, PartFolder& folder) {
   const LoadedSettings& loaded = subject.loaded;
   folder.put("findings.txt", findingsText(subject.config, loaded));
-  const Settings settings = forStrangers(loaded.settings);
-  folder.put("settings.json", settingsText(settings, Secrets::kLeftOut));
-  folder.put("changes.txt", changesText(settings));
-  const std::string state = state::findStateFile(loaded.settings.state_file, subject.instance);
+  if (subject.isValid()) {
+    const Settings settings = forStrangers(loaded.settings);
+    folder.put("settings.json", settingsText(settings, Secrets::kLeftOut));
+    folder.put("changes.txt", changesText(settings));
+  } else {
+    collectKept(subject, folder);
+  }
+  const std::string state = state::findStateFile(subject.settings().state_file, subject.instance);
   folder.put("state.json", state::StateFolder(state).read());
 }
 
@@ -180,6 +201,9 @@ void collectFrame(const ReportSubject& subject, PartFolder& folder) {
   const auto written =
       render::image::writePng(folder.path("frame.png"), frame->width, frame->height, frame->pixels);
   if (!written) folder.lacks("frame.png: " + written.error().what);
+  for (const LostRole& lost : lostRoles(subject.instance)) {
+    if (lost.role == "wall") folder.lacks("frame.png is the wall's last frame: it " + lost.what());
+  }
 }
 
 void collectHardware(PartFolder& folder) {
@@ -203,8 +227,12 @@ std::vector<ReportPart> reportParts(const ReportSubject& s) {
   return {
       {{"configuration", true, seconds(10), 4 * kMega,
         [&s](PartFolder& f) { collectConfiguration(s, f); }},
-       "the settings in effect without secrets, what differs from the defaults, findings, and what "
-       "people changed while the wall ran (state.json)"},
+       "the settings of " + s.config +
+           " without secrets, or, where it is invalid, the last good ones "
+           "that merlind keeps of it; what differs from the defaults, findings, and what people "
+           "changed "
+           "while the wall ran (state.json). A merlind that runs with another file has other "
+           "settings"},
       {{"status", false, seconds(15), 4 * kMega, [&s](PartFolder& f) { collectStatus(s, f); }},
        "state of both roles, as by merlin status --json"},
       {{"versions", true, seconds(20), 2 * kMega, [&s](PartFolder& f) { collectVersions(s, f); }},

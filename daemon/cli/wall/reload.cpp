@@ -205,8 +205,9 @@ void printRefusal(const std::vector<Reloaded>& all) {
   for (const Reloaded& reloaded : all) {
     const std::string file = reloaded.answer.value("file", ""), outcome = reloaded.outcome();
     if (outcome == "invalid") {
-      printError("merlin: {}: invalid, {} findings; nothing was changed\n", printable(file),
-                 reloaded.answer.value("findings", Json::array()).size());
+      const std::size_t findings = reloaded.answer.value("findings", Json::array()).size();
+      printError("merlin: {}: invalid, {} finding{}; nothing was changed\n", printable(file),
+                 findings, findings == 1 ? "" : "s");
       return;
     }
     if (!reloaded.done()) {
@@ -275,6 +276,18 @@ Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>
   }
 }
 
+// Says which roles were not asked, and what follows for the exit status of the others. Of one
+// process (--pid) nobody else is expected to run.
+int withLostRoles(const ReloadOptions& options, int status) {
+  if (options.pid > 0) return status;
+  const auto lost = lostRoles(options.instance);
+  for (const LostRole& role : lost) {
+    printError("merlin: {}: the role {} {}; it was not asked, and reads the file when it starts\n",
+               options.instance, role.role, role.what());
+  }
+  return lost.empty() || status != kExitDone ? status : kExitFailed;
+}
+
 int reloadInstance(ReloadOptions options) {
   std::vector<FoundRole> roles;
   const auto all = ask(options, roles);
@@ -284,7 +297,7 @@ int reloadInstance(ReloadOptions options) {
     return fail(back.error());
   if (!options.json) {
     print(*all, readersOf(roles), options.check ? "would start" : awaits ? "started" : "starts");
-    return exitStatusOf(*all);
+    return withLostRoles(options, exitStatusOf(*all));
   }
   Json processes = Json::array();
   for (const Reloaded& reloaded : *all) {
@@ -293,7 +306,7 @@ int reloadInstance(ReloadOptions options) {
     processes.push_back(std::move(process));
   }
   printJsonLine(Json{{"processes", std::move(processes)}});
-  return exitStatusOf(*all);
+  return withLostRoles(options, exitStatusOf(*all));
 }
 
 }  // namespace

@@ -43,7 +43,20 @@ Result<render::out::CapturedFrame> signalOf(const SnapshotOptions& options) {
                                            options.output, toSeconds(kPatience))};
 }
 
+// Refuses the last frame of a wall that does not run any more.
+Result<Ok> checkWallRuns(const std::string& instance) {
+  for (const LostRole& lost : lostRoles(instance)) {
+    if (lost.role != "wall") continue;
+    return Error{Errc::kIo,
+                 fmt::format("the wall of \"{}\" {}; nothing was written, since its last "
+                             "frame is not what it shows now",
+                             instance, lost.what())};
+  }
+  return Ok{};
+}
+
 Result<render::out::CapturedFrame> frameOf(const SnapshotOptions& options) {
+  if (const auto runs = checkWallRuns(options.instance); !runs) return runs.error();
   if (!options.output.empty()) return signalOf(options);
   auto frame = render::out::captureFrame(shm::segmentName(options.instance, "framebuffer"));
   if (!frame && frame.error().code == Errc::kNotFound) {

@@ -128,6 +128,20 @@ void mergeServices(Json& both) {
   if (!merged.empty()) both["services"] = std::move(merged);
 }
 
+void addLostRoles(const std::string& instance, Json& both) {
+  for (const LostRole& lost : lostRoles(instance))
+    both["lost_roles"][lost.role] = {{"silent_s", toSeconds(lost.silent)}, {"reason", lost.what()}};
+}
+
+// A line for each role that has ended without a word.
+std::string lostLines(const Json& s) {
+  const Json lost = s.value("lost_roles", Json::object());
+  std::string text;
+  for (const auto& [role, entry] : lost.items())
+    text += fmt::format("{:8} {}\n", role, entry.value("reason", ""));
+  return text;
+}
+
 }  // namespace
 
 // Combines two buckets per line; omits the empty lines before the first and after the last frame.
@@ -186,6 +200,7 @@ Result<Json> askStatus(const DaemonAddress& daemon) {
     if (!answer) return answer.error();
     mergeStatus(both, *answer);
   }
+  if (!daemon.isRemote()) addLostRoles(daemon.instance, both);
   return both;
 }
 
@@ -249,7 +264,7 @@ std::string projectorLines(const Json& s) {
 }  // namespace
 
 std::string statusTable(const Json& s) {
-  std::string text;
+  std::string text = lostLines(s);
   if (s.contains("rate_asked")) {
     text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} {}, {} (ball mode: {})\n",
                         s.value("rate_held", 0.0), s.value("rate_asked", 0.0), detailCost(s),

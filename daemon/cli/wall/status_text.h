@@ -13,8 +13,9 @@
 namespace merlin::cli {
 
 // Asks each running role for its status and merges the documents into one object. The keys pid and
-// uptime_s, which both roles have, are moved to "roles"/ROLE. Errors: kIo (no daemon runs),
-// kTimeout (a role does not answer).
+// uptime_s, which both roles have, are moved to "roles"/ROLE. A lost role of this machine is in
+// "lost_roles"/ROLE: "silent_s" and a "reason", such as "does not run; it ended 12 s ago". Errors:
+// kIo (no daemon runs), kTimeout (a role does not answer).
 Result<nlohmann::ordered_json> askStatus(const std::string& instance);
 // The same of any daemon.
 Result<nlohmann::ordered_json> askStatus(const DaemonAddress& daemon);

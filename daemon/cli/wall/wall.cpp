@@ -48,8 +48,10 @@ void addWall(Command app, Run& run) {
       "Example: merlin wall --triangles 20000 --rate 20");
   addInstance(command, options->instance);
   command
-      .option("--triangles", options->triangles,
-              "Number of triangles per frame while anything moves, or auto")
+      .option(
+          "--triangles", options->triangles,
+          "Number of triangles per frame while anything moves, from /wall/rate/min_triangles to "
+          "/wall/rate/max_triangles (least detail of a picture, in its unit), or auto")
       .typeName("N|auto");
   command.option("--rate", options->rate, "Frames per second, or auto for the configured rate")
       .typeName("HZ|auto");
