@@ -40,7 +40,7 @@ Result<Imported> importModel(const Request& request, const Reports& reports) {
     return Error{valid.error().code, request.input + ": " + valid.error().what};
   if (const auto may = reports.size(sizeOf(mesh).bytes() + mesh.texture.size()); !may)
     return may.error();
-  const auto written = render::mesh::writeMesh(request.folder + "/" + name, mesh);
+  const auto written = render::mesh::writeMesh(request.folder + "/" + name, mesh, built->origin);
   if (!written) return written.error();
   for (const std::string& note : built->notes) reports.note(note);
   return Imported{name, fmt::format("\"parts\": {}, \"degenerate\": {}, \"welded_vertices\": {}, "

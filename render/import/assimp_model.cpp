@@ -2,14 +2,11 @@
 // daemon/cli/mesh sends here.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/postprocess.h>
@@ -17,70 +14,15 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
-#include "render/import/companion_path.h"
+#include "render/import/assimp_folder.h"
 #include "render/import/gltf_check.h"
 #include "render/import/model_file.h"
 #include "render/import/model_textures.h"
+#include "render/import/model_unit.h"
 #include "render/mesh/io/companion_files.h"
 
 namespace merlin::render::import {
 namespace {
-
-// A file in memory, read-only.
-class MappedStream final : public Assimp::IOStream {
- public:
-  explicit MappedStream(MappedFile file) : file_(std::move(file)) {}
-
-  std::size_t Read(void* to, std::size_t size, std::size_t count) override {
-    if (size == 0) return 0;
-    const std::size_t items = std::min(count, (FileSize() - at_) / size);
-    if (items > 0) std::memcpy(to, file_.bytes().data() + at_, items * size);
-    at_ += items * size;
-    return items;
-  }
-  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
-  aiReturn Seek(std::size_t offset, aiOrigin from) override {
-    const std::size_t size = FileSize();
-    const std::size_t base = from == aiOrigin_SET ? 0 : from == aiOrigin_CUR ? at_ : size;
-    const std::size_t to = base + offset;  // a negative offset wraps, as it should
-    if (to > size) return aiReturn_FAILURE;
-    at_ = to;
-    return aiReturn_SUCCESS;
-  }
-  std::size_t Tell() const override { return at_; }
-  std::size_t FileSize() const override { return file_.bytes().size(); }
-  void Flush() override {}
-
- private:
-  MappedFile file_;
-  std::size_t at_ = 0;
-};
-
-// The model under a name whose ending says its format, and files beside the model.
-class ModelFolder final : public Assimp::IOSystem {
- public:
-  explicit ModelFolder(const ModelFile& file)
-      : file_(file), name_("model." + file.format), folder_(mesh::folderOf(file.path)) {}
-
-  const std::string& name() const noexcept { return name_; }
-
-  bool Exists(const char* name) const override { return fileStamp(pathOf(name)).has_value(); }
-  char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char* name, const char* mode) override {
-    if (std::strchr(mode, 'w') || std::strchr(mode, 'a') || std::strchr(mode, '+')) return nullptr;
-    auto file = MappedFile::open(pathOf(name));
-    return file ? new MappedStream(*std::move(file)) : nullptr;
-  }
-  void Close(Assimp::IOStream* stream) override { delete stream; }
-
- private:
-  std::string pathOf(const char* name) const {
-    return name == name_ ? file_.path : companionPath(folder_, name);
-  }
-
-  const ModelFile& file_;
-  std::string name_, folder_;
-};
 
 // assimp owns it. It reads the first half of the way.
 class Progress final : public Assimp::ProgressHandler {
@@ -109,6 +51,7 @@ image::Wrap wrapOf(aiTextureMapMode mode) {
 // What the triangles of a mesh look like.
 struct Material {
   std::array<float, 3> colour = kPlain;
+  aiColor4D factor{1, 1, 1, 1};  // of the vertices' colours
   mesh::SurfaceTexture texture;
   unsigned texcoords = 0;  // which of the mesh's texture coordinates
   // What is done to them: each times `scale`, and then `offset` is added.
@@ -120,6 +63,7 @@ class SceneReader {
   SceneReader(const aiScene& scene, const ModelFile& file, const OnTriangles& on_triangles)
       : scene_(scene),
         linear_(file.format == "gltf" || file.format == "glb"),
+        amf_(file.format == "amf"),
         textures_(mesh::folderOf(file.path)),
         on_triangles_(on_triangles) {
     for (unsigned m = 0; m < scene.mNumMaterials; ++m)
@@ -133,6 +77,7 @@ class SceneReader {
         addMesh(*scene_.mMeshes[node->mMeshes[m]], to_model);
     }
     BuiltModel built = std::move(builder_).finish();
+    built.origin = origin_;
     const auto& notes = textures_.notes();
     built.notes.insert(built.notes.end(), notes.begin(), notes.end());
     if (transforms_ > 0)
@@ -140,14 +85,24 @@ class SceneReader {
           fmt::format("left out: the {} of {} textures, which lie otherwise than in the model",
                       linear_ ? "rotations" : "scales, offsets and rotations", transforms_));
     if (others_ > 0) built.notes.push_back(fmt::format("left out: {} lines and points", others_));
-    if (morphs_ || scene_.mNumAnimations > 0)
-      built.notes.push_back(fmt::format("left out: {} animations{}; this is the rest pose",
-                                        scene_.mNumAnimations,
-                                        morphs_ ? " and morph targets" : ""));
+    if (coloured_pictures_ > 0)
+      built.notes.push_back(
+          fmt::format("left out: the vertices' colours of {} parts, which have a "
+                      "texture to be multiplied with them",
+                      coloured_pictures_));
+    if (const std::string moved = motions(); !moved.empty())
+      built.notes.push_back("left out: " + moved + "; this is the rest pose");
     return built;
   }
 
  private:
+  std::string motions() const {
+    std::string text;
+    if (scene_.mNumAnimations > 0) text = fmt::format("{} animations", scene_.mNumAnimations);
+    if (morphs_) text += text.empty() ? "morph targets" : " and morph targets";
+    return text;
+  }
+
   std::array<float, 3> screenColour(const aiColor4D& c) const {
     if (linear_) return {toSrgb(c.r), toSrgb(c.g), toSrgb(c.b)};
     return {c.r, c.g, c.b};
@@ -168,16 +123,33 @@ class SceneReader {
     return textures_.ofPixels(path.C_Str(), std::move(pixels));
   }
 
+  // Of a glTF material by KHR_materials_pbrSpecularGlossiness, the diffuse colour and texture are
+  // its own, and the base colour is what the file gives to others, or white.
+  static bool isSpecularGlossiness(const aiMaterial& material) {
+    ai_real glossiness = 0;
+    return material.Get(AI_MATKEY_GLOSSINESS_FACTOR, glossiness) == aiReturn_SUCCESS;
+  }
+
+  static bool baseColour(const aiMaterial& material, aiColor4D& colour) {
+    if (!isSpecularGlossiness(material) &&
+        material.Get(AI_MATKEY_BASE_COLOR, colour) == aiReturn_SUCCESS)
+      return true;
+    return material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS;
+  }
+
   Material materialOf(const aiMaterial& material) {
     Material m;
     aiString name;
     const bool plain = material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS &&
                        std::string_view(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME;
     aiColor4D colour;
-    if (!plain && (material.Get(AI_MATKEY_BASE_COLOR, colour) == aiReturn_SUCCESS ||
-                   material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS))
+    if (!plain && baseColour(material, colour)) {
       m.colour = screenColour(colour);
-    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+      if (linear_) m.factor = colour;
+    }
+    std::array<aiTextureType, 2> types = {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
+    if (isSpecularGlossiness(material)) std::swap(types[0], types[1]);
+    for (const aiTextureType type : types) {
       aiString path;
       aiTextureMapMode wrap[2] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
       if (m.texture.picture || material.GetTexture(type, 0, &path, nullptr, &m.texcoords, nullptr,
@@ -194,7 +166,7 @@ class SceneReader {
   // having both.
   void tint(const aiMaterial& material, Material& m) {
     aiColor4D c;
-    if (!m.texture.picture || material.Get(AI_MATKEY_BASE_COLOR, c) != aiReturn_SUCCESS) return;
+    if (!m.texture.picture || !baseColour(material, c)) return;
     const std::array<float, 3> factor = {c.r, c.g, c.b};
     const bool white = std::ranges::all_of(factor, [](float f) { return f == 1; });
     if (!white && std::ranges::all_of(factor, [](float f) { return std::isfinite(f); }))
@@ -217,10 +189,27 @@ class SceneReader {
     m.offset = {t.mTranslation.x, t.mTranslation.y};
   }
 
-  // The nodes with the transforms that take their coordinates to the model's.
+  // The nodes with the transforms that take their coordinates to the model's, relative to an origin
+  // near the first node with a mesh: a model of a map is moved to its place by a node.
   void findNodes() {
-    std::vector<std::pair<const aiNode*, aiMatrix4x4>> left = {
-        {scene_.mRootNode, scene_.mRootNode->mTransformation}};
+    findNodesFrom(scene_.mRootNode->mTransformation);
+    const auto first =
+        std::ranges::find_if(nodes_, [](const auto& node) { return node.first->mNumMeshes > 0; });
+    if (first == nodes_.end()) return;
+    const aiMatrix4x4& m = first->second;
+    origin_ = mesh::originNear({double{m.a4}, double{m.b4}, double{m.c4}});
+    if (origin_ == mesh::Origin{}) return;
+    nodes_.clear();
+    by_name_.clear();
+    aiMatrix4x4 root = scene_.mRootNode->mTransformation;
+    root.a4 = static_cast<float>(root.a4 - origin_[0]);
+    root.b4 = static_cast<float>(root.b4 - origin_[1]);
+    root.c4 = static_cast<float>(root.c4 - origin_[2]);
+    findNodesFrom(root);
+  }
+
+  void findNodesFrom(const aiMatrix4x4& root) {
+    std::vector<std::pair<const aiNode*, aiMatrix4x4>> left = {{scene_.mRootNode, root}};
     while (!left.empty()) {
       const auto at = left.back();
       left.pop_back();
@@ -258,9 +247,28 @@ class SceneReader {
     return at;
   }
 
-  Corner cornerOf(const aiMesh& mesh, const Material& material, unsigned v) const {
+  // The colours of a mesh's vertices; null if it has none. Of an AMF file without colours, assimp
+  // makes each vertex black and transparent.
+  const aiColor4D* coloursOf(const aiMesh& mesh) const {
+    const aiColor4D* const colours = mesh.mColors[0];
+    if (!colours || !amf_) return colours;
+    const bool any = std::any_of(colours, colours + mesh.mNumVertices,
+                                 [](const aiColor4D& c) { return c != aiColor4D(0, 0, 0, 0); });
+    return any ? colours : nullptr;
+  }
+
+  // Only glTF says what a texture and colours together mean.
+  bool hasColouredPicture(const aiMesh& mesh, const Material& material) const {
+    const aiColor4D* const colours = mesh.mColors[0];
+    return linear_ && colours && material.texture.picture &&
+           std::any_of(colours, colours + mesh.mNumVertices,
+                       [](const aiColor4D& c) { return c.r != 1 || c.g != 1 || c.b != 1; });
+  }
+
+  Corner cornerOf(const aiMesh& mesh, const Material& material, const aiColor4D* colour,
+                  unsigned v) const {
     Corner corner;
-    corner.colour = mesh.mColors[0] ? screenColour(mesh.mColors[0][v]) : material.colour;
+    corner.colour = colour ? screenColour(*colour * material.factor) : material.colour;
     if (material.texcoords < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
         mesh.mTextureCoords[material.texcoords]) {
       const aiVector3D& t = mesh.mTextureCoords[material.texcoords][v];
@@ -277,6 +285,8 @@ class SceneReader {
                         mesh.mTextureCoords[material.texcoords];
     if (!mapped) material.texture = {};
     builder_.beginPart(material.texture);
+    const aiColor4D* const colours = coloursOf(mesh);
+    coloured_pictures_ += hasColouredPicture(mesh, material);
     morphs_ = morphs_ || mesh.mNumAnimMeshes > 0;
     const std::vector<aiVector3D> at = positionsOf(mesh, to_model);
     const bool mirrored = mesh.mNumBones == 0 && to_model.Determinant() < 0;
@@ -290,7 +300,7 @@ class SceneReader {
       for (unsigned k = 0; k < 3; ++k) {
         const unsigned v = face.mIndices[mirrored ? 2 - k : k];
         if (v >= mesh.mNumVertices) continue;  // ValidateDataStructure refuses it
-        corners[k] = cornerOf(mesh, material, v);
+        corners[k] = cornerOf(mesh, material, colours ? colours + v : nullptr, v);
         corners[k].position = {at[v].x, at[v].y, at[v].z};
       }
       builder_.add(corners);
@@ -302,29 +312,57 @@ class SceneReader {
 
   const aiScene& scene_;
   bool linear_;  // colours are proportional to light
+  bool amf_;
   ModelTextures textures_;
   const OnTriangles& on_triangles_;
   std::vector<Material> materials_;
   std::vector<std::pair<const aiNode*, aiMatrix4x4>> nodes_;
   std::map<std::string, aiMatrix4x4> by_name_;
+  mesh::Origin origin_{};
   ModelBuilder builder_;
-  std::size_t others_ = 0, meshes_ = 0, transforms_ = 0;
+  std::size_t others_ = 0, meshes_ = 0, transforms_ = 0, coloured_pictures_ = 0;
   bool morphs_ = false;
 };
 
 bool isGltf(const ModelFile& file) { return file.format == "gltf" || file.format == "glb"; }
 
-Result<Ok> checkFirst(const ModelFile& file) {
-  if (!isGltf(file)) return Ok{};
+Result<std::vector<GltfPrimitive>> checkFirst(const ModelFile& file) {
+  if (!isGltf(file)) return std::vector<GltfPrimitive>();
   const auto bytes = MappedFile::open(file.path);
-  if (!bytes) return Ok{};  // assimp says so
+  if (!bytes) return std::vector<GltfPrimitive>();  // assimp says so
   return checkGltf(bytes->text());
+}
+
+// assimp makes a mesh of each primitive, and leaves out triangles with an index out of range.
+Result<Ok> checkTriangles(const std::vector<GltfPrimitive>& promised, const aiScene& scene) {
+  if (promised.size() != scene.mNumMeshes) return Ok{};
+  for (std::size_t i = 0; i < promised.size(); ++i) {
+    const GltfPrimitive& p = promised[i];
+    const aiMesh& mesh = *scene.mMeshes[i];
+    if (mesh.mNumFaces >= p.triangles) continue;
+    return Error{
+        Errc::kMalformed,
+        fmt::format("glTF: mesh {}, primitive {}: {} of its {} triangles have an index beyond its "
+                    "{} vertices",
+                    p.mesh, p.number, p.triangles - mesh.mNumFaces, p.triangles,
+                    mesh.mNumVertices)};
+  }
+  return Ok{};
+}
+
+// The unit that an AMF file names; empty if there is none.
+std::string namedUnit(const ModelFile& file) {
+  constexpr std::size_t kEnough = 4096;
+  if (file.format != "amf") return {};
+  const auto beginning = FileCopy::read(file.path, kEnough);
+  return beginning ? unitOf(beginning->text(), "amf") : "";
 }
 
 }  // namespace
 
 Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_triangles) {
-  if (const auto good = checkFirst(file); !good) return good.error();
+  const auto promised = checkFirst(file);
+  if (!promised) return promised.error();
   Assimp::Importer importer;
   auto* const folder = new ModelFolder(file);  // the importer's from here on
   importer.SetIOHandler(folder);
@@ -339,7 +377,11 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
   }
   if (!scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
     return Error{Errc::kUnsupported, "holds no surface"};
-  return SceneReader(*scene, file, on_triangles).read();
+  if (const auto whole = checkTriangles(*promised, *scene); !whole) return whole.error();
+  BuiltModel built = SceneReader(*scene, file, on_triangles).read();
+  if (const std::string unit = namedUnit(file); !unit.empty())
+    built.notes.push_back(fmt::format("its coordinates are left in its unit, {}", unit));
+  return built;
 }
 
 }  // namespace merlin::render::import

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -13,14 +14,19 @@
 #include <Inventor/SoInput.h>
 #include <Inventor/SoInteraction.h>
 #include <Inventor/SoPrimitiveVertex.h>
+#include <Inventor/VRMLnodes/SoVRMLColor.h>
+#include <Inventor/VRMLnodes/SoVRMLElevationGrid.h>
 #include <Inventor/VRMLnodes/SoVRMLImageTexture.h>
+#include <Inventor/VRMLnodes/SoVRMLIndexedFaceSet.h>
 #include <Inventor/VRMLnodes/SoVRMLInline.h>
 #include <Inventor/actions/SoCallbackAction.h>
 #include <Inventor/actions/SoSearchAction.h>
+#include <Inventor/elements/SoLazyElement.h>
+#include <Inventor/elements/SoNormalBindingElement.h>
+#include <Inventor/elements/SoOverrideElement.h>
 #include <Inventor/errors/SoDebugError.h>
 #include <Inventor/errors/SoReadError.h>
 #include <Inventor/fields/SoSFTime.h>
-#include <Inventor/misc/SoChildList.h>
 #include <Inventor/nodes/SoImage.h>
 #include <Inventor/nodes/SoIndexedNurbsCurve.h>
 #include <Inventor/nodes/SoIndexedNurbsSurface.h>
@@ -33,6 +39,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
+#include "render/import/coin_graph.h"
+#include "render/import/coin_indices.h"
 #include "render/import/model_file.h"
 #include "render/import/model_textures.h"
 #include "render/mesh/io/companion_files.h"
@@ -73,57 +82,6 @@ class NodeReference {
   SoNode* node_;
 };
 
-constexpr double kMostShapes = 1e7;  // with each as often as it is used
-
-// Walks a graph whose nodes may have several parents; a node that is below itself, and one that
-// multiplies, would never end.
-class GraphCheck {
- public:
-  Result<Ok> run(SoNode* root) {
-    enter(root);
-    while (!path_.empty()) {
-      const auto [node, next] = path_.back();
-      const SoChildList* const children = node->getChildren();
-      if (!children || next >= children->getLength()) {
-        leave();
-        continue;
-      }
-      ++path_.back().second;
-      SoNode* const child = (*children)[next];
-      const auto known = shapes_.find(child);
-      if (known == shapes_.end()) {
-        enter(child);
-      } else if (known->second < 0) {
-        return Error{Errc::kMalformed, fmt::format("is cyclic: a {} contains itself",
-                                                   child->getTypeId().getName().getString())};
-      } else {
-        sums_.back() += known->second;
-      }
-    }
-    if (shapes_[root] <= kMostShapes) return Ok{};
-    return Error{Errc::kMalformed, fmt::format("uses its shapes {:.3g} times; allowed are {:.0f}",
-                                               shapes_[root], kMostShapes)};
-  }
-
- private:
-  void enter(SoNode* node) {
-    shapes_[node] = -1;  // on the path
-    path_.emplace_back(node, 0);
-    sums_.push_back(node->isOfType(SoShape::getClassTypeId()) ? 1 : 0);
-  }
-  void leave() {
-    const double shapes = sums_.back();
-    shapes_[path_.back().first] = shapes;
-    path_.pop_back();
-    sums_.pop_back();
-    if (!sums_.empty()) sums_.back() += shapes;
-  }
-
-  std::vector<std::pair<SoNode*, int>> path_;
-  std::vector<double> sums_;
-  std::unordered_map<SoNode*, double> shapes_;  // below a node; -1: not known yet
-};
-
 // All nodes of a type, each once.
 template <typename Node>
 std::vector<Node*> nodesOf(SoNode* root) {
@@ -147,10 +105,11 @@ class GraphReader {
   GraphReader(const ModelFile& file, const OnTriangles& on_triangles)
       : textures_(mesh::folderOf(file.path)), on_triangles_(on_triangles) {}
 
-  BuiltModel read(SoNode* root) {
+  Result<BuiltModel> read(SoNode* root) {
     prepareTextures(root);
     SoCallbackAction action;
     const SoType shape = SoShape::getClassTypeId();
+    action.addPreCallback(root->getTypeId(), leaveOutNormals, nullptr);
     action.addPreCallback(shape, beginShape, this);
     for (const SoType type :
          {SoImage::getClassTypeId(), SoNurbsSurface::getClassTypeId(),
@@ -161,6 +120,7 @@ class GraphReader {
     action.addLineSegmentCallback(shape, takeLine, this);
     action.addPointCallback(shape, takePoint, this);
     action.apply(root);
+    if (!shapes_are_whole_) return shapes_are_whole_.error();
     const std::size_t inlines =
         nodesOf<SoVRMLInline>(root).size() + nodesOf<SoWWWInline>(root).size();
     BuiltModel built = std::move(builder_).finish();
@@ -235,13 +195,57 @@ class GraphReader {
     return {found->second, wrapOf(action.getTextureWrapS()), wrapOf(action.getTextureWrapT())};
   }
 
-  static SoCallbackAction::Response beginShape(void* self, SoCallbackAction*, const SoNode*) {
+  // Normals are made anew, so that a shape's own, whatever their indices, are not needed.
+  static SoCallbackAction::Response leaveOutNormals(void*, SoCallbackAction* action,
+                                                    const SoNode* node) {
+    SoState* const state = action->getState();
+    auto* const by = const_cast<SoNode*>(node);
+    SoNormalBindingElement::set(state, by, SoNormalBindingElement::OVERALL);
+    SoOverrideElement::setNormalBindingOverride(state, by, TRUE);
+    return SoCallbackAction::CONTINUE;
+  }
+
+  static SoCallbackAction::Response beginShape(void* self, SoCallbackAction* action,
+                                               const SoNode* node) {
     GraphReader& reader = of(self);
     const double shapes = static_cast<double>(++reader.shapes_);
     reader.on_triangles_(0.5 + 0.5 * shapes / (shapes + 100),
                          static_cast<std::int64_t>(reader.builder_.triangles()));
     reader.begun_ = false;
+    reader.vrml_clockwise_ = clockwiseOf(*node);
+    reader.grid_ = dynamic_cast<const SoVRMLElevationGrid*>(node);
+    reader.grid_colours_ = reader.grid_ ? coloursOf(*reader.grid_) : nullptr;
+    reader.drawn_ = 0;
+    if (const auto good = checkIndices(*action, static_cast<const SoShape&>(*node)); !good) {
+      reader.shapes_are_whole_ =
+          Error{good.error().code,
+                fmt::format("shape {}, {}: {}", reader.shapes_, nameOf(*node), good.error().what)};
+      return SoCallbackAction::ABORT;
+    }
     return SoCallbackAction::CONTINUE;
+  }
+
+  // "IndexedFaceSet", or "IndexedFaceSet 'ROOF'".
+  static std::string nameOf(const SoNode& node) {
+    std::string_view type = node.getTypeId().getName().getString();
+    if (type.starts_with("VRML")) type.remove_prefix(4);
+    const std::string name = oneLine(excerpt(node.getName().getString()));
+    return name.empty() ? std::string(type) : fmt::format("{} '{}'", type, name);
+  }
+
+  // What VRML 97's nodes say of their faces, which Coin does not hand on; nothing of other nodes.
+  static std::optional<bool> clockwiseOf(const SoNode& node) {
+    if (const auto* const faces = dynamic_cast<const SoVRMLIndexedFaceSet*>(&node))
+      return !faces->ccw.getValue();
+    if (const auto* const grid = dynamic_cast<const SoVRMLElevationGrid*>(&node))
+      return !grid->ccw.getValue();
+    return std::nullopt;
+  }
+
+  // Coin does not make the colours of an ElevationGrid its material.
+  static const SoMFColor* coloursOf(const SoVRMLElevationGrid& grid) {
+    const auto* const colours = dynamic_cast<const SoVRMLColor*>(grid.color.getValue());
+    return colours && colours->color.getNum() > 0 ? &colours->color : nullptr;
   }
 
   static SoCallbackAction::Response leaveOut(void* self, SoCallbackAction*, const SoNode*) {
@@ -249,20 +253,34 @@ class GraphReader {
     return SoCallbackAction::PRUNE;
   }
 
-  static Corner cornerOf(const SoCallbackAction& action, const SoPrimitiveVertex& v) {
+  // The colour of an index; of one beyond the last, the last, as Coin draws it.
+  SbColor colourOf(const SoCallbackAction& action, int index) const {
+    const auto within = [&index](int number) { return std::clamp(index, 0, number - 1); };
+    if (grid_colours_) {
+      // Its faces are squares of two triangles; Coin's own index is that of their row.
+      if (!grid_->colorPerVertex.getValue()) index = drawn_ / 2;
+      return (*grid_colours_)[within(grid_colours_->getNum())];
+    }
+    SoState* const state = action.getState();
+    const int number = SoLazyElement::getInstance(state)->getNumDiffuse();
+    const SbColor diffuse =
+        number > 0 ? SoLazyElement::getDiffuse(state, within(number)) : SbColor(0, 0, 0);
+    // VRML's way of a colour without shading.
+    const SbColor& emission = SoLazyElement::getEmissive(state);
+    const bool glows = diffuse == SbColor(0, 0, 0) && emission != SbColor(0, 0, 0);
+    return glows ? emission : diffuse;
+  }
+
+  Corner cornerOf(const SoCallbackAction& action, const SoPrimitiveVertex& v) const {
     SbVec3f at;
     action.getModelMatrix().multVecMatrix(v.getPoint(), at);
     SbVec4f uv;
     action.getTextureMatrix().multVecMatrix(v.getTextureCoords(), uv);
-    SbColor ambient, diffuse, specular, emission;
-    float shininess = 0, transparency = 0;
-    action.getMaterial(ambient, diffuse, specular, emission, shininess, transparency,
-                       v.getMaterialIndex());
-    // VRML's way of a colour without shading.
-    const bool glows = diffuse == SbColor(0, 0, 0) && emission != SbColor(0, 0, 0);
-    const SbColor& c = glows ? emission : diffuse;
+    const SbColor c = colourOf(action, v.getMaterialIndex());
     const float w = uv[3] != 0 ? uv[3] : 1;
-    return {{at[0], at[1], at[2]}, {c[0], c[1], c[2]}, {uv[0] / w, uv[1] / w}};
+    Corner corner{{at[0], at[1], at[2]}, {c[0], c[1], c[2]}, {}};
+    if (textured_) corner.texcoord = {uv[0] / w, uv[1] / w};
+    return corner;
   }
 
   static void takeTriangle(void* self, SoCallbackAction* action, const SoPrimitiveVertex* a,
@@ -270,15 +288,19 @@ class GraphReader {
     GraphReader& reader = of(self);
     // Only here has the shape's own material and texture reached the action.
     if (!std::exchange(reader.begun_, true)) {
-      reader.builder_.beginPart(reader.textureOf(*action));
+      const mesh::SurfaceTexture texture = reader.textureOf(*action);
+      reader.textured_ = texture.picture != nullptr;
+      reader.builder_.beginPart(texture);
       const bool mirrored = action->getModelMatrix().det3() < 0;
-      const bool clockwise = action->getVertexOrdering() == SoShapeHints::CLOCKWISE;
+      const bool clockwise =
+          reader.vrml_clockwise_.value_or(action->getVertexOrdering() == SoShapeHints::CLOCKWISE);
       reader.turned_ = mirrored != clockwise;
     }
-    std::array<Corner, 3> corners = {cornerOf(*action, *a), cornerOf(*action, *b),
-                                     cornerOf(*action, *c)};
+    std::array<Corner, 3> corners = {reader.cornerOf(*action, *a), reader.cornerOf(*action, *b),
+                                     reader.cornerOf(*action, *c)};
     if (reader.turned_) std::swap(corners[1], corners[2]);
     reader.builder_.add(corners);
+    ++reader.drawn_;
   }
 
   static void takeLine(void* self, SoCallbackAction*, const SoPrimitiveVertex*,
@@ -294,7 +316,13 @@ class GraphReader {
   ModelBuilder builder_;
   std::unordered_map<const unsigned char*, const image::ImageFile*> pictures_;
   std::size_t shapes_ = 0, others_ = 0, unmade_ = 0;
-  bool begun_ = false, turned_ = false;  // of this shape
+  Result<Ok> shapes_are_whole_ = Ok{};  // or what is wrong with the last of them
+  // Of this shape.
+  bool begun_ = false, turned_ = false, textured_ = false;
+  std::optional<bool> vrml_clockwise_;
+  const SoVRMLElevationGrid* grid_ = nullptr;
+  const SoMFColor* grid_colours_ = nullptr;
+  int drawn_ = 0;  // triangles
 };
 
 SbBool reportReading(const SbName&, float share, SbBool, void* on_triangles) {
@@ -302,15 +330,18 @@ SbBool reportReading(const SbName&, float share, SbBool, void* on_triangles) {
   return TRUE;
 }
 
-// What a file holds that is packed by gzip; empty if it is not. Coin could unpack it as well, but
-// without a limit.
-Result<std::string> unpackedIfGzip(const std::string& path) {
+// What a file holds that Coin cannot be given as it is; empty if it can. Coin could unpack gzip as
+// well, but without a limit, and does not know a file behind a byte order mark.
+Result<std::string> unpacked(const std::string& path) {
   constexpr std::size_t kMost = std::size_t{1} << 30;  // [bytes]
-  const auto mark = FileCopy::read(path, 2);
-  if (!mark || !mesh::isGzip(mark->text())) return std::string();
-  const auto packed = MappedFile::open(path);
-  if (!packed) throw std::bad_alloc();  // it could be read, so memory is what lacks
-  auto text = mesh::gunzip(packed->text(), kMost);
+  const auto beginning = FileCopy::read(path, 2);
+  const bool gzip = beginning && mesh::isGzip(beginning->text());
+  const bool marked = beginning && beginning->text().starts_with('\xEF');
+  if (!gzip && !marked) return std::string();
+  const auto file = MappedFile::open(path);
+  if (!file) throw std::bad_alloc();  // it could be read, so memory is what lacks
+  if (!gzip) return std::string(file->text());
+  auto text = mesh::gunzip(file->text(), kMost);
   if (text && text->empty()) return Error{Errc::kMalformed, "gzip: nothing is packed"};
   return text;
 }
@@ -337,15 +368,15 @@ Result<Ok> prepareModels(const char*) {
 
 Result<BuiltModel> readByCoin(const ModelFile& file, const OnTriangles& on_triangles) {
   complaints().clear();
-  const auto unpacked = unpackedIfGzip(file.path);
-  if (!unpacked) return unpacked.error();
+  const auto text = unpacked(file.path);
+  if (!text) return text.error();
   SoInput input;
   SoInput::addDirectoryFirst(mesh::folderOf(file.path).c_str());
   bool opened = true;
-  if (unpacked->empty())
+  if (text->empty())
     opened = input.openFile(file.path.c_str());
   else
-    input.setBuffer(unpacked->data(), unpacked->size());
+    input.setBuffer(text->data(), text->size());
   if (!opened || !input.isValidFile())
     return Error{Errc::kMalformed, "cannot be read: " + reasons()};
   SoDB::addProgressCallback(reportReading, const_cast<OnTriangles*>(&on_triangles));
@@ -353,9 +384,10 @@ Result<BuiltModel> readByCoin(const ModelFile& file, const OnTriangles& on_trian
   SoDB::removeProgressCallback(reportReading, const_cast<OnTriangles*>(&on_triangles));
   if (!root) return Error{Errc::kMalformed, "cannot be read: " + reasons()};
   const NodeReference held(root);
-  if (const auto ends = GraphCheck().run(root); !ends) return ends.error();
-  BuiltModel built = GraphReader(file, on_triangles).read(root);
-  for (const std::string& c : complaints()) built.notes.push_back("Coin: " + c);
+  if (const auto ends = checkGraphEnds(root); !ends) return ends.error();
+  auto built = GraphReader(file, on_triangles).read(root);
+  if (!built) return built;
+  for (const std::string& c : complaints()) built->notes.push_back("Coin: " + c);
   return built;
 }
 

@@ -121,37 +121,64 @@ Result<Ok> checkAttribute(const json& accessors, const std::string& where, const
                            what, number, type->get<std::int64_t>(), kFloat)};
 }
 
-Result<Ok> checkMesh(const json& accessors, std::size_t number, const json& mesh) {
+// The triangles of `count` corners or indices.
+std::uint64_t trianglesOf(const json& primitive, std::uint64_t count) {
+  const json* mode = memberOf(primitive, "mode");
+  if (mode && !mode->is_number_unsigned()) return 0;
+  switch (mode ? mode->get<std::uint64_t>() : 4) {
+    case 4: return count / 3;
+    case 5:
+    case 6: return count < 3 ? 0 : count - 2;  // a strip, a fan
+    default: return 0;
+  }
+}
+
+// Nothing of what is malformed: assimp judges that.
+std::uint64_t promisedTriangles(const json& accessors, const json& primitive,
+                                const json& attributes) {
+  const json* of = memberOf(primitive, "indices");
+  if (!of) of = memberOf(attributes, "POSITION");
+  if (!of || !of->is_number_unsigned() || of->get<std::uint64_t>() >= accessors.size()) return 0;
+  const json* count = memberOf(accessors[of->get<std::uint64_t>()], "count");
+  return count && count->is_number_unsigned() ? trianglesOf(primitive, count->get<std::uint64_t>())
+                                              : 0;
+}
+
+Result<Ok> checkMesh(const json& accessors, std::size_t number, const json& mesh,
+                     std::vector<GltfPrimitive>& all) {
   const auto primitives = arrayOf(mesh, "primitives");
   if (!primitives) return primitives.error();
   for (std::size_t p = 0; p < (*primitives)->size(); ++p) {
     const std::string where = fmt::format("mesh {}, primitive {}", number, p);
-    const json* attributes = memberOf((**primitives)[p], "attributes");
+    const json& primitive = (**primitives)[p];
+    const json* attributes = memberOf(primitive, "attributes");
     if (!attributes || !attributes->is_object()) return malformed(where + " has no attributes");
     for (const auto& [name, index] : attributes->items()) {
       if (const auto good = checkAttribute(accessors, where, name, index); !good) return good;
     }
+    all.push_back({number, p, promisedTriangles(accessors, primitive, *attributes)});
   }
   return Ok{};
 }
 
 }  // namespace
 
-Result<Ok> checkGltf(std::string_view file) {
+Result<std::vector<GltfPrimitive>> checkGltf(std::string_view file) {
+  std::vector<GltfPrimitive> all;
   const auto text = textOf(file);
   if (!text) return text.error();
-  if (!*text) return Ok{};
+  if (!*text) return all;
   const json model = json::parse((*text)->begin(), (*text)->end(), nullptr, false);
   if (!model.is_object()) return malformed("its JSON is damaged or cut");
-  if (isFirstVersion(model)) return Ok{};
-  if (const auto good = checkExtensions(model); !good) return good;
+  if (isFirstVersion(model)) return all;
+  if (const auto good = checkExtensions(model); !good) return good.error();
   const auto accessors = arrayOf(model, "accessors"), meshes = arrayOf(model, "meshes");
   if (!accessors) return accessors.error();
   if (!meshes) return meshes.error();
   for (std::size_t m = 0; m < (*meshes)->size(); ++m) {
-    if (const auto good = checkMesh(**accessors, m, (**meshes)[m]); !good) return good;
+    if (const auto good = checkMesh(**accessors, m, (**meshes)[m], all); !good) return good.error();
   }
-  return Ok{};
+  return all;
 }
 
 }  // namespace merlin::render::import

@@ -1,16 +1,27 @@
 // What of a glTF file assimp would read wrongly, found in its JSON before assimp reads it.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "daemon/base/result.h"
 
 namespace merlin::render::import {
 
-// `file`: a whole .gltf or .glb of glTF 2; any other version is left to assimp. May throw
-// std::bad_alloc. Errors, without the file's name: kMalformed (no JSON, or of another form),
-// kUnsupported (a required extension that is not read; coordinates or weights that are no floats,
-// whose bytes assimp 5.2 copies as if they were).
-Result<Ok> checkGltf(std::string_view file);
+// What the file promises of a primitive.
+struct GltfPrimitive {
+  std::size_t mesh = 0, number = 0;  // each from 0
+  std::uint64_t triangles = 0;       // 0 of lines and points
+};
+
+// `file`: a whole .gltf or .glb of glTF 2; any other version is left to assimp.
+// Returns its primitives in the file's order; none for another version. assimp 5.2 leaves out
+// triangles whose indices are out of range, so that fewer come. May throw std::bad_alloc. Errors,
+// without the file's name: kMalformed (no JSON, or of another form), kUnsupported (a required
+// extension that is not read; coordinates or weights that are no floats, whose bytes assimp 5.2
+// copies as if they were).
+Result<std::vector<GltfPrimitive>> checkGltf(std::string_view file);
 
 }  // namespace merlin::render::import

@@ -10,6 +10,7 @@
 #include "render/image/image_file.h"
 #include "render/mesh/atlas/join_textures.h"
 #include "render/mesh/mesh.h"
+#include "render/mesh/origin.h"
 #include "render/mesh/weld_parts.h"
 
 namespace merlin::render::import {
@@ -27,6 +28,7 @@ struct Corner {
 
 struct BuiltModel {
   mesh::Mesh mesh;
+  mesh::Origin origin{};       // of the file's coordinates; positions are relative to it
   std::size_t parts = 0;       // that have triangles
   std::size_t degenerate = 0;  // triangles that were dropped: two corners are one vertex
   std::size_t not_finite = 0;  // triangles that were dropped: a coordinate is not a number, or huge

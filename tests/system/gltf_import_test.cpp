@@ -124,6 +124,10 @@ TEST_F(GltfImport, WhatIsNoFloatIsRefusedWithTheWayOut) {
   expectRefused(normals.dump(), "mesh 0, primitive 0: WEIGHTS_0 is quantised");
 }
 
+TEST_F(GltfImport, AByteOrderMarkIsPassedOver) {
+  EXPECT_EQ(report("\xEF\xBB\xBF" + triangle("a.bin").dump())["triangles"], 1);
+}
+
 TEST_F(GltfImport, ARequiredExtensionIsReadOrNamed) {
   Json json = triangle("a.bin");
   json["extensionsRequired"] = {"KHR_mesh_quantization", "KHR_materials_unlit"};
@@ -170,6 +174,98 @@ TEST_F(GltfImport, AMaterialsColourIsMultipliedWithItsTexture) {
     return;
   }
   ADD_FAILURE() << said["features"];
+}
+
+// The greatest value of each colour, 0 to 255, of the only vertices' colour in a PLY file.
+std::array<int, 3> colourOf(const std::string& ply) {
+  const std::string kEnd = "end_header\n";
+  if (ply.find("property uchar red") == std::string::npos) return {-1, -1, -1};
+  std::array<int, 3> colour{};
+  for (std::size_t k = 0; k < 3; ++k)
+    colour[k] = static_cast<unsigned char>(ply[ply.find(kEnd) + kEnd.size() + 12 + k]);
+  return colour;
+}
+
+// The triangle with a colour of its vertices, whose floats are the first of the buffer.
+Json coloured(Json json, const Json& factor) {
+  json["accessors"].push_back(
+      {{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+  json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 3;
+  json["meshes"][0]["primitives"][0]["material"] = 0;
+  json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = factor;
+  return json;
+}
+
+TEST_F(GltfImport, AMaterialsColourIsMultipliedWithThoseOfTheVertices) {
+  // White is written as colours of bytes, in the 12 bytes at the buffer's end.
+  std::string buffer = kTriangle;
+  std::fill(buffer.end() - 12, buffer.end(), '\xff');
+  writeText(dir_ / "white.bin", buffer);
+  Json json = coloured(triangle("white.bin"), {0, 0.5, 0, 1});
+  json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 68}, {"byteLength", 12}});
+  json["accessors"][3] = {{"bufferView", 3},
+                          {"componentType", 5121},
+                          {"normalized", true},
+                          {"count", 3},
+                          {"type", "VEC4"}};
+  report(json.dump());
+  EXPECT_EQ(colourOf(readText(out_)), (std::array{0, 188, 0}));
+}
+
+TEST_F(GltfImport, ColoursThatATextureIsNotMultipliedWithAreSaid) {
+  picture("t.png");
+  const std::string left = "left out: the vertices' colours of 1 parts";
+  const Json json = coloured(triangle("a.bin", "t.png"), {1, 1, 1, 1});
+  EXPECT_NE(report(json.dump())["notes"].dump().find(left), std::string::npos);
+  EXPECT_EQ(report(triangle("a.bin", "t.png").dump())["notes"].dump().find(left),
+            std::string::npos);
+}
+
+TEST_F(GltfImport, TheDiffuseColourOfSpecularGlossinessIsRead) {
+  Json json = triangle("a.bin");
+  json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
+  json["meshes"][0]["primitives"][0]["material"] = 0;
+  json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"]["diffuseFactor"] = {
+      1, 0, 0, 1};
+  report(json.dump());
+  EXPECT_EQ(colourOf(readText(out_)), (std::array{255, 0, 0}));
+}
+
+TEST_F(GltfImport, TheDiffuseTextureOfSpecularGlossinessIsMultipliedWithItsColour) {
+  const std::vector<std::uint8_t> white = {255, 255, 255, 255};
+  ASSERT_TRUE(render::image::writePng(dir_ / "white.png", 1, 1, white));
+  Json json = triangle("a.bin", "white.png");
+  json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
+  json["materials"][0] = {
+      {"extensions",
+       {{"KHR_materials_pbrSpecularGlossiness",
+         {{"diffuseFactor", {0, 0.5, 0, 1}}, {"diffuseTexture", {{"index", 0}}}}}}}};
+  EXPECT_GT(report(json.dump())["texture_bytes"], 60);
+  EXPECT_EQ(colourOf(readText(out_)), (std::array{0, 188, 0}));
+}
+
+TEST_F(GltfImport, AnIndexOutOfRangeIsRefused) {
+  // Six indices at the buffer's end, of which the last is bad.
+  writeText(dir_ / "bad.bin", kTriangle.substr(0, 68) + shorts({0, 1, 2, 0, 1, 9}));
+  Json json = triangle("bad.bin");
+  json["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", 68}, {"byteLength", 12}};
+  json["accessors"][1]["count"] = 6;
+  Json& primitives = json["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  primitives[0].erase("indices");
+  expectRefused(json.dump(),
+                "glTF: mesh 0, primitive 1: 1 of its 2 triangles have an index beyond "
+                "its 3 vertices");
+  primitives[1]["mode"] = 5;
+  expectRefused(json.dump(),
+                "glTF: mesh 0, primitive 1: 1 of its 4 triangles have an index beyond "
+                "its 3 vertices");
+}
+
+TEST_F(GltfImport, OnlyMotionsThatAreThereAreSaidToBeLeftOut) {
+  Json json = triangle("a.bin");
+  json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
+  EXPECT_EQ(report(json.dump())["notes"], (Json{"left out: morph targets; this is the rest pose"}));
 }
 
 TEST_F(GltfImport, FaultsOfItsJsonAreSaid) {
@@ -250,6 +346,38 @@ TEST_F(GltfImport, ATransformOfTheTextureIsApplied) {
     return;
   }
   FAIL() << info["features"];
+}
+
+// A mesh of a map is moved to its place by its node; floats of the sums would have steps of 0.5.
+TEST_F(GltfImport, AMeshThatANodeMovesToAMapKeepsItsDigitsByAnOrigin) {
+  Json json = triangle("a.bin");
+  json["nodes"] = {{{"children", {1}}, {"translation", {500000, 0, 0}}},
+                   {{"mesh", 0}, {"translation", {0.125, 5200000, 0}}, {"scale", {0.25, 0.25, 1}}}};
+  const auto said = report(json.dump());
+  EXPECT_EQ(said["origin"], (Json{500000.0, 5200000.0, 0.0})) << said;
+  const Json info = Json::parse(run({kMerlin, "mesh", "info", out_, "--json"}).output);
+  EXPECT_EQ(info["box"]["low"], (Json{0.125, 0.0, 0.0}));
+  EXPECT_EQ(info["box"]["high"], (Json{0.375, 0.25, 0.0}));
+}
+
+// What merlin mesh export has written of it lies at the same place, with and without a round trip.
+TEST_F(GltfImport, AnExportOfAMapIsImportedAtTheSamePlace) {
+  writeText(dir_ / "far.obj",
+            "v 500000.125 5200000.25 10\nv 500002.125 5200000.25 10\nv 500002.125 5200002.25 "
+            "10.5\nf 1 2 3\n");
+  out_ = dir_ / "again.mrm";
+  for (const char* name : {"a.glb", "a.gltf", "a.ply", "a.obj"}) {
+    const Outcome done = run({kMerlin, "mesh", "export", dir_ / "far.obj", "-o", dir_ / name});
+    ASSERT_EQ(done.status, 0) << done.output;
+    EXPECT_NE(done.output.find("origin    500000, 5200000, 0 is added"), std::string::npos)
+        << done.output;
+    const Outcome back = run({kMerlin, "mesh", "import", dir_ / name, "-o", out_, "--json"});
+    ASSERT_EQ(back.status, 0) << back.output;
+    const Json info = Json::parse(run({kMerlin, "mesh", "info", out_, "--json"}).output);
+    EXPECT_EQ(info["origin"], (Json{500000.0, 5200000.0, 0.0})) << name;
+    EXPECT_EQ(info["box"]["low"], (Json{0.125, 0.25, 10.0})) << name;
+    EXPECT_EQ(info["box"]["high"], (Json{2.125, 2.25, 10.5})) << name;
+  }
 }
 
 TEST_F(GltfImport, ARotatedTextureIsLeftAsItIsWithANote) {

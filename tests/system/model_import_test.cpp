@@ -57,6 +57,16 @@ std::string collada() {
 )";
 }
 
+// A triangle; `root` is the outermost element's beginning.
+std::string amf(const std::string& root, const std::string& colour) {
+  std::string text = "<?xml version=\"1.0\"?>" + root + "<object id=\"0\"><mesh><vertices>";
+  for (const char* at : {"<x>0</x><y>0</y>", "<x>1</x><y>0</y>", "<x>0</x><y>1</y>"})
+    text += fmt::format("<vertex><coordinates>{}<z>0</z></coordinates>{}</vertex>", at, colour);
+  return text +
+         "</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh>"
+         "</object></amf>";
+}
+
 void appendLe16(std::string& bytes, int value) {
   bytes.push_back(static_cast<char>(value & 0xFF));
   bytes.push_back(static_cast<char>(value >> 8));
@@ -181,6 +191,26 @@ TEST_F(ModelImport, ColladaIsOneMeshOfItsInstances) {
   EXPECT_EQ(features(), "colour label normal ");
   EXPECT_EQ(info()["box"]["high"], nlohmann::json({2.0, 2.0, 4.0}));
   EXPECT_NE(readText(out_).find("\x33\x66\x99"), std::string::npos) << "its diffuse colour";
+}
+
+TEST_F(ModelImport, ColladaIsInMetresByItsOwnUnit) {
+  std::string inches = collada();
+  inches.insert(inches.find("<up_axis>"), "<unit name=\"inch\" meter=\"0.0254\"/>");
+  writeText(dir_ / "a.dae", inches);
+  const auto about =
+      nlohmann::json::parse(run({kMerlin, "mesh", "info", dir_ / "a.dae", "--json"}).output);
+  EXPECT_EQ(about["unit"], "m");
+  EXPECT_NEAR(about["box"]["high"][0], 0.0508, 1e-6);
+}
+
+TEST_F(ModelImport, AmfWithoutColoursHasNoneAndItsUnitIsSaid) {
+  const auto plain = report("a.amf", amf("<amf unit=\"inch\">", ""));
+  EXPECT_EQ(features(), "normal ");
+  EXPECT_EQ(plain["notes"].dump(), "[\"its coordinates are left in its unit, inch\"]");
+  const auto red = report("a.amf", amf("<amf>", "<color><r>1</r><g>0</g><b>0</b></color>"));
+  EXPECT_EQ(features(), "colour normal ");
+  EXPECT_EQ(red["notes"].dump(), "[]");
+  EXPECT_NE(readText(out_).find(std::string("\xff\0\0", 3)), std::string::npos);
 }
 
 TEST_F(ModelImport, ThreeDsIsReadByItsChunks) {

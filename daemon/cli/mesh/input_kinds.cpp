@@ -186,7 +186,7 @@ std::optional<InputKind> inputKindOf(const std::string& path) {
 }
 
 std::string InputKind::unit() const {
-  constexpr std::string_view kMetres[] = {"iv", "wrl", "glb", "gltf", "x3d"};
+  constexpr std::string_view kMetres[] = {"iv", "wrl", "glb", "gltf", "x3d", "dae"};
   const bool metres = isGrid() || std::ranges::find(kMetres, ending) != std::end(kMetres);
   return metres ? "m" : "";
 }

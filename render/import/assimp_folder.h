@@ -1,0 +1,33 @@
+// The files that assimp may read: the model, and those beside it.
+#pragma once
+
+#include <string>
+
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+
+#include "render/import/model_file.h"
+
+namespace merlin::render::import {
+
+// The model under a name whose ending says its format, and files beside the model; read-only.
+// `file` must outlive it.
+class ModelFolder final : public Assimp::IOSystem {
+ public:
+  explicit ModelFolder(const ModelFile& file);
+
+  const std::string& name() const noexcept { return name_; }
+
+  bool Exists(const char* name) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  std::string pathOf(const char* name) const;
+
+  const ModelFile& file_;
+  std::string name_, folder_;
+};
+
+}  // namespace merlin::render::import
