@@ -71,7 +71,12 @@ class MappedFile {
   ~MappedFile();
 
   std::span<const std::byte> bytes() const noexcept { return {data_, size_}; }
-  std::string_view text() const noexcept { return {reinterpret_cast<const char*>(data_), size_}; }
+  // The same bytes but for a UTF-8 byte order mark at their beginning, which belongs to no format.
+  std::string_view text() const noexcept {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    const std::string_view all(reinterpret_cast<const char*>(data_), size_);
+    return all.substr(all.starts_with(kMark) ? kMark.size() : 0);
+  }
 
  private:
   MappedFile(const std::byte* data, std::size_t size) : data_(data), size_(size) {}

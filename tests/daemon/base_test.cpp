@@ -101,6 +101,18 @@ TEST(MappedFile, IsTheFilesBytes) {
   EXPECT_EQ(moved.text(), "");
 }
 
+TEST(MappedFile, ItsTextBeginsBehindAByteOrderMark) {
+  const test::TempDir dir;
+  const std::string mark = "\xEF\xBB\xBF";
+  test::writeText(dir / "a", mark + "abc");
+  EXPECT_EQ(MappedFile::open(dir / "a")->text(), "abc");
+  EXPECT_EQ(MappedFile::open(dir / "a")->bytes().size(), 6u) << "the bytes are the file's";
+  test::writeText(dir / "b", mark);
+  EXPECT_EQ(MappedFile::open(dir / "b")->text(), "");
+  test::writeText(dir / "c", mark.substr(0, 2));
+  EXPECT_EQ(MappedFile::open(dir / "c")->text(), mark.substr(0, 2)) << "cut";
+}
+
 TEST(WriteFile, AFileAppearsWholeOrTheOldOneStays) {
   const test::TempDir dir;
   ASSERT_TRUE(writeFile(dir / "f", "old"));

@@ -16,6 +16,7 @@
 
 #include "config/loader.h"
 #include "daemon/base/commands.h"
+#include "daemon/base/printable_text.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/json/json_tree.h"
 #include "daemon/serve/spnav_protocol.h"
@@ -35,6 +36,7 @@
 #include "drivers/spacenav/protocol.h"
 #include "drivers/touch/device.h"
 #include "drivers/tuio/device.h"
+#include "drivers/vrpn/catalog.h"
 #include "drivers/vrpn/device.h"
 #include "drivers/vrpn/pad_device.h"
 #include "nn/io/data_set_file.h"
@@ -313,7 +315,8 @@ void driverBytes(Device& device, test::FakeClock& clock, std::string_view bytes)
     goes_on = device.poll(stream).ok();
 }
 
-// Of a VRPN server, to the driver of a tracker and to that of buttons and analogs.
+// Of a VRPN server, to the driver of a tracker, to that of buttons and analogs, and to who asks for
+// its devices.
 void vrpnServerBytes(Bytes bytes) {
   PlausibleSink sink;
   test::FakeClock clock;
@@ -321,6 +324,11 @@ void vrpnServerBytes(Bytes bytes) {
   driverBytes(tracker, clock, textOf(bytes));
   vrpn::VrpnPad pad({}, clock, sink);
   driverBytes(pad, clock, textOf(bytes));
+  vrpn::Catalog catalog;
+  (void)catalog.take(textOf(bytes));
+  require(catalog.devices().size() <= vrpn::Catalog::kMostDevices, "no more than are kept");
+  for (const vrpn::CatalogDevice& device : catalog.devices())
+    require(!device.name.empty() && device.name.size() < 100 && isText(device.name), "a name");
 }
 
 void touchBytes(Bytes bytes) {

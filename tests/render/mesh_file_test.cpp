@@ -149,6 +149,29 @@ TEST(ReadMesh, GoesByTheEndingInSmallOrLargeLetters) {
   }
 }
 
+// Editors on Windows put EF BB BF before the text.
+TEST(ReadMesh, BehindAByteOrderMarkIsTheSameMesh) {
+  const TempDir dir;
+  const std::pair<const char*, std::string> files[] = {
+      {"a.ply", test::squareFile(test::Form::kAscii)},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\nf 2 4 3\n"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"a.stl",
+       "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+       "endloop\nendfacet\nendsolid a\n"}};
+  for (const auto& [name, text] : files) {
+    writeText(dir / name, text);
+    const auto plain = mesh::readMesh(dir / name);
+    ASSERT_TRUE(plain) << name << plain.error().what;
+    writeText(dir / name, "\xEF\xBB\xBF" + text);
+    EXPECT_TRUE(mesh::isMeshFile(dir / name)) << name;
+    const auto marked = mesh::readMeshByContent(dir / name);
+    ASSERT_TRUE(marked) << name << marked.error().what;
+    EXPECT_EQ(marked->mesh.positions, plain->mesh.positions) << name;
+    EXPECT_EQ(marked->mesh.triangles, plain->mesh.triangles) << name;
+  }
+}
+
 TEST(ReadMesh, TidiesWhatItRead) {
   const TempDir dir;
   const std::string file = test::squareFile(test::Form::kAscii);
@@ -174,7 +197,10 @@ TEST(ReadMesh, CoordinatesOfAMapKeepTheirDigitsByAnOrigin) {
   writeText(dir / "a.obj",
             "v 450000.125 5400000.0625 12\nv 450000.25 5400000.125 12\nv 450001 5400001.5 13\n"
             "f 1 2 3\n");
-  for (const char* name : {"a.ply", "a.obj"}) {
+  writeText(dir / "a.off",
+            "OFF\n3 1 0\n450000.125 5400000.0625 12\n450000.25 5400000.125 12\n"
+            "450001 5400001.5 13\n3 0 1 2\n");
+  for (const char* name : {"a.ply", "a.obj", "a.off"}) {
     const auto loaded = mesh::readMesh(dir / name);
     ASSERT_TRUE(loaded) << loaded.error().what;
     EXPECT_EQ(loaded->origin, (mesh::Origin{450'000, 5'400'000, 0})) << name;
@@ -188,6 +214,26 @@ TEST(ReadMesh, CoordinatesOfAMapKeepTheirDigitsByAnOrigin) {
   const auto floats = mesh::readMesh(dir / "b.ply");
   EXPECT_EQ(floats->origin, mesh::Origin{}) << "the file has no more digits";
   EXPECT_EQ(floats->mesh.positions[0], 450000.125F);
+  ASSERT_EQ(floats->notes.size(), 1U);
+  EXPECT_NE(floats->notes[0].find("are rounded to steps of up to 0.5"), std::string::npos)
+      << floats->notes[0];
+}
+
+// The note is about meshes that floats make visibly coarse, not about large coordinates.
+TEST(ReadMesh, FloatsAreSaidToBeCoarseWhereTheMeshIsSmallForItsDistance) {
+  const TempDir dir;
+  const auto notes = [&](double at, double size) {
+    mesh::Mesh mesh = test::grid(1, 1);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      mesh.positions[i] = static_cast<float>(mesh.positions[i] * size + (i % 3 == 0 ? at : 0));
+    EXPECT_TRUE(mesh::writeMesh(dir / "a.stl", mesh));
+    const auto loaded = mesh::readMesh(dir / "a.stl");
+    return loaded ? loaded->notes.size() : 99;
+  };
+  EXPECT_EQ(notes(0, 1), 0U);
+  EXPECT_EQ(notes(5'000'000, 100), 1U) << "200 steps of 0.5";
+  EXPECT_EQ(notes(5'000'000, 20'000), 0U) << "40,000 steps";
+  EXPECT_EQ(notes(0, 5'000'000), 0U);
 }
 
 TEST(MeshFileSize, CountsPolygonsAsTheTrianglesThatTheyBecome) {

@@ -284,6 +284,80 @@ TEST(GltfWriter, KeepsAFeatureWhateverItsName) {
   EXPECT_EQ(fromBase64(uri.substr(uri.find(',') + 1)).size(), 88u);
 }
 
+constexpr mesh::Origin kUtm = {500'000, 5'200'000, -0.25};
+
+// The coordinates of the file, as doubles.
+std::vector<double> placed(const mesh::LoadedMesh& loaded) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < loaded.mesh.positions.size(); ++i)
+    all.push_back(loaded.mesh.positions[i] + loaded.origin[i % 3]);
+  return all;
+}
+
+TEST(WriteMesh, AnOriginIsAddedAndFoundAgainByTheReaders) {
+  const TempDir dir;
+  const mesh::Mesh mesh = richSquare();
+  for (const char* name : {"a.ply", "a.obj"}) {
+    const auto done = mesh::writeMesh(dir / name, mesh, kUtm);
+    ASSERT_TRUE(done) << done.error().what;
+    EXPECT_EQ(done->relative_to, mesh::Origin{}) << name;
+    const auto loaded = mesh::readMesh(dir / name);
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    EXPECT_EQ(loaded->origin, (mesh::Origin{500'000, 5'200'000, 0})) << name;
+    const auto found = placed(*loaded);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      EXPECT_NEAR(found[i], mesh.positions[i] + kUtm[i % 3], 1e-7) << name << " " << i;
+    const mesh::Feature* const colour = loaded->mesh.find("colour");
+    ASSERT_NE(colour, nullptr);
+    EXPECT_NEAR(colour->values[4], 0.8, 1e-6) << name << ": what follows the position";
+  }
+  const std::string ply = readText(dir / "a.ply");
+  EXPECT_NE(ply.find("property double x\nproperty double y\nproperty double z\n"
+                     "property float nx\n"),
+            std::string::npos);
+  const std::string obj = readText(dir / "a.obj");
+  EXPECT_NE(obj.find("\nv 500000 5200000 -0.583333343"), std::string::npos) << obj;
+  EXPECT_NE(obj.find("\nv 500001 5200000 -0.25 "), std::string::npos) << obj;
+}
+
+TEST(WriteMesh, WithoutAnOriginThereAreFloatsAsBefore) {
+  const TempDir dir;
+  const mesh::Mesh mesh = richSquare();
+  for (const char* name : {"a.ply", "a.obj", "a.glb"}) {
+    written(dir / name, mesh);
+    ASSERT_TRUE(mesh::writeMesh(dir / "b" + name, mesh, mesh::Origin{}));
+    EXPECT_TRUE(readText(dir / name) == readText(dir / "b" + name)) << name;
+  }
+  EXPECT_NE(readText(dir / "a.ply").find("property float x\n"), std::string::npos);
+  EXPECT_NE(readText(dir / "a.obj").find("\nv 0 0 -0.33333334 "), std::string::npos);
+  EXPECT_FALSE(readGlb(dir / "a.glb").json["nodes"][0].contains("translation"));
+}
+
+TEST(WriteMesh, AnOriginBecomesTheTranslationOfTheGltfNode) {
+  const TempDir dir;
+  const mesh::Mesh mesh = richSquare();
+  const mesh::Origin origin = {500'000.125, 5'200'000.0625, -1};
+  ASSERT_TRUE(mesh::writeMesh(dir / "a.glb", mesh, origin));
+  ASSERT_TRUE(mesh::writeMesh(dir / "a.gltf", mesh, origin));
+  const Gltf glb = readGlb(dir / "a.glb");
+  EXPECT_EQ(glb.json["nodes"][0]["translation"], Json(origin));
+  EXPECT_EQ(glb.json["nodes"][0]["mesh"], 0);
+  EXPECT_EQ(glb.attribute("POSITION"), mesh.positions) << "the positions stay floats near 0";
+  EXPECT_EQ(Json::parse(readText(dir / "a.gltf"))["nodes"], glb.json["nodes"]);
+}
+
+TEST(WriteMesh, AFormatOfFloatsStaysRelativeToTheOrigin) {
+  const TempDir dir;
+  const mesh::Mesh mesh = richSquare();
+  for (const char* name : {"a.stl", "a.iv"}) {
+    const auto done = mesh::writeMesh(dir / name, mesh, kUtm);
+    ASSERT_TRUE(done) << done.error().what;
+    EXPECT_EQ(done->relative_to, kUtm) << name;
+    written(dir / "b" + name, mesh);
+    EXPECT_TRUE(readText(dir / name) == readText(dir / "b" + name)) << name;
+  }
+}
+
 TEST(PlyWriter, KeepsLabelsAsIntegers) {
   const TempDir dir;
   const mesh::Mesh mesh = richSquare();

@@ -50,6 +50,26 @@ TEST_F(ObjFile, HasTrianglesAndFansOfLargerFaces) {
   EXPECT_EQ(trianglesOf("f 1 2 4 3\n"), square);
 }
 
+// An arrow's head: the fan around its first corner would lie outside of it.
+TEST_F(ObjFile, AFaceThatIsNotConvexIsCutWithinItself) {
+  const std::string arrow = "v 0 0 0\nv 2 2 0\nv 0 1 0\nv -2 2 0\n";
+  const auto at = read(arrow + "f 2 3 4 1\n");
+  ASSERT_TRUE(at) << at.error().what;
+  EXPECT_EQ(at->mesh.triangles, (Indices{0, 1, 2, 2, 3, 0}));
+  const auto later = read("f 2 3 4 1\n" + arrow);
+  ASSERT_TRUE(later) << later.error().what;
+  EXPECT_EQ(later->mesh.triangles, at->mesh.triangles) << "vertices may follow their faces";
+}
+
+TEST_F(ObjFile, CornersKeepTheirTextureWhereAFaceIsCutWithinItself) {
+  const auto loaded = read(
+      "v 0 0 0\nv 2 2 0\nv 0 1 0\nv -2 2 0\nvt 0.1 0\nvt 0.2 0\nvt 0.3 0\nvt 0.4 0\n"
+      "f 2/2 3/3 4/4 1/1\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2, 2, 3, 0}));
+  EXPECT_EQ(loaded->mesh.find("texcoord")->values, (Floats{0.1F, 0, 0.2F, 0, 0.3F, 0, 0.4F, 0}));
+}
+
 TEST_F(ObjFile, MayNameNormalsAndTextureAtEachCorner) {
   const std::string extra = "vt 0 0\nvt 1 0\nvn 0 0 1\n";
   const Indices square{0, 1, 3, 0, 3, 2};
@@ -108,6 +128,14 @@ TEST_F(ObjFile, MayHoldWhatMerlinHasNoUseFor) {
   EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2}));
 }
 
+TEST_F(ObjFile, SaysWhichGeometryIsLeftOut) {
+  const auto loaded = readFaces("f 1 2 3\nl 1 2\nl 2 3\np 1\nvp 0.5\ncurv 0 1 1 2\n");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->notes,
+            (std::vector<std::string>{"left out: 2 lines (l), 1 points (p), 1 curves (curv)"}));
+  EXPECT_EQ(readFaces("f 1 2 3\n")->notes.size(), 0u);
+}
+
 TEST_F(ObjFile, GoesOnInTheNextLineBehindABackslash) {
   EXPECT_EQ(trianglesOf("f 1 \\\n2 \\ \r\n  4\nf 1 4 3"), (Indices{0, 1, 3, 0, 3, 2}));
   EXPECT_EQ(faultOfFaces("f 1 2\\\n x\n"), "line 6: \"x\" is not a corner of a face");
@@ -121,6 +149,8 @@ TEST_F(ObjFile, HasColoursWhereEveryVertexHasOne) {
   ASSERT_TRUE(loaded) << loaded.error().what;
   ASSERT_NE(loaded->mesh.find("colour"), nullptr);
   EXPECT_EQ(loaded->mesh.find("colour")->values, (Floats{1, 0, 0, 0, 0.5F, 0, 0, 0, 0.25F}));
+  const auto bytes = read("v 0 0 0 1 0 0\nv 1 0 0 0 51 0\nv 0 1 0 0 0 255\nf 1 2 3\n");
+  EXPECT_EQ(bytes->mesh.find("colour")->values, (Floats{1 / 255.0F, 0, 0, 0, 0.2F, 0, 0, 0, 1}));
   const auto without = read("v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n");
   ASSERT_TRUE(without) << without.error().what;
   EXPECT_TRUE(without->mesh.features.empty());

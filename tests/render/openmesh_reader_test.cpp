@@ -92,6 +92,35 @@ TEST_F(OpenMeshReader, PolygonsBecomeFansAndColoursFeatures) {
   EXPECT_NEAR(colour->values[9], 0.2, 1e-6);
 }
 
+TEST_F(OpenMeshReader, AFaceThatIsNotConvexIsCutWithinItself) {
+  const auto arrow = read("arrow.off", "OFF\n4 1 4\n0 0 0\n2 2 0\n0 1 0\n-2 2 0\n4 1 2 3 0\n");
+  ASSERT_TRUE(arrow) << arrow.error().what;
+  EXPECT_EQ(arrow->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 2, 3, 0}));
+}
+
+TEST_F(OpenMeshReader, TheBrightestColourOfAnOffFileTellsWhetherAllAreFractions) {
+  const auto colours = [&](const std::string& first, const std::string& second) {
+    const auto loaded = read("a.off", "COFF\n3 1 0\n0 0 0 " + first + " 1\n1 0 0 " + second +
+                                          " 1\n0 1 0 0 0 0 1\n3 0 1 2\n");
+    EXPECT_TRUE(loaded) << loaded.error().what;
+    std::vector<float> all = loaded->mesh.find("colour")->values;
+    all.resize(6);
+    return all;
+  };
+  using Floats = std::vector<float>;
+  EXPECT_EQ(colours("1 0 0", "0.5 0.5 0"), (Floats{1, 0, 0, 0.5F, 0.5F, 0}));
+  EXPECT_EQ(colours("1 0 0", "0 1 0"), (Floats{1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(colours("0 0 0", "51 255 0"), (Floats{0, 0, 0, 0.2F, 1, 0}));
+  EXPECT_EQ(colours("0.0 0 0", "51 255 0"), (Floats{0, 0, 0, 0.2F, 1, 0}));
+}
+
+TEST_F(OpenMeshReader, TheColoursOfAnOffFilesFacesAreSaidToBeLeftOut) {
+  const std::string vertices = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  EXPECT_EQ(read("a.off", vertices + "3 0 1 2 255 0 0\n3 0 2 3\n")->notes,
+            (std::vector<std::string>{"left out: the colours of 1 faces"}));
+  EXPECT_EQ(read("a.off", vertices + "3 0 1 2\n3 0 2 3  # none\n")->notes.size(), 0u);
+}
+
 TEST_F(OpenMeshReader, SaysWhatIsWrong) {
   EXPECT_EQ(error("a.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n"),
             ": line 7: the file ends after 1 of 4 faces");
@@ -105,6 +134,63 @@ TEST_F(OpenMeshReader, SaysWhatIsWrong) {
   EXPECT_NE(error("a.off", "ply\n").find("does not begin with OFF"), std::string::npos);
   EXPECT_NE(error("a.stl", "hello").find("is neither an ASCII STL"), std::string::npos);
   EXPECT_NE(error("a.om", "OM").find("does not begin with the header"), std::string::npos);
+}
+
+std::string facet(const std::string& vertices) {
+  return " facet normal 0 0 1\n  outer loop\n" + vertices + "  endloop\n endfacet\n";
+}
+const std::string kCorners = "   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n";
+
+TEST_F(OpenMeshReader, AnAsciiStlIsReadWholeOrRefused) {
+  const auto fault = [&](const std::string& facets, const std::string& end = "endsolid a\n") {
+    return error("a.stl", "solid a\n" + facet(kCorners) + facets + end);
+  };
+  EXPECT_EQ(fault(""), "");
+  EXPECT_EQ(fault(facet("   vertex 2 0 0\n   vertex 3 nan 0\n   vertex 2 1 0\n")),
+            ": line 12: \"nan\" is not a coordinate");
+  EXPECT_EQ(fault(facet("   vertex 2 0 0\n   vertex 3 abc 0\n   vertex 2 1 0\n")),
+            ": line 12: \"abc\" is not a coordinate");
+  EXPECT_EQ(fault(facet("   vertex 2 0 0\n   vertex 3 1e39 0\n   vertex 2 1 0\n")),
+            ": line 12: \"1e39\" is not a coordinate");
+  EXPECT_EQ(fault(facet("   vertex 2 0 0\n   vertex 3 0\n   vertex 2 1 0\n")),
+            ": line 12: a vertex needs 3 coordinates, this one has 2");
+  EXPECT_EQ(fault(facet("   vertex 2 0 0 1\n   vertex 3 0 0\n   vertex 2 1 0\n")),
+            ": line 11: \"1\" follows the coordinates of a vertex");
+  EXPECT_EQ(fault(facet(kCorners + "   vertex 9 9 9\n")),
+            ": line 15: a loop needs 3 vertices, this one has 4");
+  EXPECT_EQ(fault(facet("   vertex 2 0 0\n   vertex 3 0 0\n")),
+            ": line 13: a loop needs 3 vertices, this one has 2");
+  EXPECT_EQ(fault("  outer loop\n"), ": line 9: a facet needs one loop");
+  EXPECT_EQ(fault("   vertex 2 0 0\n"), ": line 9: a vertex is outside of a loop");
+  EXPECT_EQ(fault("endloop\n"), ": line 9: a loop ends that has not begun");
+  EXPECT_EQ(fault(" facet normal 0 0 1\n endfacet\n"),
+            ": line 10: a facet ends without a whole loop");
+  EXPECT_EQ(fault(" facet normal 0 0 1\n"), ": line 10: the solid ends within a facet");
+  EXPECT_EQ(fault(" facet normal 0 0 1\n" + facet(kCorners)),
+            ": line 10: a facet begins within another one");
+  EXPECT_EQ(fault(facet(kCorners), ""),
+            ": cut short: the file ends without endsolid, after 2 facets");
+}
+
+TEST_F(OpenMeshReader, AnAsciiStlMayBeInCapitals) {
+  const std::string text = "SOLID A\n" + facet("VERTEX 0 0 0\nVERTEX 1E0 0 0\nVertex 0 1 0\n") +
+                           "FACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 1 0\nVERTEX 1 0 0\n"
+                           "VERTEX 1 1 0\nENDLOOP\nENDFACET\nENDSOLID A\n\n";
+  const auto loaded = read("a.stl", text);
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.triangleCount(), 2u);
+  EXPECT_EQ(loaded->mesh.vertexCount(), 4u);
+  EXPECT_TRUE(mesh::isMeshFile(dir_ / "a.stl"));
+}
+
+TEST_F(OpenMeshReader, TheAttributesOfABinaryStlAreSaidToBeLeftOut) {
+  std::string bytes = tetrahedronAs("stl", OpenMesh::IO::Options::Binary);
+  EXPECT_EQ(read("a.stl", bytes)->notes.size(), 0u);
+  bytes[84 + 48] = '\x1F';
+  bytes[84 + 4 * 50 - 1] = '\x80';
+  EXPECT_EQ(read("a.stl", bytes)->notes,
+            (std::vector<std::string>{
+                "left out: the attributes of 2 triangles, which may be their colours"}));
 }
 
 TEST_F(OpenMeshReader, TellsTheSizeBeforeItReads) {

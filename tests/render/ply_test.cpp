@@ -134,6 +134,57 @@ TEST(PlyRead, FansPolygonsAndCountsThoseWithoutArea) {
   EXPECT_EQ(loaded->tidied.degenerate, 1u);
 }
 
+std::string arrowFile(const std::string& face) {
+  return "ply\nformat ascii 1.0\ncomment TextureFile a.png\n"
+         "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 1\nproperty list uchar int vertex_indices\n"
+         "property list uchar float texcoord\nend_header\n"
+         "0 0 0\n2 2 0\n0 1 0\n-2 2 0\n" +
+         face + "\n";
+}
+
+TEST(PlyRead, CutsAFaceThatIsNotConvexWithinItself) {
+  mesh::ply::FaceTextures faces;
+  const auto loaded = mesh::ply::parse(arrowFile("4 1 2 3 0  8 1 0 2 0 3 0 4 0"), &faces);
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.triangles, (Indices{0, 1, 2, 2, 3, 0}));
+  std::string at_corners;
+  for (const auto& uv : faces.corners) at_corners += fmt::format("{} ", uv[0]);
+  EXPECT_EQ(at_corners, "4 1 2 2 3 4 ") << "coordinates stay at their corners";
+  const auto nowhere = mesh::ply::parse(arrowFile("4 1 2 9 0  0"), &faces);
+  ASSERT_TRUE(nowhere) << "validate() refuses it";
+  EXPECT_EQ(nowhere->mesh.triangles, (Indices{1, 2, 9, 1, 9, 0}));
+}
+
+// Each number goes to the next property, whatever the lines are.
+TEST(PlyAscii, NamesTheRowThatHasMoreNumbersThanTheHeaderPromises) {
+  const auto fault = [](const std::string& text) {
+    const auto loaded = read(text);
+    return loaded ? "" : loaded.error().what;
+  };
+  EXPECT_EQ(fault(replaced(kAscii, "3 0 1 3\n", "3 0 1 3 7\n")),
+            "face 1 has 5 numbers in its line, but 4 by the header");
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  EXPECT_EQ(fault(header + "0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2\n"),
+            "vertex 0 has 4 numbers in its line, but 3 by the header");
+  EXPECT_EQ(fault(header + "0 0 0\n1 0 0\n0 1 0 1\n3 0 1 2\n"),
+            "vertex 2 has 4 numbers in its line, but 3 by the header");
+  EXPECT_EQ(fault(header + "0 0 0 1 0 0\n0 1 0\n3 0 1 2\n"), "") << "lines do not matter";
+  EXPECT_EQ(fault(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\nmore\n"), "");
+}
+
+TEST(PlyRead, SaysThatStripsAreNotRead) {
+  const std::string strips =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const auto loaded = read(strips);
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.error().what, "its triangles are strips (tristrips), which are not read");
+}
+
 TEST(PlyRead, PutsKnownPropertiesUnderOneName) {
   const auto loaded = read(
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
@@ -153,12 +204,21 @@ TEST(PlyRead, PutsKnownPropertiesUnderOneName) {
   EXPECT_FLOAT_EQ(mesh.find("colour")->values[2], 1);
 }
 
-TEST(PlyRead, TakesColoursInFloatAsTheyAre) {
-  const auto loaded =
-      read(replaced(replaced(kAscii, "property uchar", "property float"), " 255 0 ", " 0.5 1.5 "));
-  ASSERT_TRUE(loaded) << loaded.error().what;
-  const Floats& colour = loaded->mesh.find("colour")->values;
-  EXPECT_EQ((Floats{colour.begin() + 3, colour.begin() + 6}), (Floats{51, 0.5F, 1.5F}));
+// Some programs write the bytes as floats, or as integers of four bytes.
+TEST(PlyRead, ColoursInOtherTypesAreBytesIfTheyReachMoreThanFractionsDo) {
+  const auto second = [](const std::string& type, const std::string& red_green_blue) {
+    const auto loaded = read(
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+        "property float z\nproperty " +
+        type + " red\nproperty " + type + " green\nproperty " + type +
+        " blue\nend_header\n0 0 0 0 0 1\n0 0 0 " + red_green_blue + "\n");
+    EXPECT_TRUE(loaded) << loaded.error().what;
+    const Floats& colour = loaded->mesh.find("colour")->values;
+    return Floats{colour.begin() + 3, colour.end()};
+  };
+  EXPECT_EQ(second("float", "0.25 0.5 1.5"), (Floats{0.25F, 0.5F, 1.5F})) << "brighter than white";
+  EXPECT_EQ(second("float", "51 255 0"), (Floats{0.2F, 1, 0}));
+  EXPECT_EQ(second("int", "51 255 0"), (Floats{0.2F, 1, 0}));
 }
 
 TEST(PlyRead, TakesTheFirstOfTwoThatAreOne) {

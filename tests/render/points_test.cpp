@@ -89,6 +89,8 @@ TEST(Las, WithheldPointsAndNoiseAreLeftOut) {
   EXPECT_EQ(cloud.size(), 2U);
   ASSERT_EQ(cloud.notes.size(), 1U);
   EXPECT_EQ(cloud.notes[0], "left out: 1 withheld points, 1 points of noise classes");
+  bytes[247 + 15] = 2;
+  EXPECT_EQ(cloudOf(bytes).notes[0], "left out: 1 withheld points") << "none is of noise";
   bytes = las(4, 6, 4);
   bytes[375 + 15] = 4;
   bytes[405 + 16] = 18;

@@ -22,6 +22,7 @@
 #include "render/range/io/pcd.h"
 #include "render/range/io/plane_file.h"
 #include "render/range/io/range_grid.h"
+#include "render/range/map_origin.h"
 #include "tests/support/range_images.h"
 #include "tests/support/temp_dir.h"
 
@@ -309,6 +310,44 @@ TEST_F(RangeFile, AndFromAsciiPcd) {
   const float packed = std::bit_cast<float>(0xFF8000U);
   expectPcd(read(kPcdHeader + "DATA ascii\n0 0 -1 " + fmt::format("{}", packed) +
                  " 7\n1 0 -1 0 300\n0 -1 -1 0 0\nnan 0 0 0 0\n"));
+  EXPECT_EQ(fault(kPcdHeader + "DATA ascii\n0 0 -1.000000 0 7\n1 0 -1.000000 0 300\n0 -1 -1 0 0\n"),
+            "a.pgm: the file ends after 3 of 4 points");
+}
+
+// Points with the coordinates of a map: their place is 0 0 0 and their ranges from it would have no
+// digits for what is finer than half a metre.
+TEST_F(RangeFile, OrganisedPointsOfAMapKeepTheirDigits) {
+  const auto header = [](const std::string& viewpoint) {
+    return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
+           "HEIGHT 2\nVIEWPOINT " +
+           viewpoint + " 1 0 0 0\nPOINTS 4\nDATA ascii\n";
+  };
+  const std::string body =
+      "500000.125 5200001.25 400\n500001.375 5200001.25 400.5\nnan nan nan\n"
+      "500001.375 5200000.0625 401\n";
+  const auto positions = [&](const LoadedRange& loaded) {
+    RangeImage image = loaded.image;  // as merlin mesh import takes the origin from it
+    const std::array<double, 3> origin = {500'000, 5'200'000, 0};
+    for (std::size_t k = 0; k < 3; ++k) image.geometry.T_world_scanner[4 * k + 3] -= origin[k];
+    return pointsOf(image, {});
+  };
+  const auto far = read(header("0 0 0") + body);
+  ASSERT_TRUE(far) << far.error().what;
+  ASSERT_EQ(far->notes.size(), 1U);
+  EXPECT_NE(far->notes[0].find("the viewpoint 0, 0, 0 is too far away"), std::string::npos)
+      << far->notes[0];
+  const auto near = read(header("500010 5200000 402") + body);
+  ASSERT_TRUE(near) << near.error().what;
+  EXPECT_TRUE(near->notes.empty());
+  EXPECT_EQ(near->image.geometry.T_world_scanner[3], 500'010);
+  const float expected[] = {0.125F, 1.25F, 400, 1.375F, 1.25F, 400.5F};
+  for (const auto* loaded : {&*far, &*near}) {
+    const auto points = positions(*loaded);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(points[i], expected[i], 1e-4) << i;
+    EXPECT_NEAR(points[10], 0.0625, 1e-5);
+    EXPECT_FALSE(isReturn(loaded->image.range[2]));
+  }
+  EXPECT_FALSE(isMirrored(far->image)) << "seen from above, the first row is the northern one";
 }
 
 // Only literal runs: what any packer may write.
@@ -385,6 +424,36 @@ TEST_F(RangeFile, EsriGridsHaveVoids) {
   EXPECT_NE(fault("ncols 3\nrows 2\n", {}, "a.asc").find("line 2: \"rows 2\""), std::string::npos);
 }
 
+TEST_F(RangeFile, AnEsriGridMayBeginWithAByteOrderMark) {
+  const auto loaded = read("\xEF\xBB\xBF" + kGrid + "1 2 3 4 5 6\n", {}, "a.asc");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->image.range[5], 6);
+}
+
+TEST_F(RangeFile, ARawFileMayBeginWithTheBytesOfAByteOrderMark) {
+  const auto loaded = read("\xEF\xBB\xBF\x01", raw("2x2:range=u8"), "a.raw");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->image.range[0], 0xEF);
+}
+
+// The least float, which many programs write, has more digits than a float; others write nan.
+TEST_F(RangeFile, TheValueOfAnEsriGridsVoidsMayBeAnyNumber) {
+  const auto withVoid = [](const std::string& word) {
+    return "ncols 2\nnrows 2\ncellsize 30\nNODATA_value " + word + "\n1 2 3 ";
+  };
+  for (const char* word : {"-3.4028234663852886e+38", "-3.40282347e+38", "-1.7e308", "1e31", "nan",
+                           "NaN", "-nan", "-inf"}) {
+    const auto loaded = read(withVoid(word) + word + "\n", {}, "a.asc");
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    EXPECT_EQ(loaded->image.range[2], 3) << word;
+    EXPECT_FALSE(isReturn(loaded->image.range[3])) << word;
+  }
+  EXPECT_NE(fault(withVoid("none") + "4", {}, "a.asc").find("line 4: \"NODATA_value none\""),
+            std::string::npos);
+  EXPECT_NE(fault("ncols 2\nnrows 2\ncellsize 1e39\n1 2 3 4", {}, "a.asc").find("line 3"),
+            std::string::npos);
+}
+
 TEST_F(RangeFile, CellsInDegreesBecomeMetres) {
   const std::string text =
       "NCOLS 2\nNROWS 2\nXLLCENTER -72\nYLLCENTER 44\nCELLSIZE 0.01\n1 2 3 4\n";
@@ -408,6 +477,46 @@ TEST_F(RangeFile, AnEsriGridLiesAtTheMiddleOfItsLowerLeftCell) {
           ->image.geometry.origin,
       Origin({7000, 91}));
   EXPECT_FALSE(read("ncols 2\nnrows 2\ncellsize 1\n1 2 3 4\n", {}, "a.asc")->image.geometry.origin);
+}
+
+TEST(MapOrigin, IsThatOfTheMeshWhereBothAreInMetres) {
+  const auto originOf = [](const std::string& projection, double east = 500'015) {
+    Geometry map;
+    map.scanner = Scanner::kElevation;
+    map.projection = projection;
+    map.origin = {east, 60.5};
+    return mapOrigin(map);
+  };
+  using Origin = render::mesh::Origin;
+  const std::string geographic =
+      "GEOGCS[\"WGS 84\",DATUM[\"W\",SPHEROID[\"WGS 84\",6378137,298.2]],UNIT[\"degree\",0.0174]]";
+  const auto projected = [&](const std::string& unit) {
+    return "PROJCS[\"a [b], c\"," + geographic + ",PARAMETER[\"false_easting\",500000]," + unit +
+           ",AXIS[\"E\",EAST]]";
+  };
+  const Origin there = {500'015, 60.5, 0};
+  EXPECT_EQ(originOf(projected("UNIT[\"metre\",1,AUTHORITY[\"EPSG\",\"9001\"]]")), there);
+  EXPECT_EQ(originOf(projected("UNIT[\"Meter\",1.0]")), there);
+  EXPECT_EQ(originOf(projected("UNIT[\"US survey foot\",0.3048006096012192]")), Origin{});
+  EXPECT_EQ(originOf(projected("AXIS[\"N\",NORTH]")), Origin{}) << "no unit of its own";
+  EXPECT_EQ(originOf("COMPD_CS[\"x\"," + projected("UNIT[\"foot\",0.3048]") +
+                     ",VERT_CS[\"h\",UNIT[\"metre\",1]]]"),
+            Origin{})
+      << "the metres are those of the heights";
+  const std::string wkt2 =
+      "PROJCRS[\"x\",BASEGEOGCRS[\"b\",DATUM[\"d\",ELLIPSOID[\"e\",6378137,298,"
+      "LENGTHUNIT[\"metre\",1]]]],CONVERSION[\"c\",PARAMETER[\"p\",0,"
+      "LENGTHUNIT[\"metre\",1]]],CS[Cartesian,2],AXIS[\"(E)\",east,";
+  EXPECT_EQ(originOf(wkt2 + "LENGTHUNIT[\"metre\",1]]]"), there);
+  EXPECT_EQ(originOf(wkt2 + "LENGTHUNIT[\"foot\",0.3048]]]"), Origin{});
+  EXPECT_EQ(originOf("Projection UTM Zone 33 Datum WGS84 Units METERS"), there);
+  EXPECT_EQ(originOf("Projection STATEPLANE Units FEET"), Origin{});
+  for (const std::string& other : {geographic, std::string("EPSG:4326"), std::string("PROJCS[\"x"),
+                                   std::string("PROJCS[\"x\"]]]UNIT[\"metre\",1]")})
+    EXPECT_EQ(originOf(other), Origin{}) << other;
+  EXPECT_EQ(originOf(""), there) << "too large for degrees";
+  EXPECT_EQ(originOf("", 12.5), Origin{}) << "may be degrees";
+  EXPECT_EQ(mapOrigin(Geometry{}), Origin{});
 }
 
 TEST_F(RangeFile, APrjFileSaysDegreesInWktOrInArcInfosLines) {
@@ -549,6 +658,28 @@ TEST_F(RangeFile, AGridAtEvenAnglesIsSeenFromTheOrigin) {
   ASSERT_TRUE(loaded) << loaded.error().what;
   EXPECT_EQ(loaded->image.geometry.T_world_scanner, kIdentity);
   EXPECT_NEAR(loaded->image.range[1], 3, 0.01);
+}
+
+TEST_F(RangeFile, AGridWithTheCoordinatesOfAMapKeepsItsDigits) {
+  std::string header = kStanford;
+  for (const char axis : {'x', 'y', 'z'}) {
+    const std::string property = fmt::format("float {}\n", axis);
+    header.replace(header.find(property), property.size(), fmt::format("double {}\n", axis));
+  }
+  const std::string body =
+      "500000.125 5200001 0.5 255 0 0 0.25\n500001.25 5200001 0.9 0 255 0 0.5\n"
+      "500002.5 5200001 -0.7 0 0 255 1\n500000.125 5200002 0 9 9 9 0\n"
+      "500002.5 5200002.0625 0 9 9 9 0\n1 0\n1 1\n1 2\n1 3\n0\n1 4\n";
+  auto loaded = read(header + body, {}, "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  RangeImage& image = loaded->image;
+  EXPECT_NEAR(image.geometry.T_world_scanner[3], 500'001.3125, 1e-3);
+  image.geometry.T_world_scanner[3] -= 500'000;
+  image.geometry.T_world_scanner[7] -= 5'200'000;
+  const auto points = pointsOf(image, {});
+  EXPECT_NEAR(points[0], 0.125, 1e-5);
+  EXPECT_NEAR(points[3], 1.25, 1e-5);
+  EXPECT_NEAR(points[16], 2.0625, 1e-5);
 }
 
 TEST_F(RangeFile, FaultsOfAGridNameThePixelOrTheVertex) {

@@ -371,6 +371,16 @@ TEST_F(GridImport, TheProjectionStaysInTheModelAndInThePgm) {
   EXPECT_NE(about.find("map.projection=PROJCS[\"WGS 84 / UTM zone 33N\""), std::string::npos)
       << about;
   EXPECT_NE(about.find("map.origin=500005 5299970"), std::string::npos) << about;
+  EXPECT_NE(about.find("mesh.origin=500005 5299970 0"), std::string::npos) << about;
+  ASSERT_EQ(run({kMerlin, "mesh", "export", dir_ / "out.mrm", "-o", dir_ / "b.obj"}).status, 0);
+  const std::string obj = readText(dir_ / "b.obj");
+  EXPECT_NE(obj.find("\nv 500025 5299970 140 "), std::string::npos) << obj;
+  const std::string degrees =
+      "ncols 2\nnrows 2\nxllcenter 7.5\nyllcenter 46\ncellsize 0.01\n1 2\n3 4\n";
+  ASSERT_EQ(import("b.asc", degrees, {"-o", dir_ / "out.mrm"}).status, 0);
+  const Outcome said = run({kMerlin, "mesh", "export", dir_ / "out.mrm", "-o", dir_ / "c.obj"});
+  EXPECT_NE(said.output.find("origin    7.5 46, of the map, is not added"), std::string::npos)
+      << said.output;
   ASSERT_EQ(import("a.tif", file, {"-o", dir_ / "out.pgm"}).status, 0);
   const auto again = report("out.pgm", "", {});
   EXPECT_NE(again["projection"].get<std::string>().find("UTM zone 33N"), std::string::npos);

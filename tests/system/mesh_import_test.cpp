@@ -231,6 +231,49 @@ TEST_F(MeshImport, AMeshWithCoordinatesOfAMapKeepsItsOriginInReportModelAndScan)
   EXPECT_NEAR(nlohmann::json::parse(box.output)["box"]["high"][0], 1.125, 0.3);
 }
 
+TEST_F(MeshImport, AnExportPutsTheOriginBackUnlessItIsToBeLocal) {
+  const std::string model = dir_ / "a.mrm";
+  writeText(dir_ / "far.obj",
+            "v 450000.125 5400000.25 10\nv 450002.125 5400000.25 10\nv 450002.125 5400002.25 10\n"
+            "v 450000.125 5400002.25 10.5\nf 1 2 3\nf 1 3 4\n");
+  ASSERT_EQ(import({dir_ / "far.obj", "-o", model}).status, 0);
+  const auto exported = [&](const std::string& name, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {kMerlin, "mesh", "export", model, "-o", dir_ / name});
+    const Outcome done = run(std::move(more));
+    EXPECT_EQ(done.status, 0) << done.output;
+    const auto from = done.output.find("origin");
+    return from == std::string::npos
+               ? std::string()
+               : done.output.substr(from, done.output.find('\n', from) - from);
+  };
+  const std::string at = "origin    450000, 5400000, 0 is ";
+  EXPECT_EQ(exported("b.obj"), at + "added to the coordinates; --local leaves it out");
+  EXPECT_NE(readText(dir_ / "b.obj").find("\nv 450002.125 5400002.25 10"), std::string::npos);
+  EXPECT_EQ(exported("c.obj", {"--local"}),
+            at + "left out (--local); the mesh's (0, 0, 0) lies there");
+  EXPECT_NE(readText(dir_ / "c.obj").find("\nv 2.125 2.25 10"), std::string::npos);
+  for (const auto& [name, more] : {std::pair("b.stl", std::vector<std::string>{}),
+                                   {"b.iv", {}},
+                                   {"d.iv", {"--multiresolution"}}})
+    EXPECT_EQ(exported(name, more),
+              at + fmt::format("left out, because the numbers of {} are floats, which keep seven "
+                               "digits; the mesh's (0, 0, 0) lies there",
+                               std::string_view(name).substr(1)));
+  ASSERT_EQ(import({scan_, "-o", model}).status, 0);
+  EXPECT_EQ(exported("e.ply"), "") << "nothing is said of a model without an origin";
+}
+
+TEST_F(MeshImport, SegmentsLieWhereTheMeshDoes) {
+  writeText(dir_ / "far.obj",
+            "v 450000.5 20000 0\nv 450002.5 20000 0\nv 450000.5 20002 0\nf 1 2 3\n");
+  ASSERT_EQ(
+      run({kMerlin, "mesh", "segment", dir_ / "far.obj", "--segments", "1", "-o", ply_}).status, 0);
+  const Outcome said = run({kMerlin, "mesh", "info", ply_, "--json"});
+  const auto info = nlohmann::json::parse(said.output.substr(said.output.find('{')));
+  EXPECT_EQ(info["origin"], nlohmann::json({450000.0, 20000.0, 0.0}));
+  EXPECT_EQ(info["box"]["high"], nlohmann::json({2.5, 2.0, 0.0}));
+}
+
 TEST_F(MeshImport, ComparisonsBringTwoOriginsTogether) {
   writeText(dir_ / "a.obj",
             "v 450000.5 20000 0\nv 450002.5 20000 0\nv 450000.5 20002 0\nf 1 2 3\n");
@@ -253,7 +296,11 @@ TEST_F(MeshImport, ACameraWithCoordinatesOfAMapKeepsItsDigitsByAnOrigin) {
   ASSERT_EQ(import({scan_, "-o", dir_ / "out.mrm"}).status, 0);
   const Outcome said = run({kMerlin, "mesh", "info", dir_ / "out.mrm"});
   EXPECT_NE(said.output.find("mesh.origin=450000 5400000 0"), std::string::npos) << said.output;
-  ASSERT_EQ(import({scan_, "-o", dir_ / "again.pgm"}).status, 0);
+  const Outcome image = import({scan_, "-o", dir_ / "again.pgm"});
+  ASSERT_EQ(image.status, 0);
+  EXPECT_NE(image.output.find(dir_ / "again.pgm: 8 x 6 pixels, 47 with a return\n"),
+            std::string::npos)
+      << image.output;
   EXPECT_NE(readText(dir_ / "again.pgm").find("# camera: 1 0 0 450000.25"), std::string::npos)
       << "a range image keeps its camera as it is";
 }
@@ -317,6 +364,21 @@ TEST_F(MeshImport, OptionsThatWouldDoNothingToARangeImageAreRefused) {
     arguments.insert(arguments.end(), option.begin(), option.end());
     expectRefusal(arguments, out + ": " + option[0] + " is for a mesh or a model; a range image");
   }
+}
+
+// In the mesh's PLY file they would be read as something else, or not at all.
+TEST_F(MeshImport, NamesOfFeaturesThatAPlyFileCannotHoldAreRefused) {
+  const auto refused = [&](const std::string& name, const std::string& why) {
+    const std::string feature = name + "=" + (dir_ / "confidence.pgm");
+    expectRefusal({scan_, "--feature", feature, "-o", ply_}, "--feature " + feature + ": " + why);
+  };
+  refused("two words", "the name of a feature is one word");
+  refused("x", "the name x is a coordinate's");
+  refused("nx", "the name nx means a part of the normal in PLY files");
+  refused("red", "the name red means a part of the colour in PLY files");
+  refused("s", "the name s means a part of the texcoord in PLY files");
+  expectRefusal({scan_, "--raw", "2x2:range=u8,g=u8", "-o", ply_},
+                "--raw 2x2:range=u8,g=u8: the name g means a part of the colour in PLY files");
 }
 
 TEST_F(MeshImport, RefusalsNameFilePlaceAndReason) {

@@ -111,6 +111,19 @@ TEST_F(PointsImport, TheOriginOfLargeCoordinatesIsSaid) {
   EXPECT_NEAR(x + mean / static_cast<double>(mesh.vertexCount()), 500'000, 0.01);
 }
 
+TEST_F(PointsImport, AnExportLiesWhereThePointsDo) {
+  ply_ = dir_ / "out.mrm";
+  ASSERT_EQ(import(colouredSphere(500'000), {"--depth", "5"}).status, 0);
+  const Outcome done = run({kMerlin, "mesh", "export", ply_, "-o", dir_ / "b.ply"});
+  ASSERT_EQ(done.status, 0) << done.output;
+  const auto loaded = render::mesh::readMesh(dir_ / "b.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  double mean = 0;
+  const auto& positions = loaded->mesh.positions;
+  for (std::size_t i = 0; i < positions.size(); i += 3) mean += loaded->origin[0] + positions[i];
+  EXPECT_NEAR(mean / static_cast<double>(loaded->mesh.vertexCount()), 500'000, 0.01);
+}
+
 TEST_F(PointsImport, TheOriginIsScaledWithThePoints) {
   const auto json =
       report(colouredSphere(500'000), {"--depth", "5", "--neighbours", "10", "--scale", "0.5"});

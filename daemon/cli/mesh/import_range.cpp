@@ -7,10 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "render/mesh/io/feature_names.h"
 #include "render/range/colours.h"
 #include "render/range/filters.h"
 #include "render/range/geometry.h"
 #include "render/range/io/plane_file.h"
+#include "render/range/map_origin.h"
 
 namespace merlin::cli {
 namespace {
@@ -55,7 +57,8 @@ std::string nameFault(const std::string& name, const ImportedRange& loaded) {
   for (const char* taken : {"normal", "texcoord", "border"}) {
     if (name == taken) return fmt::format("the name {} is MERLIN's own", name);
   }
-  return loaded.image.find(name) ? fmt::format("there is a feature {} already", name) : "";
+  if (loaded.image.find(name)) return fmt::format("there is a feature {} already", name);
+  return render::mesh::featureNameFault(name);
 }
 
 // Adds the image of a --feature NAME=FILE.
@@ -352,6 +355,11 @@ Result<render::range::RangeOptions> RangeImport::fileOptions() const {
   if (raw_.empty()) return options;
   auto layout = range::parseRawLayout(raw_);
   if (!layout) return Error{layout.error().code, "--raw " + layout.error().what};
+  for (const auto& plane : layout->planes) {
+    const std::string fault = plane.name == "-" ? "" : render::mesh::featureNameFault(plane.name);
+    if (!fault.empty())
+      return Error{Errc::kInvalidArgument, fmt::format("--raw {}: {}", raw_, fault)};
+  }
   layout->header_bytes = raw_header_;
   layout->interleaved = raw_interleaved_;
   options.raw = *std::move(layout);
@@ -426,7 +434,8 @@ Result<Ok> meshRange(const std::string& path, const RangeImport& options, const 
   if (const auto added = addColours(options.colour_by, !image.join_ends, image); !added)
     return added;
   imported.features = factsOf(image);
-  imported.origin = takeOrigin(image.geometry);
+  imported.origin =
+      isElevation(image) ? range::mapOrigin(image.geometry) : takeOrigin(image.geometry);
   const std::vector<float> points = range::pointsOf(image, range::partOf(work, 0, 0.2));
   imported.mesh = range::triangulate(image, points, imported.max_edge, range::partOf(work, 0.2, 1));
   range::RangeMesh& mesh = imported.mesh;

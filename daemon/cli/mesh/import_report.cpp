@@ -72,8 +72,10 @@ void addRange(const ImportedRange& range, nlohmann::ordered_json& json) {
   json["features"] = std::move(features);
   const auto& geometry = range.image.geometry;
   if (!geometry.projection.empty()) json["projection"] = geometry.projection;
-  if (geometry.origin) json["origin"] = *geometry.origin;
-  addOrigin(range.origin, json);
+  if (geometry.origin)
+    json["origin"] = *geometry.origin;
+  else
+    addOrigin(range.origin, json);
   json["notes"] = range.notes;
 }
 
@@ -148,13 +150,17 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
   }
   const auto& image = range.image;
   const auto& mesh = range.mesh;
-  printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
+  if (written.triangles > 0)
+    printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
+  else  // the image itself
+    printOut("{}: {} x {} pixels, {} with a return\n", names.output, image.width, image.height,
+             std::count_if(image.range.begin(), image.range.end(), render::range::isReturn));
   printOut("  read      {}, {} x {} pixels, {} with a return, {}\n", range.format, image.width,
            image.height, range.returns_in_file, render::range::nameOf(image.geometry.scanner));
   if (range.outside + range.spikes > 0)
     printOut("  removed   {} returns outside --between, {} spikes\n", range.outside, range.spikes);
   printMap(image.geometry);
-  printOrigin(range.origin);
+  if (!image.geometry.origin) printOrigin(range.origin);
   printFeatures(range);
   if (written.triangles > 0)
     printOut(

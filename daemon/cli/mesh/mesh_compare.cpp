@@ -131,7 +131,7 @@ Result<PlacedMesh> openMesh(const std::string& path, const LevelChoice& choice) 
 }
 
 // Where only one of two has an origin: the other one is relative to the same if it lies near 0, as
-// after an export; else its coordinates are those of its file.
+// after an export with --local; else its coordinates are those of its file.
 render::mesh::Origin originOf(const PlacedMesh& placed, const render::mesh::Origin& others) {
   const render::mesh::Origin none{};
   const std::vector<float>& p = placed.mesh.positions;

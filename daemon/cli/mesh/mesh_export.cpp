@@ -1,11 +1,14 @@
 // merlin mesh export: writes one resolution of a model as a mesh, or all of them for Open Inventor.
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/progress.h"
@@ -21,6 +24,7 @@ struct ExportOptions {
   LevelChoice choice;
   std::optional<double> within;  // maximum distance from the finest resolution [% of the diagonal]
   bool multiresolution = false;
+  bool local = false;  // without the origin
 };
 
 Result<std::size_t> levelOf(const ExportOptions& options, const render::lod::Dendrogram& model) {
@@ -44,6 +48,33 @@ Result<std::size_t> levelOf(const ExportOptions& options, const render::lod::Den
   return found->level;
 }
 
+// Says what became of the model's origin; nothing of 0 0 0. `floats`: the format's ending, if its
+// numbers are floats.
+void printOrigin(const ExportOptions& options, const render::mesh::Origin& origin,
+                 std::string_view floats) {
+  if (origin == render::mesh::Origin{}) return;
+  const std::string at = fmt::format("{}, {}, {}", origin[0], origin[1], origin[2]);
+  if (options.local)
+    printOut("  origin    {} is left out (--local); the mesh's (0, 0, 0) lies there\n", at);
+  else if (!floats.empty())
+    printOut(
+        "  origin    {} is left out, because the numbers of .{} are floats, which keep seven "
+        "digits; the mesh's (0, 0, 0) lies there\n",
+        at, floats);
+  else
+    printOut("  origin    {} is added to the coordinates; --local leaves it out\n", at);
+}
+
+// A map in degrees or feet has an origin that cannot be added to coordinates in metres.
+void printMapOrigin(std::string_view about) {
+  const std::string at = valueIn(about, "map.origin");
+  if (!at.empty())
+    printOut(
+        "  origin    {}, of the map, is not added: nothing says that its unit is that of the mesh, "
+        "whose (0, 0) lies there\n",
+        at);
+}
+
 int exportAll(const ExportOptions& options) {
   if (!options.output.ends_with(".iv")) {
     return fail(
@@ -52,12 +83,14 @@ int exportAll(const ExportOptions& options) {
   }
   if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
     return fail(writable.error());
-  const auto model = openModel(options.model);
+  render::mesh::Origin origin{};
+  const auto model = openModel(options.model, &origin);
   if (!model) return fail(model.error());
   const auto left_out = render::inventor::writeMultiresolution(options.output, *model);
   if (!left_out) return fail(left_out.error());
   printOut("{}: {} to {} triangles, {} levels\n", options.output,
            model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
+  printOrigin(options, origin, "iv");
   printWritten({"iv", *left_out, {}});
   return kExitDone;
 }
@@ -67,15 +100,20 @@ int exportMesh(const ExportOptions& options) {
     return fail(known.error());
   if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
     return fail(writable.error());
-  const auto model = openModel(options.model);
+  render::mesh::Origin origin{};
+  const auto model = openModel(options.model, &origin);
   if (!model) return fail(model.error());
   const auto level = levelOf(options, *model);
   if (!level) return fail(level.error());
   const render::mesh::Mesh mesh = render::lod::extract(*model, *level);
-  const auto written = render::mesh::writeMesh(options.output, mesh);
+  const auto written = render::mesh::writeMesh(options.output, mesh,
+                                               options.local ? render::mesh::Origin{} : origin);
   if (!written) return fail(written.error());
   printOut("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
            mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
+  if (origin == render::mesh::Origin{}) printMapOrigin(model->arrays().about);
+  printOrigin(options, origin,
+              written->relative_to == render::mesh::Origin{} ? "" : written->format);
   printWritten(*written);
   return kExitDone;
 }
@@ -89,9 +127,12 @@ void addMeshExport(Command mesh, Run& run) {
       "Write one resolution of a model as a mesh: .ply (all features), .glb or .gltf (features of "
       "up to 4 dimensions), .obj and .iv (Open Inventor; normals, colours, texture coordinates), "
       ".stl (triangles only). A texture is stored inside .glb and .gltf, and in a file of its own "
-      "beside .ply, .obj and .iv.\nExample: merlin mesh export scan.mrm --percent 5 -o "
-      "scan5.ply\nExample with all resolutions, for an Open Inventor viewer that can load "
-      "SoMRFaceSet.so: merlin mesh export scan.mrm --multiresolution -o scan.iv");
+      "beside .ply, .obj and .iv. A mesh of a map or a survey gets the coordinates of the original "
+      "file again: doubles in .ply, decimals in .obj, a translation in .glb and .gltf. Those of "
+      ".stl and .iv are floats, and stay relative to the model's origin, which is named.\n"
+      "Example: merlin mesh export scan.mrm --percent 5 -o scan5.ply\n"
+      "Example with all resolutions, for an Open Inventor viewer that can load SoMRFaceSet.so: "
+      "merlin mesh export scan.mrm --multiresolution -o scan.iv");
   command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");
   command.option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
       .required()
@@ -100,6 +141,9 @@ void addMeshExport(Command mesh, Run& run) {
       "--multiresolution", options->multiresolution,
       "Write all resolutions as a node SoMRFaceSet (.iv only); viewers that cannot load the module "
       "of this node show 10,000 triangles");
+  command.flag("--local", options->local,
+               "Keep the coordinates of a model of a map relative to the model's origin "
+               "(merlin mesh info shows it), for programs that read coordinates as floats");
   Command resolution = options->choice.addTo(command);
   resolution
       .option(

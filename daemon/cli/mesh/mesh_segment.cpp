@@ -94,7 +94,7 @@ int segmentMesh(const SegmentOptions& options) {
   if (!segmentation) return fail(segmentation.error());
   const double seconds = toSeconds(clock.now() - began);
   setFeature(mesh, {"label", 1, {segmentation->labels.begin(), segmentation->labels.end()}});
-  const auto written = render::mesh::writeMesh(options.output, mesh);
+  const auto written = render::mesh::writeMesh(options.output, mesh, loaded->origin);
   if (!written) return fail(written.error());
   if (!options.picture.empty()) {
     if (const auto drawn = draw(options, mesh); !drawn) return fail(drawn.error());

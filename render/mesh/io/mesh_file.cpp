@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -36,6 +38,23 @@ std::string noteOf(const Origin& origin) {
       "its coordinates have more digits than a float keeps; they are taken relative to {}, {}, {}, "
       "where the mesh has its (0, 0, 0)",
       origin[0], origin[1], origin[2]);
+}
+
+// What floats so far from 0 lose of a mesh of this size; empty if they keep 16,384 steps and more
+// along its diagonal.
+std::string noteOfSteps(const Mesh& mesh) {
+  constexpr double kFewSteps = 16384;
+  const Box box = boundingBox(mesh.positions);
+  float farthest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    farthest = std::max({farthest, std::abs(box.low[k]), std::abs(box.high[k])});
+  const double step =
+      double{std::nextafter(farthest, std::numeric_limits<float>::infinity())} - farthest;
+  if (box.diagonal() >= kFewSteps * step) return {};
+  return fmt::format(
+      "it lies so far from (0, 0, 0) that its coordinates, which are read as floats, are rounded "
+      "to steps of up to {:.2g}; a .ply of doubles or an .obj of the same mesh keeps them",
+      step);
 }
 
 constexpr std::array kReaders = {&kPlyReader, &kObjReader, &kOffReader, &kOmReader, &kStlReader};
@@ -194,6 +213,8 @@ Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path)
   if (loaded->mesh.triangles.empty()) {
     return Error{Errc::kMalformed, path + ": has no triangles"};
   }
+  if (auto note = noteOfSteps(loaded->mesh); !note.empty())
+    loaded->notes.push_back(std::move(note));
   loaded->split = splitNonManifold(loaded->mesh);
   return loaded;
 }
@@ -213,17 +234,18 @@ Result<Ok> checkCompanions(const std::string& path, const Mesh& mesh) {
   return Ok{};
 }
 
-Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
+Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh, const Origin& origin) {
   if (const auto known = checkMeshEnding(path); !known) return known.error();
   const MeshWriter& writer = *writerFor(path);
   if (mesh.triangles.empty()) {
     return Error{Errc::kUnsupported, path + ": the mesh has no triangles; nothing is written"};
   }
+  const Origin added = writer.exact ? origin : Origin{};
   if (writer.fits) {
-    if (const auto fits = writer.fits(mesh); !fits) return inFile(path, fits.error());
+    if (const auto fits = writer.fits(mesh, added); !fits) return inFile(path, fits.error());
   }
   const std::string name = plainName(path);
-  WrittenMesh written{writer.ending, {}, {}};
+  WrittenMesh written{writer.ending, {}, {}, writer.exact ? Origin{} : origin};
   WrittenFiles files;
   for (const CompanionFile& file : companionsOf(writer, mesh, path)) {
     const auto there = isThere(file);
@@ -232,8 +254,8 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh) {
     if (!done) return done.error();
     written.companions.push_back(file.path);
   }
-  const auto done =
-      writeFile(path, [&](const WriteBytes& bytes) { return writer.write(mesh, name, bytes); });
+  const auto done = writeFile(
+      path, [&](const WriteBytes& bytes) { return writer.write(mesh, added, name, bytes); });
   if (!done) return done.error();
   files.keep();
   for (const Feature& f : mesh.features) {

@@ -13,12 +13,16 @@
 //            .glb, .gltf   normal, colour, texcoord, any other feature of 1 to 4 dimensions
 //            .iv    Open Inventor 2.1 ASCII: normal, colour, texcoord
 //            .stl   binary: triangles only
+//            Coordinates that lie at an origin are doubles in .ply, decimals in .obj, and the
+//            translation of the node in .glb and .gltf; those of .iv and .stl are floats.
 //            .glb and .gltf contain the texture image. For .ply, .obj and .iv it is a companion
 //            file in the same folder: for a.obj, a.obj.png (or .jpg) and a.obj.mtl. Unusual
 //            characters of the name are escaped (plainName() in companion_files.h).
 //
-// Coordinates of a .ply whose x, y or z is a double, and of an .obj, are kept relative to
+// Coordinates of a .ply whose x, y or z is a double, of an .obj and of an .off are kept relative to
 // originNear() of the first vertex, which a note says; LoadedMesh::origin is what was subtracted.
+// Of other files, whose coordinates are read as floats, a note says if these are coarse for the
+// mesh's size.
 //
 // A returned mesh has passed validate(), tidy() and splitNonManifold(). Nothing throws, nothing is
 // printed. Reentrant.
@@ -79,6 +83,9 @@ struct WrittenMesh {
   std::string format;                   // the ending, in lower case
   std::vector<std::string> left_out;    // names of features; "the texture image"
   std::vector<std::string> companions;  // paths of the companion files
+  // What is missing from the file's coordinates: the origin, if the format's numbers are floats,
+  // which would round it; else 0 0 0.
+  Origin relative_to{};
 };
 
 // Checks that writeMesh() supports the ending; call it before long work. Errors: kUnsupported.
@@ -89,10 +96,11 @@ Result<Ok> checkMeshEnding(const std::string& path);
 // image. Errors: kInvalidArgument.
 Result<Ok> checkCompanions(const std::string& path, const Mesh& mesh);
 
-// Writes the mesh file and its companion files: all of them completely, or none. Errors: kIo,
-// kNotFound, kUnsupported (an unknown ending; a mesh too large for the format, or without
-// triangles), kInvalidArgument (a companion file exists with different content). REQUIRES:
-// validate(mesh).
-Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh);
+// Writes the mesh file and its companion files: all of them completely, or none. `origin` is added
+// to the positions, as doubles, where the format can hold the sums; readMesh() finds the mesh at
+// the same place. Errors: kIo, kNotFound, kUnsupported (an unknown ending; a mesh too large for the
+// format, or without triangles), kInvalidArgument (a companion file exists with different content).
+// REQUIRES: validate(mesh), finite numbers in `origin`.
+Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh, const Origin& origin = {});
 
 }  // namespace merlin::render::mesh

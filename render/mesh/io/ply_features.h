@@ -1,5 +1,5 @@
 // Names of the PLY vertex properties that form the features "normal", "colour" and "texcoord".
-// Private to render/mesh/io.
+// Private to render/mesh/io and render/range/io.
 #pragma once
 
 #include <cstddef>

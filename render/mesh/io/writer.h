@@ -8,6 +8,7 @@
 
 #include "daemon/base/files.h"
 #include "render/mesh/mesh.h"
+#include "render/mesh/origin.h"
 
 namespace merlin::render::mesh {
 
@@ -19,11 +20,14 @@ struct MeshWriter {
   bool (*carries)(const Mesh&,
                   const Feature&) = nullptr;  // whether the format can hold the feature
   // Returns false if a write failed. `name`: name prefix of the companion files (plainName()).
-  bool (*write)(const Mesh&, const std::string& name, const WriteBytes&) = nullptr;
+  // `origin`: is added to the positions; 0 0 0 unless `exact`.
+  bool (*write)(const Mesh&, const Origin& origin, const std::string& name,
+                const WriteBytes&) = nullptr;
   PicturePlace picture = PicturePlace::kNone;
+  bool exact = false;  // whether coordinates may have more digits than a float
   // Checks that the mesh fits into the format; the error does not contain the file's name. May be
   // null.
-  Result<Ok> (*fits)(const Mesh&) = nullptr;
+  Result<Ok> (*fits)(const Mesh&, const Origin& origin) = nullptr;
   // Content of the companion file NAME.mtl of a textured mesh. May be null.
   std::string (*material)(const Mesh&, const std::string& name) = nullptr;
 };

@@ -216,9 +216,10 @@ class LasPoints {
     keep(std::move(colour_));
     keep(std::move(intensity_));
     keep(std::move(label_));
-    if (withheld_ + noise_ > 0)
-      cloud_.notes.push_back(fmt::format("left out: {} withheld points, {} points of noise classes",
-                                         withheld_, noise_));
+    std::string dropped = withheld_ > 0 ? fmt::format("{} withheld points", withheld_) : "";
+    if (noise_ > 0)
+      dropped += fmt::format("{}{} points of noise classes", dropped.empty() ? "" : ", ", noise_);
+    if (!dropped.empty()) cloud_.notes.push_back("left out: " + dropped);
     const std::string names = leftOut();
     if (!names.empty())
       cloud_.notes.push_back(fmt::format("left out of each point, as no feature: {}", names));

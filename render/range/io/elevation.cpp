@@ -1,6 +1,7 @@
 #include "render/range/io/elevation.h"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -78,7 +79,9 @@ Result<GridHeader> readGridHeader(std::string_view& text) {
     const std::string key = lowerCase(takeWord(value));
     double number = 0;
     if (key.empty() || key[0] < 'a' || key[0] > 'z' || key == "nan") return header;
-    const bool read = readNumber(trimmed(value), number) && std::abs(number) <= 1e30;
+    // Voids may be any number: often one that no height can be, such as the least float.
+    const bool read =
+        readNumber(trimmed(value), number) && (key == "nodata_value" || std::abs(number) <= 1e30);
     if (!read || !readKey(key, number, header))
       return Error{Errc::kMalformed,
                    fmt::format("line {}: \"{}\"; allowed: ncols, nrows, xllcorner, xllcenter, "
@@ -162,6 +165,16 @@ void setCells(const GridHeader& header, std::string_view projection, StoredImage
   image.header.cell = {dx * metres[0], dy * metres[1]};
 }
 
+// Reads a number as a float: infinite if it is beyond those, as voids of doubles are.
+bool readFloat(std::string_view word, float& value) {
+  if (readNumber(word, value)) return true;
+  double wide = 0;
+  if (!readNumber(word, wide)) return false;
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  value = std::abs(wide) < 1 ? 0 : wide > 0 ? kInfinite : -kInfinite;
+  return true;
+}
+
 Result<Ok> readHeights(std::string_view text, StoredImage& image) {
   const std::size_t n = image.width * image.height;
   if (text.size() / 2 + 1 < n)
@@ -171,7 +184,7 @@ Result<Ok> readHeights(std::string_view text, StoredImage& image) {
   for (std::size_t i = 0; i < n; ++i) {
     const std::string_view word = takeWord(text);
     float height = 0;
-    if (!readNumber(word, height))
+    if (!readFloat(word, height))
       return Error{Errc::kMalformed,
                    word.empty()
                        ? fmt::format("ends after {} of {} heights", i, n)

@@ -1,11 +1,14 @@
 #include "render/range/io/pcd.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "daemon/base/printable_text.h"
+#include "render/mesh/origin.h"
 #include "render/range/io/pcd_body.h"
 #include "render/range/io/words.h"
 
@@ -32,17 +35,61 @@ void addPlanes(const PcdHeader& header, const std::vector<PcdValues>& values, Pc
   }
 }
 
+using Place = std::array<double, 3>;
+
+// The box around all points that are finite; low > high if there is none.
+struct PointBox {
+  Place low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
+
+  Place middle() const {
+    return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+  }
+  double diagonal() const {
+    return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+  }
+};
+
+PointBox boxOf(const PcdValues& x, const PcdValues& y, const PcdValues& z) {
+  PointBox box;
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    const Place at = {x[p], y[p], z[p]};
+    if (!std::ranges::all_of(at, [](double v) { return std::isfinite(v); })) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], at[k]);
+      box.high[k] = std::max(box.high[k], at[k]);
+    }
+  }
+  return box;
+}
+
+// Where the points are seen from: the file's viewpoint; or, where that cannot be the scanner's
+// place because the points have the coordinates of a map and it has not, a place above them. Ranges
+// from 0 0 0 there would have fewer digits than the points.
+Place viewpointFor(const PointBox& box, const PcdHeader& header, std::vector<std::string>& notes) {
+  constexpr double kFar = 100, kAbove = 10;  // diagonals
+  const auto& v = header.viewpoint;
+  const Place middle = box.middle();
+  const Place away = {middle[0] - v[0], middle[1] - v[1], middle[2] - v[2]};
+  const bool known = mesh::originNear(away) == mesh::Origin{} ||
+                     std::hypot(away[0], away[1], away[2]) <= kFar * box.diagonal();
+  if (known || !(box.low[0] <= box.high[0])) return {v[0], v[1], v[2]};
+  notes.push_back(
+      fmt::format("the viewpoint {}, {}, {} is too far away to be the scanner's place; the points "
+                  "are taken as seen from above",
+                  v[0], v[1], v[2]));
+  return {middle[0], middle[1], box.high[2] + kAbove * box.diagonal()};
+}
+
 // Points to rays and ranges from the viewpoint.
-void addPoints(const PcdValues& x, const PcdValues& y, const PcdValues& z, const PcdHeader& header,
+void addPoints(const PcdValues& x, const PcdValues& y, const PcdValues& z, const Place& viewpoint,
                RangeImage& image) {
   Geometry& g = image.geometry;
   g.scanner = Scanner::kRays;
-  for (std::size_t k = 0; k < 3; ++k) g.T_world_scanner[4 * k + 3] = header.viewpoint[k];
+  for (std::size_t k = 0; k < 3; ++k) g.T_world_scanner[4 * k + 3] = viewpoint[k];
   g.rays.assign(3 * x.size(), kNoReturn);
   image.range.assign(x.size(), kNoReturn);
   for (std::size_t p = 0; p < x.size(); ++p) {
-    const double d[] = {x[p] - header.viewpoint[0], y[p] - header.viewpoint[1],
-                        z[p] - header.viewpoint[2]};
+    const Place d = {x[p] - viewpoint[0], y[p] - viewpoint[1], z[p] - viewpoint[2]};
     const double r = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     if (!(r > 0) || !(r <= double{kFarthest})) continue;
     image.range[p] = static_cast<float>(r);
@@ -73,7 +120,7 @@ Result<PcdImage> parsePcd(std::string_view bytes) {
   PcdImage pcd;
   pcd.image.width = header->width;
   pcd.image.height = header->height;
-  addPoints(*x, *y, *z, *header, pcd.image);
+  addPoints(*x, *y, *z, viewpointFor(boxOf(*x, *y, *z), *header, pcd.notes), pcd.image);
   addPlanes(*header, *values, pcd);
   return pcd;
 }

@@ -170,9 +170,12 @@ Result<std::vector<PcdValues>> readAscii(std::string_view text, const PcdHeader&
       for (std::size_t i = 0; i < field.count; ++i) {
         const std::string_view word = takeWord(text);
         if (!readWord(word, field, values[f][point * field.count + i]))
-          return Error{Errc::kMalformed,
-                       fmt::format("point {}: {} is \"{}\", which is not a number", point,
-                                   oneLine(field.name), oneLine(excerpt(word)))};
+          return Error{
+              Errc::kMalformed,
+              word.empty()
+                  ? fmt::format("the file ends after {} of {} points", point, header.points)
+                  : fmt::format("point {}: {} is \"{}\", which is not a number", point,
+                                oneLine(field.name), oneLine(excerpt(word)))};
       }
     }
   }

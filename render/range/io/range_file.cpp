@@ -203,7 +203,10 @@ Result<LoadedRange> loadPoints(std::string_view bytes, const RangeOptions& optio
 Result<LoadedRange> load(const std::string& path, const RangeOptions& options) {
   const auto file = MappedFile::open(path);
   if (!file) return file.error();
-  const std::string_view bytes = file->text();
+  const auto whole = file->bytes();
+  const std::string_view bytes =  // a raw file may begin with any bytes
+      options.raw ? std::string_view(reinterpret_cast<const char*>(whole.data()), whole.size())
+                  : file->text();
   if (!options.raw && hasPoints(bytes)) return loadPoints(bytes, options);
   const RangeFormat* format = options.raw ? nullptr : formatOf(bytes, nameIn(path));
   if (!options.raw && !format)

@@ -9,8 +9,9 @@
 
 #include "daemon/base/printable_text.h"
 #include "render/mesh/io/ply/ply_body.h"
-#include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/ply/ply_header.h"
+#include "render/mesh/io/ply_features.h"
+#include "render/mesh/origin.h"
 #include "render/range/io/words.h"
 
 namespace merlin::render::range {
@@ -31,9 +32,16 @@ struct Target {
 
 // The vertices in the order of the file, and which of them each pixel has.
 struct Points {
-  std::vector<float> xyz{};
+  std::vector<float> xyz{};  // relative to the origin
+  mesh::Origin origin{};     // of the file's coordinates, near the first vertex
   std::vector<Plane> planes{};
   std::vector<std::uint32_t> of_pixel{};
+
+  // A vertex in the file's coordinates.
+  std::array<double, 3> at(std::uint32_t vertex) const {
+    const float* p = &xyz[3 * std::size_t{vertex}];
+    return {p[0] + origin[0], p[1] + origin[1], p[2] + origin[2]};
+  }
 };
 
 struct Size {
@@ -167,8 +175,11 @@ Result<Ok> readVertices(const ply::Element& element, ply::Body& body, Points& po
         points.planes[to.plane].values[to.dimension * i + to.offset] =
             static_cast<float>(values[k] * to.factor);
     }
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      points.xyz[3 * i + axis] = static_cast<float>(values[layout->axis[axis]]);
+    const auto& axis = layout->axis;
+    const std::array<double, 3> at = {values[axis[0]], values[axis[1]], values[axis[2]]};
+    if (i == 0) points.origin = mesh::originNear(at);
+    for (std::size_t k = 0; k < 3; ++k)
+      points.xyz[3 * i + k] = static_cast<float>(at[k] - points.origin[k]);
   }
   return Ok{};
 }
@@ -249,8 +260,7 @@ bool isSeenFromTheOrigin(const Points& points, const Size& size) {
   for (std::size_t p = 0; p + 1 < pixels; p += stride) {
     const std::uint32_t i = points.of_pixel[p], k = points.of_pixel[p + 1];
     if ((p + 1) % size.width == 0 || i == kNoVertex || k == kNoVertex) continue;
-    const float *f = &points.xyz[3 * std::size_t{i}], *g = &points.xyz[3 * std::size_t{k}];
-    const std::array<double, 3> a = {f[0], f[1], f[2]}, b = {g[0], g[1], g[2]};
+    const std::array<double, 3> a = points.at(i), b = points.at(k);
     const double cross =
         std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
     const double angle = std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
@@ -263,7 +273,9 @@ bool isSeenFromTheOrigin(const Points& points, const Size& size) {
 }
 
 // A point ten times as far from the middle of the points, along z, as the farthest of them.
-std::array<double, 3> distantPoint(const std::vector<float>& xyz) {
+std::array<double, 3> distantPoint(const Points& points) {
+  const std::vector<float>& xyz = points.xyz;
+  const mesh::Origin& o = points.origin;
   std::array<double, 3> low = {1e30, 1e30, 1e30}, high = {-1e30, -1e30, -1e30};
   for (std::size_t i = 0; i < xyz.size(); ++i) {
     if (!(std::abs(xyz[i]) <= kFarthest)) continue;
@@ -272,7 +284,8 @@ std::array<double, 3> distantPoint(const std::vector<float>& xyz) {
   }
   if (!(low[0] <= high[0] && low[1] <= high[1] && low[2] <= high[2])) return {0, 0, 1};
   const double diagonal = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
-  return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + 10 * diagonal};
+  return {o[0] + (low[0] + high[0]) / 2, o[1] + (low[1] + high[1]) / 2,
+          o[2] + high[2] + 10 * diagonal};
 }
 
 // The vertices as ranges and rays from `viewpoint`.
@@ -284,7 +297,7 @@ void placePoints(const Points& points, const std::array<double, 3>& viewpoint, R
   g.rays.assign(3 * image.pixels(), kNoReturn);
   for (std::size_t p = 0; p < image.pixels(); ++p) {
     if (points.of_pixel[p] == kNoVertex) continue;
-    const float* at = &points.xyz[3 * std::size_t{points.of_pixel[p]}];
+    const std::array<double, 3> at = points.at(points.of_pixel[p]);
     const std::array<double, 3> d = {at[0] - viewpoint[0], at[1] - viewpoint[1],
                                      at[2] - viewpoint[2]};
     const double r = std::hypot(d[0], d[1], d[2]);
@@ -331,8 +344,7 @@ Result<RangeGrid> parseRangeGrid(std::string_view bytes) {
   grid.image.width = size->width;
   grid.image.height = size->height;
   const bool from_origin = isSeenFromTheOrigin(*points, *size);
-  placePoints(*points, from_origin ? std::array<double, 3>{} : distantPoint(points->xyz),
-              grid.image);
+  placePoints(*points, from_origin ? std::array<double, 3>{} : distantPoint(*points), grid.image);
   grid.notes.push_back(
       fmt::format("the scanner's place is not in the file; its grid is that of a scanner {}",
                   from_origin ? "at the origin" : "far away in the direction of z"));

@@ -68,7 +68,9 @@ std::uint64_t bytesIn(const Mesh& mesh) {
 
 class Document {
  public:
-  explicit Document(const Mesh& mesh) : mesh_(mesh) {
+  // `origin`: becomes the node's translation.
+  Document(const Mesh& mesh, const Origin& origin) : mesh_(mesh) {
+    if (origin != Origin{}) node_["translation"] = origin;
     const Box box = boundingBox(mesh.positions);
     Json& position = add("POSITION", 3);
     position["min"] = box.low;
@@ -99,7 +101,7 @@ class Document {
     Json document = {{"asset", {{"version", "2.0"}, {"generator", "MERLIN"}}},
                      {"scene", 0},
                      {"scenes", {{{"nodes", {0}}}}},
-                     {"nodes", {{{"mesh", 0}}}},
+                     {"nodes", Json::array({node_})},
                      {"meshes", {{{"primitives", {primitive}}}}},
                      {"materials", {{{"pbrMetallicRoughness", matt}, {"doubleSided", true}}}},
                      {"buffers", {buffer}},
@@ -133,6 +135,7 @@ class Document {
 
   const Mesh& mesh_;
   std::uint64_t bytes_ = 0;
+  Json node_ = {{"mesh", 0}};
   Json attributes_ = Json::object(), views_ = Json::array(), accessors_ = Json::array();
 };
 
@@ -166,29 +169,29 @@ bool writeBuffer(const Mesh& mesh, const WriteBytes& bytes) {
   return put();
 }
 
-std::string jsonChunk(const Mesh& mesh) {
-  std::string json = Document(mesh).text("");
+std::string jsonChunk(const Mesh& mesh, const Origin& origin) {
+  std::string json = Document(mesh, origin).text("");
   json.resize(padded(json.size()), ' ');
   return json;
 }
 
-std::uint64_t glbSize(const Mesh& mesh) {
-  return 12 + 8 + jsonChunk(mesh).size() + 8 + bytesIn(mesh);
+std::uint64_t glbSize(const Mesh& mesh, const Origin& origin) {
+  return 12 + 8 + jsonChunk(mesh, origin).size() + 8 + bytesIn(mesh);
 }
 
-Result<Ok> fitsGlb(const Mesh& mesh) {
-  const std::uint64_t size = glbSize(mesh);
+Result<Ok> fitsGlb(const Mesh& mesh, const Origin& origin) {
+  const std::uint64_t size = glbSize(mesh, origin);
   if (size <= 0xFFFFFFFF) return Ok{};
   return Error{
       Errc::kUnsupported,
       fmt::format("{} bytes, but a .glb file has at most 4 GiB; write .gltf or .ply", size)};
 }
 
-bool writeGlb(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
-  const std::string json = jsonChunk(mesh);
+bool writeGlb(const Mesh& mesh, const Origin& origin, const std::string&, const WriteBytes& bytes) {
+  const std::string json = jsonChunk(mesh, origin);
   std::string head = "glTF";
   appendLe32(head, 2);
-  appendLe32(head, static_cast<std::uint32_t>(glbSize(mesh)));
+  appendLe32(head, static_cast<std::uint32_t>(glbSize(mesh, origin)));
   appendLe32(head, static_cast<std::uint32_t>(json.size()));
   head += "JSON" + json;
   appendLe32(head, static_cast<std::uint32_t>(bytesIn(mesh)));
@@ -238,8 +241,9 @@ class Base64 {
   unsigned count_ = 0;
 };
 
-bool writeGltf(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
-  const std::string json = Document(mesh).text(kPayload);
+bool writeGltf(const Mesh& mesh, const Origin& origin, const std::string&,
+               const WriteBytes& bytes) {
+  const std::string json = Document(mesh, origin).text(kPayload);
   // Searched for with its quotes, which no feature name can contain: quotes in names are escaped.
   const std::string uri = fmt::format("\"uri\":\"{}", kPayload);
   const std::size_t cut = json.find(uri) + uri.size();
@@ -252,7 +256,7 @@ bool writeGltf(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
 
 }  // namespace
 
-const MeshWriter kGlbWriter{"glb", carries, writeGlb, PicturePlace::kInside, fitsGlb};
-const MeshWriter kGltfWriter{"gltf", carries, writeGltf, PicturePlace::kInside};
+const MeshWriter kGlbWriter{"glb", carries, writeGlb, PicturePlace::kInside, true, fitsGlb};
+const MeshWriter kGltfWriter{"gltf", carries, writeGltf, PicturePlace::kInside, true};
 
 }  // namespace merlin::render::mesh

@@ -19,7 +19,7 @@ bool carries(const Mesh& mesh, const Feature& f) {
   return isUsual(f) && !(f.name == "colour" && isTextured(mesh));
 }
 
-bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
+bool write(const Mesh& mesh, const Origin&, const std::string& name, const WriteBytes& bytes) {
   TextSink out(bytes);
   out.print("{}", kInventorHeader);
   printSeparator(out, mesh, isTextured(mesh) ? pictureName(mesh, name) : "");

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/printable_text.h"
+#include "render/mesh/io/colour_range.h"
 #include "render/mesh/io/text_lines.h"
+#include "render/mesh/polygon.h"
 
 namespace merlin::render::mesh {
 namespace {
@@ -46,6 +48,17 @@ struct MaxIndex {
 };
 
 constexpr std::size_t kFirstBlock = 4096;
+
+// Lines with geometry that is not read.
+struct LeftOut {
+  std::string_view keyword, what;
+};
+constexpr std::array<LeftOut, 6> kLeftOut = {{{"l", "lines"},
+                                              {"p", "points"},
+                                              {"curv", "curves"},
+                                              {"curv2", "curves"},
+                                              {"surf", "surfaces"},
+                                              {"call", "other files"}}};
 
 class ObjParser {
  public:
@@ -108,6 +121,8 @@ class ObjParser {
     if (keyword == "o" || keyword == "g") part_.reset();
     if (keyword == "usemtl") material_ = materialOf(std::string(trimmed(line)));
     if (keyword == "mtllib") surface_.libraries.emplace_back(trimmed(line));
+    for (std::size_t i = 0; i < kLeftOut.size(); ++i)
+      left_out_[i] += keyword == kLeftOut[i].keyword;
     return Ok{};
   }
 
@@ -162,6 +177,7 @@ class ObjParser {
       if (count >= 2) addTriangle({first, last, corner});
       last = corner;
     }
+    if (count > 3) fans_.take(surface_.mesh, count);
     if (count >= 3) return Ok{};
     return Error{
         Errc::kMalformed,
@@ -217,8 +233,13 @@ class ObjParser {
 
   void finish() {
     Mesh& mesh = surface_.mesh;
+    fans_.cut(mesh, [this](const Fan& fan, std::span<const std::uint32_t> order) {
+      reorder(fan, order, surface_.corner_texcoord);
+    });
+    makeFractions(colours_);
     if (!colours_.empty() && colours_.size() == mesh.positions.size())
       mesh.features.push_back({"colour", 3, std::move(colours_)});
+    noteLosses();
     surface_.parts = part_numbers_.size();
     if (surface_.parts < 2) surface_.triangle_part = {};
     if (textured_ || surface_.materials.size() > 1) return;
@@ -226,10 +247,22 @@ class ObjParser {
     surface_.triangle_material = {};
   }
 
+  void noteLosses() {
+    std::string list;
+    for (std::size_t i = 0; i < kLeftOut.size(); ++i) {
+      if (left_out_[i] > 0)
+        list += fmt::format("{}{} {} ({})", list.empty() ? "" : ", ", left_out_[i],
+                            kLeftOut[i].what, kLeftOut[i].keyword);
+    }
+    if (!list.empty()) surface_.notes.push_back("left out: " + list);
+  }
+
   std::string_view left_;
   std::string joined_;  // a line that continues on others
   std::size_t line_ = 0;
   ObjSurface surface_;
+  Fans fans_;
+  std::array<std::size_t, kLeftOut.size()> left_out_{};  // lines of each kind
   std::vector<float> colours_;
   std::unordered_map<std::string, std::uint32_t> material_numbers_{{"", 0}};
   std::uint32_t material_ = 0;

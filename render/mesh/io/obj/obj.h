@@ -29,10 +29,12 @@ struct ObjSurface {
   // triangles; empty if there is one.
   std::vector<std::uint32_t> triangle_part;
   std::size_t parts = 0;
+  std::vector<std::string> notes;  // what of the file is left out
 };
 
-// `content` is a whole file. Faces with more than three corners become triangle fans. The mesh is
-// neither validated nor tidied. Errors: kMalformed, with the line but without the file's name.
+// `content` is a whole file. Faces with more than three corners become triangles (polygon.h). The
+// mesh is neither validated nor tidied. Errors: kMalformed, with the line but without the file's
+// name.
 Result<ObjSurface> parseObj(std::string_view content);
 
 }  // namespace merlin::render::mesh

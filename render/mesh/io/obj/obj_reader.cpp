@@ -21,6 +21,7 @@ Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   if (const auto valid = validate(surface->mesh); !valid) return valid.error();
   LoadedMesh loaded;
   loaded.origin = surface->origin;
+  loaded.notes = std::move(surface->notes);
   std::vector<ObjMaterial> materials(surface->materials.size());
   if (!surface->corner_texcoord.empty()) {
     materials = readMaterials(surface->materials, surface->libraries, folder, loaded.notes);

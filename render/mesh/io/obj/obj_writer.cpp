@@ -12,7 +12,17 @@ std::string material(const Mesh& mesh, const std::string& name) {
   return "# written by MERLIN\nnewmtl textured\nKd 1 1 1\nmap_Kd " + pictureName(mesh, name) + "\n";
 }
 
-bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
+// Numbers are printed with the fewest digits that give the same double, or the same float where
+// there is no origin.
+void printPosition(TextSink& out, const float* p, const Origin& origin) {
+  if (origin == Origin{})
+    out.print("v {} {} {}", p[0], p[1], p[2]);
+  else
+    out.print("v {} {} {}", p[0] + origin[0], p[1] + origin[1], p[2] + origin[2]);
+}
+
+bool write(const Mesh& mesh, const Origin& origin, const std::string& name,
+           const WriteBytes& bytes) {
   const Feature* normal = findOf(mesh, "normal", 3);
   const Feature* colour = findOf(mesh, "colour", 3);
   const Feature* texcoord = findOf(mesh, "texcoord", 2);
@@ -20,8 +30,7 @@ bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
   out.print("# written by MERLIN\n");
   if (isTextured(mesh)) out.print("mtllib {}.mtl\nusemtl textured\n", name);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
-    const float* p = &mesh.positions[3 * v];
-    out.print("v {} {} {}", p[0], p[1], p[2]);
+    printPosition(out, &mesh.positions[3 * v], origin);
     if (colour) {
       const float* c = &colour->values[3 * v];
       out.print(" {} {} {}", c[0], c[1], c[2]);
@@ -50,6 +59,7 @@ bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
 
 }  // namespace
 
-const MeshWriter kObjWriter{"obj", carries, write, PicturePlace::kCompanionFile, nullptr, material};
+const MeshWriter kObjWriter{"obj", carries, write,   PicturePlace::kCompanionFile,
+                            true,  nullptr, material};
 
 }  // namespace merlin::render::mesh

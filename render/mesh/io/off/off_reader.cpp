@@ -1,11 +1,14 @@
 // Reads ASCII OFF files: a row of the table of readers.
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "render/mesh/io/colour_range.h"
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/text_lines.h"
+#include "render/mesh/polygon.h"
 
 namespace merlin::render::mesh {
 namespace {
@@ -64,14 +67,22 @@ class OffFile {
     for (std::size_t i = 0; i < faces_; ++i) {
       if (const auto added = addFace(nextLine(), i); !added) return added;
     }
+    fans_.cut(mesh_);
     return Ok{};
   }
 
   Mesh take() {
+    makeFractions(colour_.values);
     for (Feature* f : {&normal_, &colour_, &texcoord_}) {
       if (!f->values.empty()) mesh_.features.push_back(std::move(*f));
     }
     return std::move(mesh_);
+  }
+  const Origin& origin() const { return origin_; }
+  // What of the file is left out.
+  std::vector<std::string> notes() const {
+    if (coloured_faces_ == 0) return {};
+    return {fmt::format("left out: the colours of {} faces", coloured_faces_)};
   }
   MeshSize size() const {
     return {vertices_, faces_, std::size_t{form_.colour ? 3U : 0U} + (form_.texcoord ? 2U : 0U)};
@@ -88,17 +99,28 @@ class OffFile {
     return {};
   }
 
-  bool take(std::string_view& line, std::size_t count, std::vector<float>& to, float full = 1) {
+  bool take(std::string_view& line, std::size_t count, std::vector<float>& to) {
     for (std::size_t k = 0; k < count; ++k) {
       float value = 0;
       if (!readNumber(takeWord(line), value)) return false;
-      to.push_back(value / full);
+      to.push_back(value);
     }
     return true;
   }
 
-  // Reads a colour of three or four numbers: integers 0 to 255, or fractions 0 to 1. The first
-  // vertex decides which of these the file has.
+  // Coordinates stay doubles until they are relative to an origin near the first vertex.
+  bool takePosition(std::string_view& line) {
+    std::array<double, 3> p{};
+    for (double& x : p) {
+      if (!readNumber(takeWord(line), x)) return false;
+    }
+    if (mesh_.positions.empty()) origin_ = originNear(p);
+    for (std::size_t k = 0; k < 3; ++k)
+      mesh_.positions.push_back(static_cast<float>(p[k] - origin_[k]));
+    return true;
+  }
+
+  // Reads a colour of three or four numbers: integers 0 to 255, or fractions 0 to 1.
   bool takeColour(std::string_view& line) {
     if (colour_.values.empty()) {
       std::string_view ahead = line;
@@ -106,29 +128,24 @@ class OffFile {
       for (; !takeWord(ahead).empty(); ++words) {
       }
       has_alpha_ = words == (form_.texcoord ? 6U : 4U);
-      ahead = line;
-      colour_full_ = 255;
-      for (int k = 0; k < 3; ++k) {
-        if (takeWord(ahead).find_first_of(".eE") != std::string_view::npos) colour_full_ = 1;
-      }
     }
-    if (!take(line, 3, colour_.values, colour_full_)) return false;
+    if (!take(line, 3, colour_.values)) return false;
     return !has_alpha_ || !takeWord(line).empty();
   }
 
   Result<Ok> addVertex(std::string_view line, std::size_t i) {
     if (line.empty())
       return malformed(line_, fmt::format("the file ends after {} of {} vertices", i, vertices_));
-    const bool whole =
-        take(line, 3, mesh_.positions) && (!form_.normal || take(line, 3, normal_.values)) &&
-        (!form_.colour || takeColour(line)) && (!form_.texcoord || take(line, 2, texcoord_.values));
+    const bool whole = takePosition(line) && (!form_.normal || take(line, 3, normal_.values)) &&
+                       (!form_.colour || takeColour(line)) &&
+                       (!form_.texcoord || take(line, 2, texcoord_.values));
     if (!whole)
       return malformed(line_, fmt::format("vertex {}: a number is missing or malformed", i));
     return Ok{};
   }
 
-  // Adds a polygon as a triangle fan. Numbers after the corners are the face's colour, which is
-  // ignored.
+  // Adds a polygon as a triangle fan, which body() cuts anew if it is not convex. Numbers after the
+  // corners are the face's colour, which is ignored.
   Result<Ok> addFace(std::string_view line, std::size_t i) {
     if (line.empty())
       return malformed(line_, fmt::format("the file ends after {} of {} faces", i, faces_));
@@ -147,6 +164,8 @@ class OffFile {
       if (k >= 2) mesh_.triangles.insert(mesh_.triangles.end(), {first, before, v});
       before = v;
     }
+    if (corners > 3) fans_.take(mesh_, corners);
+    coloured_faces_ += !line.empty();  // it ends with a word
     return Ok{};
   }
 
@@ -155,8 +174,10 @@ class OffFile {
   Form form_;
   std::size_t vertices_ = 0, faces_ = 0;
   bool has_alpha_ = false;
-  float colour_full_ = 255;
+  std::size_t coloured_faces_ = 0;
   Mesh mesh_;
+  Fans fans_;
+  Origin origin_{};  // of the positions
   Feature normal_{"normal", 3, {}}, colour_{"colour", 3, {}}, texcoord_{"texcoord", 2, {}};
 };
 
@@ -166,6 +187,8 @@ Result<LoadedMesh> read(std::string_view content, const std::string&) {
   if (const auto body = file.body(); !body) return body.error();
   LoadedMesh loaded;
   loaded.mesh = file.take();
+  loaded.origin = file.origin();
+  loaded.notes = file.notes();
   return loaded;
 }
 
@@ -187,7 +210,7 @@ bool isOff(std::string_view content) {
 
 const MeshReader kOffReader = {"off",
                                "ASCII: normals, colours and texture coordinates; polygons "
-                               "become triangle fans",
+                               "become triangles",
                                read, size, isOff};
 
 }  // namespace merlin::render::mesh

@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/child_work.h"
+#include "daemon/base/words.h"
 #include "render/mesh/io/openmesh/collector.h"
+#include "render/mesh/io/openmesh/stl_text.h"
 #include "render/mesh/io/reader.h"
 
 namespace merlin::render::mesh {
@@ -183,24 +185,34 @@ bool isBinaryStl(std::string_view content) {
          content.size() == kStlHeader + kStlTriangle * littleEndian(content, 80);
 }
 
-std::size_t countOf(std::string_view text, std::string_view word) {
-  std::size_t n = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string_view::npos; at += word.size())
-    ++n;
-  return n;
+// What is lost of a binary file: the two bytes behind each triangle, which some programs fill.
+std::vector<std::string> lossesOf(std::string_view content) {
+  std::size_t filled = 0;
+  for (std::size_t at = kStlHeader + kStlTriangle; at <= content.size(); at += kStlTriangle)
+    filled += content[at - 2] != 0 || content[at - 1] != 0;
+  if (filled == 0) return {};
+  return {
+      fmt::format("left out: the attributes of {} triangles, which may be their colours", filled)};
+}
+
+Result<LoadedMesh> readBinaryStl(std::string_view content) {
+  auto loaded = readBy(OpenMesh::IO::STLReader(), content, {0, littleEndian(content, 80)},
+                       Options(Options::Binary));
+  if (loaded) loaded->notes = lossesOf(content);
+  return loaded;
 }
 
 // OpenMesh merges corners at the same position, which STL repeats in each triangle.
 Result<LoadedMesh> readStl(std::string_view content, const std::string&) {
-  if (isBinaryStl(content))
-    return readBy(OpenMesh::IO::STLReader(), content, {0, littleEndian(content, 80)},
-                  Options(Options::Binary));
-  if (!content.starts_with("solid"))
+  if (isBinaryStl(content)) return readBinaryStl(content);
+  if (lowerCase(content.substr(0, 5)) != "solid")
     return malformed(
         "is neither an ASCII STL (it does not begin with solid) nor a complete binary one "
         "(its size does not match its number of triangles)");
-  const std::string text = std::string(content) + "\n";
-  return readBy(OpenMesh::IO::STLReader(), text, {0, countOf(content, "endfacet")}, Options());
+  const auto facets = checkStlText(content);
+  if (!facets) return facets.error();
+  const std::string text = lowerCase(content) + "\n";
+  return readBy(OpenMesh::IO::STLReader(), text, {0, *facets}, Options());
 }
 
 std::optional<MeshFileSize> stlSize(std::string_view content, const std::string&) {
@@ -216,10 +228,7 @@ bool isOm(std::string_view content) {
          static_cast<unsigned char>(content[3]) < 0x80;
 }
 
-bool isStl(std::string_view content) {
-  return isBinaryStl(content) || (content.starts_with("solid") &&
-                                  content.substr(0, 4096).find("facet") != std::string_view::npos);
-}
+bool isStl(std::string_view content) { return isBinaryStl(content) || isStlText(content); }
 
 }  // namespace
 

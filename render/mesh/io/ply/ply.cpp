@@ -9,9 +9,12 @@
 #include <fmt/format.h>
 
 #include "daemon/base/printable_text.h"
+#include "render/mesh/io/colour_range.h"
 #include "render/mesh/io/ply/ply_body.h"
-#include "render/mesh/io/ply/ply_features.h"
 #include "render/mesh/io/ply/ply_header.h"
+#include "render/mesh/io/ply/ply_rows.h"
+#include "render/mesh/io/ply_features.h"
+#include "render/mesh/polygon.h"
 
 namespace merlin::render::mesh::ply {
 namespace {
@@ -102,7 +105,8 @@ class Reader {
   // textures  null: the faces' properties of textures are left out
   Reader(std::string_view bytes, Header header, FaceTextures* textures)
       : header_(std::move(header)),
-        body_(bytes.substr(header_.size), header_.form),
+        text_(bytes.substr(header_.size)),
+        body_(text_, header_.form),
         textures_(textures) {}
 
   Result<LoadedMesh> read() {
@@ -110,9 +114,14 @@ class Reader {
       const auto done = e.name == "vertex" ? readVertices(e)
                         : e.name == "face" ? readFaces(e)
                                            : skip(e);
-      if (!done) return done.error();
+      if (!done) return explained(done.error());
     }
+    if (const std::string row = body_.rest().empty() ? "" : longRowOfText(); !row.empty())
+      return Error{Errc::kMalformed, row};
+    if (strips_ && mesh().triangles.empty())
+      return Error{Errc::kUnsupported, "its triangles are strips (tristrips), which are not read"};
     completeTextures();
+    cutFans();
     mesh().features = grouped(std::move(mesh().features), mesh().vertexCount());
     noteLosses();
     return std::move(loaded_);
@@ -120,6 +129,15 @@ class Reader {
 
  private:
   Mesh& mesh() { return loaded_.mesh; }
+
+  // In ASCII, a row with too many numbers is found where they make no sense any more, if at all.
+  std::string longRowOfText() const {
+    return header_.form == Form::kAscii ? longRow(text_, header_) : std::string();
+  }
+  Error explained(const Error& error) const {
+    const std::string row = longRowOfText();
+    return row.empty() ? error : Error{Errc::kMalformed, row};
+  }
 
   // Refuses a count of elements for which the rest of the file is too short, before any memory is
   // allocated.
@@ -144,6 +162,7 @@ class Reader {
 
   Result<Ok> skip(const Element& e) {
     leaveOut(e.name, "");
+    strips_ = strips_ || (e.name == "tristrips" && e.count > 0);
     if (e.properties.empty()) return Ok{};
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (const Property& p : e.properties) {
@@ -245,6 +264,7 @@ class Reader {
         (*c.values)[row * c.stride + c.offset] = kept * c.scale;
       }
     }
+    if (Feature* const colour = mesh().find("colour")) makeFractions(colour->values);
     return Ok{};
   }
 
@@ -363,6 +383,7 @@ class Reader {
       if (i >= 2) mesh().triangles.insert(mesh().triangles.end(), {first, last, v});
       last = v;
     }
+    if (*count > 3) fans_.take(mesh(), *count);
     return Ok{};
   }
 
@@ -371,6 +392,13 @@ class Reader {
     if (!textures_) return;
     if (!textures_->numbers.empty()) textures_->numbers.resize(mesh().triangleCount(), -1);
     if (!textures_->corners.empty()) textures_->corners.resize(mesh().triangles.size(), kNowhere);
+  }
+
+  // Faces that are not convex do not stay fans, and the coordinates at their corners move along.
+  void cutFans() {
+    fans_.cut(mesh(), [this](const Fan& fan, std::span<const std::uint32_t> order) {
+      if (textures_ && !textures_->corners.empty()) reorder(fan, order, textures_->corners);
+    });
   }
 
   void leaveOut(const std::string& name, std::string_view why) {
@@ -389,11 +417,14 @@ class Reader {
   }
 
   Header header_;
+  std::string_view text_;  // all of the body
   Body body_;
   LoadedMesh loaded_;
+  Fans fans_;
   FaceTextures* textures_;
   std::vector<float> face_texcoords_;  // of this face
   double face_number_ = -1;
+  bool strips_ = false;
   std::string left_out_, left_out_more_;  // names of properties and elements
   std::size_t left_out_count_ = 0, rounded_ = 0;
 };

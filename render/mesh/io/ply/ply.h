@@ -25,10 +25,10 @@ struct FaceTextures {
   std::vector<std::int64_t> numbers;
 };
 
-// `bytes` is a whole file. Faces with more than three corners become triangle fans. The mesh is
-// neither validated nor tidied; coordinates that are doubles are relative to its origin. Errors:
-// kMalformed, kUnsupported, without the file's name. textures  receives what the file says of
-// texture images; null: that is left out
+// `bytes` is a whole file. Faces with more than three corners become triangles (polygon.h). The
+// mesh is neither validated nor tidied; coordinates that are doubles are relative to its origin.
+// Errors: kMalformed, kUnsupported, without the file's name. textures  receives what the file says
+// of texture images; null: that is left out
 Result<LoadedMesh> parse(std::string_view bytes, FaceTextures* textures = nullptr);
 
 }  // namespace merlin::render::mesh::ply

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/printable_text.h"
-#include "render/mesh/io/ply/ply_features.h"
+#include "render/mesh/io/ply_features.h"
 #include "render/mesh/io/text_lines.h"
 
 namespace merlin::render::mesh::ply {

@@ -1,5 +1,7 @@
-// PLY, binary little-endian: colours as bytes, labels as integers, all else as floats.
+// PLY, binary little-endian: colours as bytes, labels as integers, coordinates with an origin as
+// doubles, all else as floats.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -7,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/bytes.h"
-#include "render/mesh/io/ply/ply_features.h"
+#include "render/mesh/io/ply_features.h"
 #include "render/mesh/io/writer.h"
 
 namespace merlin::render::mesh {
@@ -28,7 +30,7 @@ std::vector<std::string> propertiesOf(const Feature& f) {
   return names;
 }
 
-enum class Form { kFloat, kByte, kInteger };
+enum class Form { kFloat, kByte, kInteger, kDouble };
 
 // Colours are written as bytes, labels as integers if all their values are whole numbers.
 Form formOf(const Feature& f) {
@@ -40,9 +42,20 @@ Form formOf(const Feature& f) {
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;  // bytes that are written at once
 
-std::size_t sizeOf(Form form) { return form == Form::kByte ? 1 : 4; }
+std::size_t sizeOf(Form form) {
+  constexpr std::size_t kSizes[] = {4, 1, 4, 8};
+  return kSizes[static_cast<std::size_t>(form)];
+}
 
-void store(std::uint8_t* p, float value, Form form) {
+const char* nameOf(Form form) {
+  constexpr const char* kNames[] = {"float", "uchar", "int", "double"};
+  return kNames[static_cast<std::size_t>(form)];
+}
+
+// Coordinates relative to an origin do not fit into floats without it.
+Form formOf(const Origin& origin) { return origin == Origin{} ? Form::kFloat : Form::kDouble; }
+
+void store(std::uint8_t* p, float value, Form form, double origin) {
   switch (form) {
     case Form::kFloat: storeLeFloat(p, value); return;
     case Form::kByte: {
@@ -53,6 +66,12 @@ void store(std::uint8_t* p, float value, Form form) {
     case Form::kInteger:
       storeLe32(p, static_cast<std::uint32_t>(static_cast<std::int32_t>(value)));
       return;
+    case Form::kDouble: {
+      const auto bits = std::bit_cast<std::uint64_t>(value + origin);
+      storeLe32(p, static_cast<std::uint32_t>(bits & 0xFFFFFFFF));
+      storeLe32(p + 4, static_cast<std::uint32_t>(bits >> 32));
+      return;
+    }
   }
 }
 
@@ -61,6 +80,7 @@ struct ValueTable {
   const float* values;
   std::size_t dimension, offset;
   Form form;
+  Origin origin{};  // is added to doubles; of dimension 3
 };
 
 // Writes `rows` rows of `size` bytes, each filled by `fill`, in blocks.
@@ -76,9 +96,10 @@ bool writeRows(const WriteBytes& bytes, std::size_t rows, std::size_t size, cons
   return true;
 }
 
-bool writeVertices(const Mesh& mesh, const std::vector<Form>& forms, const WriteBytes& bytes) {
-  std::vector<ValueTable> columns = {{mesh.positions.data(), 3, 0, Form::kFloat}};
-  std::size_t size = 12;
+bool writeVertices(const Mesh& mesh, const Origin& origin, const std::vector<Form>& forms,
+                   const WriteBytes& bytes) {
+  std::vector<ValueTable> columns = {{mesh.positions.data(), 3, 0, formOf(origin), origin}};
+  std::size_t size = 3 * sizeOf(formOf(origin));
   for (std::size_t f = 0; f < forms.size(); ++f) {
     const Feature& feature = mesh.features[f];
     columns.push_back({feature.values.data(), feature.dimension, size, forms[f]});
@@ -89,7 +110,8 @@ bool writeVertices(const Mesh& mesh, const std::vector<Form>& forms, const Write
       const std::size_t step = sizeOf(column.form);
       const float* values = column.values + v * column.dimension;
       for (std::size_t k = 0; k < column.dimension; ++k)
-        store(row + column.offset + k * step, values[k], column.form);
+        store(row + column.offset + k * step, values[k], column.form,
+              column.form == Form::kDouble ? column.origin[k] : 0);
     }
   });
 }
@@ -102,16 +124,16 @@ bool writeTriangles(const Mesh& mesh, const WriteBytes& bytes) {
 }
 
 // The texture image is named in a comment, as MeshLab does it.
-std::string headerFor(const Mesh& mesh, const std::string& name, const std::vector<Form>& forms) {
-  constexpr const char* kTypes[] = {"float", "uchar", "int"};
+std::string headerFor(const Mesh& mesh, const Origin& origin, const std::string& name,
+                      const std::vector<Form>& forms) {
   std::string text = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment written by MERLIN\n{}element vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\n",
+      "ply\nformat binary_little_endian 1.0\ncomment written by MERLIN\n{0}element vertex {1}\n"
+      "property {2} x\nproperty {2} y\nproperty {2} z\n",
       isTextured(mesh) ? "comment TextureFile " + pictureName(mesh, name) + "\n" : "",
-      mesh.vertexCount());
+      mesh.vertexCount(), nameOf(formOf(origin)));
   for (std::size_t f = 0; f < forms.size(); ++f) {
     for (const std::string& property : propertiesOf(mesh.features[f]))
-      text += fmt::format("property {} {}\n", kTypes[static_cast<std::size_t>(forms[f])], property);
+      text += fmt::format("property {} {}\n", nameOf(forms[f]), property);
   }
   return text + fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                             mesh.triangleCount());
@@ -119,17 +141,18 @@ std::string headerFor(const Mesh& mesh, const std::string& name, const std::vect
 
 bool carries(const Mesh&, const Feature&) { return true; }
 
-bool write(const Mesh& mesh, const std::string& name, const WriteBytes& bytes) {
+bool write(const Mesh& mesh, const Origin& origin, const std::string& name,
+           const WriteBytes& bytes) {
   std::vector<Form> forms;
   for (const Feature& f : mesh.features) forms.push_back(formOf(f));
-  const std::string header = headerFor(mesh, name, forms);
-  return bytes(std::as_bytes(std::span(header))) && writeVertices(mesh, forms, bytes) &&
+  const std::string header = headerFor(mesh, origin, name, forms);
+  return bytes(std::as_bytes(std::span(header))) && writeVertices(mesh, origin, forms, bytes) &&
          writeTriangles(mesh, bytes);
 }
 
 }  // namespace
 }  // namespace ply
 
-const MeshWriter kPlyWriter{"ply", ply::carries, ply::write, PicturePlace::kCompanionFile};
+const MeshWriter kPlyWriter{"ply", ply::carries, ply::write, PicturePlace::kCompanionFile, true};
 
 }  // namespace merlin::render::mesh

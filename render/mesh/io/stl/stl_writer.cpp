@@ -9,7 +9,7 @@ namespace {
 
 bool carriesNothing(const Mesh&, const Feature&) { return false; }
 
-bool write(const Mesh& mesh, const std::string&, const WriteBytes& bytes) {
+bool write(const Mesh& mesh, const Origin&, const std::string&, const WriteBytes& bytes) {
   std::string row = "written by MERLIN";  // must not begin with "solid", as ASCII files do
   row.resize(80, ' ');
   appendLe32(row, static_cast<std::uint32_t>(mesh.triangleCount()));
