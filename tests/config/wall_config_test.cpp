@@ -78,6 +78,9 @@ TEST(WallConfig, WhatIsWrongWithARoomIsSaidOnce) {
   EXPECT_EQ(wallIs(R"("room": {"preset": {"name": "cave"}})"),
             "f.json:1: /wall/room/preset/name is the string \"cave\"; allowed is one of none, "
             "flat, three_160, three_120, six, hexagon\n");
+  EXPECT_EQ(wallIs(R"("room": {"preset": {"name": 3}})"),
+            "f.json:1: /wall/room/preset/name is the number 3; allowed is one of \"none\", "
+            "\"flat\", \"three_160\", \"three_120\", \"six\", \"hexagon\"\n");
 }
 
 // Three projectors on a hinged screen. The measured figures are rounded, so they are symmetric only
@@ -156,6 +159,13 @@ TEST(WallConfig, StereoIsCheckedWithTheRestOfTheWall) {
                    R"("stereo": {"head": {"station": 1}})"),
             "f.json:2: /wall/stereo/head/station is 1, the station that is worn on the hand "
             "(/hands/0/station); the head needs its own\n");
+}
+
+TEST(WallConfig, AnOverlayNeedsAnOperatorsTile) {
+  EXPECT_EQ(wallIs(R"("operator": {"overlay": true})"), "");
+  EXPECT_EQ(wallIs(R"("operator": {"overlay": true}, "tiles": {"frame_width": 640,
+                       "frame_height": 480, "tiles": [{"name": "a"}]})"),
+            "f.json:1: /wall/operator/overlay needs a tile of kind operator; the wall has none\n");
 }
 
 TEST(WallConfig, APanelNeedsAnOperatorsTileWithRoom) {

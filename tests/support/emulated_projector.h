@@ -28,6 +28,9 @@ class EmulatedProjector {
   std::string errors = "000000", lamps = "1234 1", name = "Epsilon";
   std::string inputs;  // each input that was selected
 
+  // It has warmed up, or cooled down, by now.
+  void endPhase() { phase_until_ = {}; }
+
   // The first bytes of a connection.
   std::string greet() {
     authenticated_ = password_.empty();

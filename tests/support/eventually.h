@@ -8,7 +8,7 @@
 namespace merlin::test {
 
 template <typename Condition>
-bool eventually(Condition condition, std::chrono::seconds deadline = std::chrono::seconds(30)) {
+bool eventually(Condition condition, std::chrono::seconds deadline = std::chrono::seconds(120)) {
   const auto end = std::chrono::steady_clock::now() + deadline;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;

@@ -43,7 +43,7 @@ class VncClient {
   std::string name() const { return client_->desktopName; }
   int updates() const { return updates_; }
 
-  // Takes what the server sends until `condition` is true; false after 30 s, or if it closes.
+  // Takes what the server sends until `condition` is true; false after 120 s, or if it closes.
   bool until(const std::function<bool()>& condition) {
     bool open = true;
     const auto take = [&] {

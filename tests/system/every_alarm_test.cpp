@@ -208,7 +208,7 @@ TEST_P(EveryAlarm, IsToldToTheProgramThatIsForIt) {
     ASSERT_TRUE(stage_.merlind->healthIs("ball", HealthState::kOk));
   }
   startAlarms();
-  ASSERT_TRUE(followsRole()) << stage_.alarms->output();
+  ASSERT_TRUE(followsRole()) << stage_.alarms->output() << stage_.merlind->process().output();
   EXPECT_TRUE(isTold(row)) << readText(stage_.file("told")) << stage_.merlind->process().output();
   for (const Json& event : told(stage_.file("told"))) {
     EXPECT_EQ(event["kind"], row.kind);

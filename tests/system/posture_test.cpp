@@ -71,6 +71,7 @@ TEST(PostureCollect, TakesHandsOfARecording) {
        .emulate = false,
        .also = onlyDevice(deviceEntry("glove", "cyberglove", "replay:" + dir / "glove.bytes"))});
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs("glove", HealthState::kOk)) << merlind.process().output();
   const std::string file = dir / "hands.csv";
   const Outcome open = run(collect(merlind, "open", file));
   ASSERT_EQ(open.status, 0) << open.output << merlind.process().output();

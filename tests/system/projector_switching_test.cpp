@@ -113,13 +113,14 @@ TEST_F(ProjectorSwitching, ThePanelOfAWallInAnotherProcessSwitchesThem) {
 }
 
 TEST_F(ProjectorSwitching, OneThatWarmsUpIsNotSwitchedOffBeforeItIsOn) {
-  left_.set([](auto& p) { p.warm_up = std::chrono::seconds(3); });
+  left_.set([](auto& p) { p.warm_up = std::chrono::hours(1); });
   start();
   EXPECT_TRUE(is("left", "off"));
   merlin("projector_on");
   EXPECT_TRUE(eventually([&] { return projector("left").value("power", "") == "warming"; }));
   const Outcome off = merlin("projector_off");
   EXPECT_EQ(off.status, 0) << off.output;
+  left_.set([](auto& p) { p.endPhase(); });
   EXPECT_TRUE(is("left", "off"));
   left_.vanish();
   EXPECT_EQ(left_.projector.log, "10")

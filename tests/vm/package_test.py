@@ -250,7 +250,7 @@ class Package(unittest.TestCase):
     def test_4c_a_reload_that_needs_a_start_keeps_process_and_picture(self):
         starts = lambda: int(MACHINE.run("journalctl -u merlin-wall -o cat --no-pager | grep -c ready"))
         before, count, devices = pid("merlin-wall"), starts(), pid("merlin-devices")
-        MACHINE.run("mkdir -p /etc/merlin/conf.d; echo '{\"wall\": {\"snapshots_kept\": 999}}' "
+        MACHINE.run("mkdir -p /etc/merlin/conf.d; echo '{\"wall\": {\"snapshots\": \"/var/lib/merlin\"}}' "
                     ">/etc/merlin/conf.d/90-test.json; systemctl reload merlin-devices merlin-wall || "
                     "{ journalctl -u 'merlin-*' --no-pager | tail -n 30; false; }")
         least, _ = shown_until(lambda: starts() > count)
