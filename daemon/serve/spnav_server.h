@@ -58,7 +58,7 @@ class SpnavServer final : public net::Server {
   SpnavDevice device_;
   struct Ball {
     shm::DeviceSlots::Ball slots;
-    std::uint64_t seen;  // number of samples processed
+    std::uint64_t seen = 0;  // number of samples processed
   };
   std::vector<Ball> balls_;
   const shm::Channel<BallSample>* last_ = nullptr;  // of the ball that sent the last sample

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
@@ -112,7 +113,9 @@ Target targetOf(const ply::Property& property, Points& points) {
 bool skipList(ply::Body& body, const ply::Property& list) {
   double count = 0, value = 0;
   if (!body.next(list.count_type, count) || !(count >= 0)) return false;
-  for (double i = 0; i < count; ++i) {
+  constexpr double kMost = 1e18;  // more than any file has
+  const auto items = static_cast<std::uint64_t>(std::min(count, kMost));
+  for (std::uint64_t i = 0; i < items; ++i) {
     if (!body.next(list.type, value)) return false;
   }
   return true;

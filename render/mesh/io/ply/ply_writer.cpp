@@ -60,7 +60,8 @@ void store(std::uint8_t* p, float value, Form form, double origin) {
     case Form::kFloat: storeLeFloat(p, value); return;
     case Form::kByte: {
       const float level = std::clamp(value, 0.0F, 1.0F) * 255;
-      *p = static_cast<std::uint8_t>(double{level} + 0.5);  // lround() takes much longer
+      // NOLINTNEXTLINE(bugprone-incorrect-roundings): lround() takes much longer
+      *p = static_cast<std::uint8_t>(double{level} + 0.5);
       return;
     }
     case Form::kInteger:
