@@ -45,14 +45,21 @@ Answer request(const Parts& p, wall::WallLoop::Request what) {
   return done();
 }
 
+// A number outside the limits of what is shown is moved to them, since the panel and the page step
+// down from the least as well; the answer says which number is used.
 Answer triangles(const Parts& p, const std::string& argument) {
   constexpr wall::Pace::Limits kWidest{4, 1'000'000'000};
-  const wall::Pace::Limits limits = p.wall->holdLimits().value_or(kWidest);
-  const auto number =
-      numberOrAuto(argument, {static_cast<double>(limits.least), static_cast<double>(limits.most)});
+  const auto number = numberOrAuto(argument, {kWidest.least, kWidest.most});
   if (!number) return number.error();
-  p.wall->hold(*number ? std::optional(static_cast<std::size_t>(**number)) : std::nullopt);
-  return done();
+  if (!*number) {
+    p.wall->hold(std::nullopt);
+    return done();
+  }
+  const wall::Pace::Limits limits = p.wall->holdLimits().value_or(kWidest);
+  const std::size_t used = std::clamp(static_cast<std::size_t>(**number), limits.least,
+                                      std::max(limits.least, limits.most));
+  p.wall->hold(used);
+  return fmt::format(R"({{"used": {}}})", used);
 }
 
 // Reads as many numbers with blanks between them as `numbers` holds; false unless that is all, and

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -118,18 +119,17 @@ class ProjectorServer {
     thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
   }
 
-  // Changes the projector before the first connection. Its thread reads the manner at each
-  // connection, and so sees what was written before.
+  // Changes the projector, at any time.
   template <typename Change>
   void set(const Change& change) {
+    const std::lock_guard lock(mutex_);
     change(projector);
-    manner = manner.load();
   }
 
   std::string port;
   std::atomic<Manner> manner{kPolite};
   std::atomic<int> connections{0};
-  // Touched by its thread alone, except by set() and after vanish().
+  // Touched by its thread and by set(), under mutex_; by others only after vanish().
   EmulatedProjector projector;
 
  private:
@@ -143,7 +143,7 @@ class ProjectorServer {
   }
 
   void converse(const std::stop_token& stop, const UniqueFd& client) {
-    if (manner != kSilent && manner != kJunk && manner != kDripping) say(client, projector.greet());
+    if (manner != kSilent && manner != kJunk && manner != kDripping) say(client, greeting());
     for (std::string line; !stop.stop_requested();) {
       if (manner == kJunk && !say(client, std::string(4096, 'x'))) return;
       if (manner == kDripping && !say(client, std::string(1, 'P'))) return;
@@ -154,12 +154,21 @@ class ProjectorServer {
         line += byte;
         continue;
       }
-      const std::string answer = projector.answer(line, clock_.now());
+      const std::string answer = answerTo(line);
       line.clear();
       if (manner == kHalf) return (void)say(client, answer.substr(0, 4));
       say(client, answer);
       if (manner == kOneAnswer) return;
     }
+  }
+
+  std::string greeting() {
+    const std::lock_guard lock(mutex_);
+    return projector.greet();
+  }
+  std::string answerTo(const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    return projector.answer(line, clock_.now());
   }
 
   static bool isReady(const UniqueFd& fd) {
@@ -171,6 +180,7 @@ class ProjectorServer {
   }
 
   SystemClock clock_;
+  std::mutex mutex_;
   UniqueFd listener_;
   std::jthread thread_;
 };

@@ -1,6 +1,7 @@
 // VncClient: a real VNC client, libvncclient, for tests of merlin-rfb.
 #pragma once
 
+#include <chrono>
 #include <cstring>
 #include <functional>
 #include <string>
@@ -43,15 +44,17 @@ class VncClient {
   std::string name() const { return client_->desktopName; }
   int updates() const { return updates_; }
 
-  // Takes what the server sends until `condition` is true; false after 120 s, or if it closes.
-  bool until(const std::function<bool()>& condition) {
+  // Takes what the server sends until `condition` is true; false after the deadline, or if it
+  // closes.
+  bool until(const std::function<bool()>& condition,
+             std::chrono::seconds deadline = std::chrono::seconds(120)) {
     bool open = true;
     const auto take = [&] {
       const int ready = WaitForMessage(client_, 10'000);  // microseconds
       open = ready >= 0 && (ready == 0 || HandleRFBServerMessage(client_));
       return !open || condition();
     };
-    return eventually(take) && open;
+    return eventually(take, deadline) && open;
   }
   // Asks for the whole picture and waits until it is there: the server has then handled everything
   // that was sent before.

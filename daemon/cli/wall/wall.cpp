@@ -1,6 +1,8 @@
 // merlin wall: sets the number of triangles and the frame rate by hand, and moves the model.
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
@@ -18,6 +20,17 @@ struct WallOptions {
   std::string triangles, rate, move;
 };
 
+// What became of a number: another one may be used.
+void printSet(const char* name, const std::string& value, const std::string& answer) {
+  const auto json = nlohmann::json::parse(answer, nullptr, false);
+  const bool says = json.is_object() && json.contains("used");
+  const std::string used = says ? json["used"].dump() : value;
+  if (used == value)
+    printOut("{}: {}\n", name, value);
+  else
+    printOut("{}: {} ({} is outside of what can be used)\n", name, used, value);
+}
+
 int wall(const WallOptions& options) {
   if (options.triangles.empty() && options.rate.empty() && options.move.empty()) {
     return fail(
@@ -29,7 +42,7 @@ int wall(const WallOptions& options) {
     if (value.empty()) continue;
     const auto done = askRole(options.instance, "wall", {name, value});
     if (!done) return fail(done.error());
-    printOut("{}: {}\n", name, value);
+    printSet(name, value, *done);
   }
   return kExitDone;
 }
