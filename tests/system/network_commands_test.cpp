@@ -29,7 +29,8 @@ class NetworkCommands : public testing::Test {
     writeText(dir_ / "server.public", key("server") + "\n");
     daemon_ = std::make_unique<Merlind>(
         dir_, makeModel(dir_, 5), "net",
-        MerlindOptions{.also = {{"serve",
+        MerlindOptions{.script = "still",  // a visitor would end the blank picture
+                       .also = {{"serve",
                                  {{"wall_endpoint", wall_},
                                   {"devices_endpoint", devices_},
                                   {"samples_endpoint", samples_},
