@@ -136,8 +136,7 @@ class Alarm {
       program_.reset();
     }
     const auto next = queue_.next(now);
-    sayWhatWaits();
-    if (!next) return;
+    if (!next) return sayWhatWaits();
     logInfo("the alarm {} is told: {}", settings_.run.front(), next->event.what);
     auto started = alarms::ChildProgram::start(
         settings_.run, alarms::alarmText(instance_, next->event, next->left_out),
@@ -149,7 +148,7 @@ class Alarm {
   }
 
  private:
-  // Once, until nothing waits any more.
+  // REQUIRES: no start is allowed now. Says it once, until nothing waits any more.
   void sayWhatWaits() {
     const bool waits = queue_.waiting() > 0;
     if (waits && !told_that_some_wait_) {

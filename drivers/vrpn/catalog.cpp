@@ -37,13 +37,9 @@ Result<Ok> Catalog::take(std::string_view bytes) {
     if (auto fits = checkGreeting(greeting_); !fits) return fits;
   }
   for (const char byte : bytes) {
-    const auto message = parser_.feed(static_cast<std::byte>(byte));
-    if (parser_.broken())
-      return Error{Errc::kMalformed, "the server sent a message with an invalid length"};
-    if (!message) continue;
-    if (message->header.type == kVrpnDisconnect)
-      return Error{Errc::kClosed, "the server has ended the connection"};
-    handle(*message);
+    const auto message = takeByte(parser_, static_cast<std::byte>(byte));
+    if (!message) return message.error();
+    if (*message) handle(**message);
   }
   return Ok{};
 }

@@ -131,15 +131,10 @@ Result<Ok> Client::receive(ByteStream& stream, Duration timeout) {
   heard_ = clock_.now();
   for (std::size_t i = 0; i < *got; ++i) {
     if (!parser_.inside()) message_start_ = heard_;
-    const auto message = parser_.feed(buffer[i]);
-    if (parser_.broken()) {
-      ++bad_packets_;
-      return Error{Errc::kMalformed, "the server sent a message with an invalid length"};
-    }
-    if (!message) continue;
-    if (message->header.type == kVrpnDisconnect)
-      return Error{Errc::kClosed, "the server has ended the connection"};
-    handle(*message);
+    const auto message = takeByte(parser_, buffer[i]);
+    if (parser_.broken()) ++bad_packets_;
+    if (!message) return message.error();
+    if (*message) handle(**message);
   }
   return Ok{};
 }

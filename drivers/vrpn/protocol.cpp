@@ -32,4 +32,13 @@ void Parser::reset() noexcept {
   broken_ = false;
 }
 
+Result<std::optional<Message>> takeByte(Parser& parser, std::byte byte) {
+  const auto message = parser.feed(byte);
+  if (parser.broken())
+    return Error{Errc::kMalformed, "the server sent a message with an invalid length"};
+  if (message && message->header.type == kVrpnDisconnect)
+    return Error{Errc::kClosed, "the server has ended the connection"};
+  return message;
+}
+
 }  // namespace merlin::vrpn

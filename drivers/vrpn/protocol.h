@@ -46,4 +46,8 @@ class Parser {
   bool broken_ = false;
 };
 
+// Gives the parser a byte; returns the message that it completes, if it does. Allocates only for an
+// error. Errors: kMalformed (the parser is broken), kClosed (the server ends the connection).
+Result<std::optional<Message>> takeByte(Parser& parser, std::byte byte);
+
 }  // namespace merlin::vrpn

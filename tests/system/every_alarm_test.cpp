@@ -215,6 +215,9 @@ TEST_P(EveryAlarm, IsToldToTheProgramThatIsForIt) {
     EXPECT_EQ(event["instance"], stage_.merlind->instance());
     EXPECT_EQ(event["role"], std::string_view(row.kind) == "role" ? "alarms" : row.role);
   }
+  EXPECT_EQ(stage_.alarms->output().find("most_per_hour"), std::string::npos)
+      << "nothing had to wait for that\n"
+      << stage_.alarms->output();
 }
 
 std::string kindOf(const testing::TestParamInfo<Row>& of) { return of.param.kind; }
