@@ -12,6 +12,7 @@
 
 #include "config/loader.h"
 #include "config/manual_page.h"
+#include "config/usual_file.h"
 #include "config/writer.h"
 #include "daemon/alarms_process.h"
 #include "daemon/base/log.h"
@@ -30,7 +31,7 @@ namespace merlin {
 namespace {
 
 struct Options {
-  std::string config = "/etc/merlin/merlin.json";
+  std::string config = kUsualConfig;
   std::string check;
   std::string role = "all";
   bool emulate = false;
@@ -44,7 +45,7 @@ manual::PageSettings page() {
   return {.name = "merlind",
           .summary = "daemon of the display wall MERLIN",
           .section = 8,
-          .files = {{"/etc/merlin/merlin.json", "the configuration, described in merlin.json(5)"},
+          .files = {{kUsualConfig, "the configuration, described in merlin.json(5)"},
                     {"/etc/merlin/conf.d/*.json",
                      "merged over the configuration in the order of their names"},
                     {"/usr/share/merlin/merlin-devices.service.d, merlin-wall.service.d, "

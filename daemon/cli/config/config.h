@@ -4,11 +4,10 @@
 #include <string>
 
 #include "config/loader.h"
+#include "config/usual_file.h"
 #include "daemon/cli/command.h"
 
 namespace merlin::cli {
-
-inline constexpr const char* kUsualConfig = "/etc/merlin/merlin.json";
 
 void addConfigShow(Command config, Run& run);
 void addConfigDiff(Command config, Run& run);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "config/loader.h"
+#include "config/usual_file.h"
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/cli/command.h"
@@ -31,7 +32,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kRedraw_ms = 100;
 constexpr Duration kVrpnWait = std::chrono::milliseconds(500);  // for the answers of all servers
-constexpr const char* kUsualConfig = "/etc/merlin/merlin.json";
 
 struct DevicesOptions {
   std::string instance = "merlin", config;
@@ -148,7 +148,9 @@ Result<Settings> settingsOf(const DevicesOptions& options) {
   const std::string file = options.config.empty() ? kUsualConfig : options.config;
   const LoadedSettings loaded = loadSettingsFile(file);
   if (loaded.verdict() != LoadedSettings::Verdict::kInvalid) return loaded.settings;
-  const std::string what = file + ": the configuration is invalid or cannot be read";
+  const std::string what = fmt::format(
+      "{0}: the configuration is invalid or cannot be read; merlind --check-config {0} says why",
+      file);
   if (!options.config.empty()) return Error{Errc::kInvalidArgument, what};
   printNote(what + ", so the VRPN servers that it names are not asked");
   return Settings{};

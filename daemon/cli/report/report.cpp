@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "config/loader.h"
+#include "config/usual_file.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
@@ -23,7 +24,7 @@ namespace {
 constexpr const char* kEnding = ".tar.gz";
 
 struct ReportOptions {
-  std::string config = "/etc/merlin/merlin.json", instance, output;
+  std::string config = kUsualConfig, instance, output;
   bool json = false;
 };
 

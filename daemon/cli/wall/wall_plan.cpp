@@ -10,6 +10,7 @@
 
 #include "config/drawn_wall.h"
 #include "config/loader.h"
+#include "config/usual_file.h"
 #include "config/writer.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
@@ -51,7 +52,6 @@ Result<WallSettings> configuredWall(const std::string& path) {
 // The wall of the preset or of the configuration; without both that of merlind's usual
 // configuration, and where there is no such file, the one that merlind shows without settings.
 Result<WallSettings> wallOf(const PlanOptions& options) {
-  constexpr const char* kUsual = "/etc/merlin/merlin.json";
   if (!options.preset.empty() && !options.config.empty())
     return Error{Errc::kInvalidArgument, "wall plan: give --config or --preset, not both"};
   if (options.preset.empty() && options.overlap_m != 0)
@@ -60,9 +60,9 @@ Result<WallSettings> wallOf(const PlanOptions& options) {
                  "/wall/room/preset/overlap_m or in its displays' part_m"};
   if (!options.preset.empty()) return presetWall(options.preset, options.overlap_m);
   if (!options.config.empty()) return configuredWall(options.config);
-  if (fileStamp(kUsual)) return configuredWall(kUsual);
-  printNote(
-      fmt::format("there is no {}; this is the wall of a configuration without settings", kUsual));
+  if (fileStamp(kUsualConfig)) return configuredWall(kUsualConfig);
+  printNote(fmt::format("there is no {}; this is the wall of a configuration without settings",
+                        kUsualConfig));
   return WallSettings{};
 }
 
@@ -104,6 +104,7 @@ Json tableJson(const WallPlan& wall) {
 
 bool isDefault(const Json& value) {
   if (value.is_array()) return std::ranges::all_of(value, isDefault);
+  // NOLINTNEXTLINE(readability-container-size-empty): a text of JSON is never "empty"
   return value == 0 || value == "";
 }
 
