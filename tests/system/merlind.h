@@ -13,27 +13,13 @@
 #include "daemon/shm/segment.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
+#include "tests/system/kept_models.h"
 
 namespace merlin::test {
 
 inline const std::string kMerlin = MERLIN_BIN_DIR "/merlin";
 inline const std::string kMerlind = MERLIN_BIN_DIR "/merlind";
 inline const std::string kSource = MERLIN_SOURCE_DIR;
-
-// The demo's model, reduced to `percent` of its triangles so that a sanitizer's build can draw it.
-inline std::string makeModel(const TempDir& dir, int percent = 20) {
-  const std::string small = dir / "small.ply", model = dir / "model.mrm";
-  EXPECT_EQ(run({kMerlin, "mesh", "reduce", kSource + "/config/models/ankylosaurus.ply", "-o",
-                 dir / "full.mrm"})
-                .status,
-            0);
-  EXPECT_EQ(run({kMerlin, "mesh", "export", dir / "full.mrm", "--percent", std::to_string(percent),
-                 "-o", small})
-                .status,
-            0);
-  EXPECT_EQ(run({kMerlin, "mesh", "reduce", small, "-o", model}).status, 0);
-  return model;
-}
 
 struct MerlindOptions {
   std::string script = "visit", role = "all";
