@@ -20,12 +20,12 @@ Result<Imported> importPicture(const Request& request, const Reports& reports) {
   const std::string name = "pyramid.tif";
   const auto made = render::import::importPicture(
       request.input, request.folder + "/" + name,
-      {request.panorama, request.quality, request.tile_px},
-      [&](const render::import::ImportedPicture& size) {
-        return reports.size(3 * static_cast<std::uint64_t>(size.width) *
-                            static_cast<std::uint64_t>(size.height));
-      },
-      reports.progress);
+      {request.panorama, request.quality, request.tile_px, request.range},
+      {[&](const render::import::ImportedPicture& size) {
+         return reports.size(3 * static_cast<std::uint64_t>(size.width) *
+                             static_cast<std::uint64_t>(size.height));
+       },
+       reports.progress, reports.note});
   if (!made) return made.error();
   return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
 }

@@ -2,8 +2,10 @@
 // importers.cpp.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +22,7 @@ struct Request {
   bool panorama = false;
   int quality = 90;
   int tile_px = 256;
+  std::optional<std::array<double, 2>> range;  // of a picture's values: black and white
   std::string format;    // of a model: ending of the usual name of its format, in lower case
   std::string hdu;       // of a FITS file: number or name of the image; empty: the first
   std::string variable;  // of a file of several maps: number or name of one; empty: none is named

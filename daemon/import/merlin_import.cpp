@@ -4,8 +4,10 @@
 // stdout, a line each: "lacks WHAT", "pixels N", "progress SHARE ITEMS", "note WHAT", then "done
 // FILE {JSON}" or "failed CODE WHY".
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -33,6 +35,7 @@ constexpr Duration kReportEvery = std::chrono::milliseconds(100);
 int usage() {
   printError(
       "usage: merlin-import KIND IN FOLDER [--panorama] [--quality Q] [--tile PX] "
+      "[--range LOW:HIGH] "
       "[--format ENDING] [--hdu N|NAME] [--variable NAME|N] [--depth N] [--neighbours K] [--trim "
       "LENGTH] [--memory BYTES] [--cpu SECONDS]\n");
   for (const Importer& importer : importers())
@@ -70,6 +73,18 @@ bool parse(std::string_view text, std::string& ending) {
   return plain && !text.empty() && text.size() <= 8;
 }
 
+// "LOW:HIGH", both finite.
+bool parse(std::string_view text, std::optional<std::array<double, 2>>& range) {
+  const std::size_t colon = text.find(':');
+  std::array<double, 2> ends{};
+  if (colon == std::string_view::npos || !parse(text.substr(0, colon), ends[0]) ||
+      !parse(text.substr(colon + 1), ends[1]) || !(ends[1] - ends[0] > 0) ||
+      !std::isfinite(ends[1] - ends[0]))
+    return false;
+  range = ends;
+  return true;
+}
+
 // It is only compared.
 bool parseName(std::string_view text, std::string& name) {
   name = text;
@@ -90,6 +105,7 @@ std::optional<Options> parseOptions(int argc, char** argv) {
     const std::string_view value = argv[i];
     const bool good = (name == "--quality" && parse(value, o.request.quality)) ||
                       (name == "--tile" && parse(value, o.request.tile_px)) ||
+                      (name == "--range" && parse(value, o.request.range)) ||
                       (name == "--format" && parse(value, o.request.format)) ||
                       (name == "--hdu" && parseName(value, o.request.hdu)) ||
                       (name == "--variable" && parseName(value, o.request.variable)) ||

@@ -350,12 +350,25 @@ Result<Ok> checkTriangles(const std::vector<GltfPrimitive>& promised, const aiSc
   return Ok{};
 }
 
-// The unit that an AMF file names; empty if there is none.
+// The unit of an AMF or 3MF file, as it names it; empty of other formats, and where AMF has none.
 std::string namedUnit(const ModelFile& file) {
   constexpr std::size_t kEnough = 4096;
-  if (file.format != "amf") return {};
-  const auto beginning = FileCopy::read(file.path, kEnough);
-  return beginning ? unitOf(beginning->text(), "amf") : "";
+  if (file.format == "amf") {
+    const auto beginning = FileCopy::read(file.path, kEnough);
+    return beginning ? unitOf(beginning->text(), "amf") : "";
+  }
+  if (file.format != "3mf") return {};
+  const std::string named = unitOf(beginningOf3mf(file.path, kEnough), "model");
+  return named.empty() ? "millimeter" : named;  // what 3MF says of a model that names none
+}
+
+// Where coordinates are not made metres, what a person can do about it.
+std::string noteOf(const std::string& unit) {
+  const double metres = metresPer(unit);
+  const std::string way = metres == 0 || metres == 1
+                              ? std::string()
+                              : fmt::format("; --scale {} makes them metres", metres);
+  return fmt::format("its coordinates are left in its unit, {}{}", unit, way);
 }
 
 }  // namespace
@@ -379,8 +392,7 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
     return Error{Errc::kUnsupported, "holds no surface"};
   if (const auto whole = checkTriangles(*promised, *scene); !whole) return whole.error();
   BuiltModel built = SceneReader(*scene, file, on_triangles).read();
-  if (const std::string unit = namedUnit(file); !unit.empty())
-    built.notes.push_back(fmt::format("its coordinates are left in its unit, {}", unit));
+  if (const std::string unit = namedUnit(file); !unit.empty()) built.notes.push_back(noteOf(unit));
   return built;
 }
 

@@ -1,6 +1,11 @@
 #include "render/import/model_unit.h"
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include <zip.h>
 
 #include "daemon/base/printable_text.h"
 
@@ -34,6 +39,33 @@ std::string unitOf(std::string_view xml, std::string_view element) {
     return oneLine(excerpt(between(value, value.substr(0, 1), value.substr(0, 1))));
   }
   return {};
+}
+
+std::string beginningOf3mf(const std::string& path, std::size_t most) {
+  const std::unique_ptr<zip_t, void (*)(zip_t*)> archive(
+      zip_open(path.c_str(), ZIP_RDONLY, nullptr), [](zip_t* open) { zip_discard(open); });
+  if (!archive) return {};
+  const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> model(
+      zip_fopen(archive.get(), "3D/3dmodel.model", ZIP_FL_NOCASE), zip_fclose);
+  if (!model) return {};
+  std::string text(most, '\0');
+  const zip_int64_t got = zip_fread(model.get(), text.data(), text.size());
+  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return text;
+}
+
+double metresPer(std::string_view unit) {
+  constexpr std::array<std::pair<std::string_view, double>, 8> kUnits = {{{"micron", 1e-6},
+                                                                          {"millimeter", 1e-3},
+                                                                          {"centimeter", 1e-2},
+                                                                          {"meter", 1},
+                                                                          {"inch", 0.0254},
+                                                                          {"foot", 0.3048},
+                                                                          {"feet", 0.3048},
+                                                                          {"mm", 1e-3}}};
+  const auto found =
+      std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& u) { return u.first == unit; });
+  return found == kUnits.end() ? 0 : found->second;
 }
 
 }  // namespace merlin::render::import

@@ -2,32 +2,59 @@
 
 #include <algorithm>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 #include <vips/vips.h>
 
+#include "daemon/base/files.h"
 #include "render/image/pyramid_file.h"
+#include "render/import/value_range.h"
 
 namespace merlin::render::import {
 namespace {
+
+using namespace std::string_view_literals;
 
 struct Unref {
   void operator()(VipsImage* image) const { g_object_unref(image); }
 };
 using Image = std::unique_ptr<VipsImage, Unref>;
 
-// What libvips reported, on one line.
+// What libvips reported, on one line; empty if it reported nothing.
 std::string reported() {
   std::string text = vips_error_buffer();
   vips_error_clear();
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::ranges::replace(text, '\n', ';');
-  return text.empty() ? "libvips gives no reason" : text;
+  return text;
+}
+
+// Whether a file that begins like this is a video: MP4 and QuickTime but not HEIF and AVIF, which
+// have the same boxes; Matroska and WebM; AVI; MPEG's streams.
+bool isVideo(std::string_view begin) {
+  if (begin.size() < 12) return false;
+  const std::string_view brand = begin.substr(8, 4);
+  if (begin.substr(4, 4) == "ftyp")
+    return !brand.starts_with("hei") && !brand.starts_with("hev") && !brand.starts_with("avi") &&
+           brand != "mif1" && brand != "msf1";
+  return begin.starts_with("\x1A\x45\xDF\xA3") || begin.starts_with("\0\0\1\xBA"sv) ||
+         begin.starts_with("\0\0\1\xB3"sv) || (begin.starts_with("RIFF") && brand == "AVI ");
 }
 
 Error broken(const std::string& in) {
-  return {Errc::kMalformed, fmt::format("{}: cannot be read as a picture: {}", in, reported())};
+  std::string why = reported();
+  const auto begin = FileCopy::read(in, 64);
+  if (begin && isVideo(begin->text()))
+    return {Errc::kUnsupported,
+            in + ": is a video; MERLIN shows models, pictures, panoramas and slides"};
+  // The last reader that libvips tries is one that is not allowed here.
+  const bool unknown = why.find("operation is blocked") != std::string::npos ||
+                       why.find("is not a known file format") != std::string::npos;
+  if (why.empty() || unknown)
+    why = "it is damaged or cut short, or of no format that libvips reads";
+  return {Errc::kMalformed, fmt::format("{}: cannot be read as a picture: {}", in, why)};
 }
 
 // A step of the way: replaces the image by what `step` makes of it. `step` returns what functions
@@ -54,6 +81,45 @@ Result<Image> open(const std::string& in) {
     return image;
   }
   return broken(in);
+}
+
+std::string textOf(const ValueRange& range) {
+  return fmt::format("values from {:.6g} (black) to {:.6g} (white)", range.low, range.high);
+}
+
+// The range that makes shades of the picture's values; nothing if they are colours as they are.
+// Reads the picture, which has to be opened again then.
+std::optional<ValueRange> rangeFor(VipsImage* image, const PyramidOptions& options,
+                                   const PictureReports& reports) {
+  if (options.range) return ValueRange{(*options.range)[0], (*options.range)[1]};
+  if (!isMeasured(image) && !isGrey16(image)) return std::nullopt;
+  const auto found = rangeOf(image, [&](double share) { reports.progress(share / 2, 0); });
+  if (!found && vips_error_buffer()[0] != '\0') return std::nullopt;  // told when it is read again
+  vips_error_clear();
+  const bool dark = !isMeasured(image) && (!found || found->high >= kMostOfDarkGrey);
+  if (dark) return std::nullopt;  // grey of 16 bits, as it is
+  const ValueRange range = found.value_or(ValueRange{});
+  reports.note(found ? fmt::format("{} are shown, which are all but a thousandth at either end; "
+                                   "--range LOW HIGH sets others",
+                                   textOf(range))
+                     : "it holds no numbers, and is black");
+  return range;
+}
+
+// Opens the picture, its values as shades where they are no colours.
+Result<Image> openShaded(const std::string& in, const PyramidOptions& options,
+                         const PictureReports& reports) {
+  auto image = open(in);
+  if (!image) return image;
+  const ImportedPicture size{vips_image_get_width(image->get()),
+                             vips_image_get_height(image->get())};
+  if (const auto may = reports.size(size); !may) return may.error();
+  const bool looked = isMeasured(image->get()) || isGrey16(image->get());
+  const auto range = rangeFor(image->get(), options, reports);
+  if (looked) image = open(in);  // from the top again
+  const auto shades = [&](VipsImage* from, VipsImage** to) { return stretch(from, *range, to); };
+  if (image && range && !applyStep(*image, shades)) return broken(in);
+  return image;
 }
 
 bool toSrgb(Image& image) {
@@ -127,22 +193,22 @@ Result<Ok> prepareImport(const char* program) {
 }
 
 Result<ImportedPicture> importPicture(const std::string& in, const std::string& out,
-                                      const PyramidOptions& options, const OnSize& on_size,
-                                      const OnProgress& on_progress) {
-  auto opened = open(in);
+                                      const PyramidOptions& options,
+                                      const PictureReports& reports) {
+  auto opened = openShaded(in, options, reports);
   if (!opened) return opened.error();
   Image image = *std::move(opened);
   const ImportedPicture size{vips_image_get_width(image.get()), vips_image_get_height(image.get())};
-  if (const auto may = on_size(size); !may) return may.error();
   if (!toSrgb(image) || !mark(image, options.panorama)) return broken(in);
   vips_image_set_progress(image.get(), TRUE);
   g_signal_connect(image.get(), "eval", G_CALLBACK(&evaluated),
-                   const_cast<OnProgress*>(&on_progress));
+                   const_cast<OnProgress*>(&reports.progress));
   if (save(image.get(), out, options) == 0) return size;
   const std::string why = reported();
   const bool written = why.find("write") == std::string::npos &&
                        why.find("No space") == std::string::npos &&
                        why.find("too large") == std::string::npos;
+  if (why.empty()) return broken(in);
   return Error{written ? Errc::kMalformed : Errc::kIo, fmt::format("{}: {}", in, why)};
 }
 

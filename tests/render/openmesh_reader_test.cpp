@@ -201,6 +201,8 @@ TEST_F(OpenMeshReader, TellsTheSizeBeforeItReads) {
   EXPECT_EQ(off->mesh.triangles, 4u);
   test::writeText(dir_ / "b.stl", tetrahedronAs("stl", OpenMesh::IO::Options::Binary));
   EXPECT_EQ(mesh::meshFileSize(dir_ / "b.stl")->mesh.triangles, 4u);
+  test::writeText(dir_ / "a.stl", tetrahedronAs("stl"));
+  EXPECT_EQ(mesh::meshFileSize(dir_ / "a.stl")->mesh.triangles, 4u) << "as its facets are counted";
   test::writeText(dir_ / "c.om", tetrahedronAs("om", OpenMesh::IO::Options::Binary));
   EXPECT_EQ(mesh::meshFileSize(dir_ / "c.om")->mesh.vertices, 4u);
   test::writeText(dir_ / "lie.off", "OFF\n4000000000 4000000000 0\n");

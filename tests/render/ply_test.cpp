@@ -175,14 +175,31 @@ TEST(PlyAscii, NamesTheRowThatHasMoreNumbersThanTheHeaderPromises) {
   EXPECT_EQ(fault(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\nmore\n"), "");
 }
 
-TEST(PlyRead, SaysThatStripsAreNotRead) {
-  const std::string strips =
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-      "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-  const auto loaded = read(strips);
-  ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error().what, "its triangles are strips (tristrips), which are not read");
+// Of the square 0 1 3 2 and one corner more: all triangles face the way of the first.
+TEST(PlyRead, StripsBecomeTrianglesThatFaceOneWay) {
+  const auto strips = [](const std::string& rows, const std::string& list) {
+    return read(
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+        "property float z\nelement tristrips " +
+        rows + "\nproperty list int int vertex_indices\nend_header\n" +
+        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n" + list);
+  };
+  const auto triangles = [&](const std::string& rows, const std::string& list) {
+    const auto loaded = strips(rows, list);
+    EXPECT_TRUE(loaded) << loaded.error().what;
+    EXPECT_EQ(loaded ? loaded->notes.size() : 0, 0u);
+    return loaded ? loaded->mesh.triangles : std::vector<std::uint32_t>();
+  };
+  using Triangles = std::vector<std::uint32_t>;
+  EXPECT_EQ(triangles("1", "5 0 1 2 3 4\n"), (Triangles{0, 1, 2, 2, 1, 3, 2, 3, 4}));
+  EXPECT_EQ(triangles("1", "8 0 1 2 -1 2 1 3 -1\n"), (Triangles{0, 1, 2, 2, 1, 3}));
+  EXPECT_EQ(triangles("2", "3 0 1 2\n3 2 1 3\n"), (Triangles{0, 1, 2, 2, 1, 3}));
+  EXPECT_EQ(triangles("1", "6 0 1 2 3 2 4\n"), (Triangles{0, 1, 2, 2, 1, 3, 2, 3, 4}))
+      << "a repeated index turns the strip";
+  EXPECT_EQ(strips("1", "3 0 1 -2\n").error().what,
+            "tristrips 0: corner 2 is -2, not a vertex index");
+  EXPECT_EQ(strips("1", "3 0 1\n").error().what,
+            "cut short in tristrips 0 of 1, property vertex_indices");
 }
 
 TEST(PlyRead, PutsKnownPropertiesUnderOneName) {

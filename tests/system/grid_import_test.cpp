@@ -346,7 +346,7 @@ TEST_F(GridImport, AScanAsFitsComesBackWithItsCameraAndItsModalities) {
 
 TEST_F(GridImport, AGeoTiffHasItsCellsVoidsAndProjection) {
   const std::string file = Tiff().of(3, 2, Tiff::shorts({100, 110, -9999, 120, 130, 140}));
-  const auto json = report("a.anything", file);
+  const auto json = report("a.anything", file, {"--local"});
   EXPECT_EQ(json["format"], "GeoTIFF");
   EXPECT_EQ(json["geometry"], "elevation");
   EXPECT_EQ(json["returns"], 5);
@@ -360,6 +360,9 @@ TEST_F(GridImport, AGeoTiffHasItsCellsVoidsAndProjection) {
   EXPECT_NE(projection.find("UTM zone 33N"), std::string::npos) << projection;
   EXPECT_EQ(json["origin"][0], 500005) << "the middle of the lower left pixel";
   EXPECT_EQ(json["origin"][1], 5300000 - 30);
+  EXPECT_EQ(json["origin_added"], false);
+  EXPECT_EQ(report("a.anything", file, {"-o", dir_ / "placed.obj"})["origin_added"], true);
+  EXPECT_NE(readText(dir_ / "placed.obj").find("\nv 500015 5299990 110 "), std::string::npos);
 }
 
 TEST_F(GridImport, TheProjectionStaysInTheModelAndInThePgm) {
@@ -432,7 +435,7 @@ TEST_F(GridImport, OfANetCdfWithSeveralVariablesOneIsChosen) {
 }
 
 TEST_F(GridImport, AUsgsDemIsReadFromItsProfiles) {
-  const auto json = report("a.dem", usgsDem());
+  const auto json = report("a.dem", usgsDem(), {"--local"});
   EXPECT_EQ(json["width"], 2);
   EXPECT_EQ(json["height"], 3);
   EXPECT_EQ(json["triangles"], 4);

@@ -125,6 +125,12 @@ TEST_F(MeshFuse, KeepsTheOriginAndWhatTheScansSayOfTheirFeatures) {
   EXPECT_EQ(info["unit"], "m");
   EXPECT_NEAR(info["box"]["high"][2], 7 - 0.86, 0.1);
   EXPECT_LT(info["box"]["high"][0], 2) << "relative to the origin";
+  const auto mesh = jsonOf(fuse({a, b, "-o", dir_ / "out.obj", "--json"}));
+  EXPECT_EQ(mesh["origin_added"], true);
+  EXPECT_NE(readText(dir_ / "out.obj").find("\nv 45000"), std::string::npos);
+  EXPECT_EQ(jsonOf(fuse({a, b, "-o", dir_ / "out.obj", "--local", "--json"}))["origin_added"],
+            false);
+  EXPECT_EQ(readText(dir_ / "out.obj").find("\nv 45000"), std::string::npos);
   const Outcome mixed = fuse({a, c, "-o", out_});
   EXPECT_EQ(mixed.status, 0) << mixed.output;
   EXPECT_NE(mixed.output.find("the scans give the feature heat in different units"),

@@ -225,8 +225,9 @@ TEST_F(MeshImport, AMeshWithCoordinatesOfAMapKeepsItsOriginInReportModelAndScan)
   ASSERT_EQ(scan.status, 0) << scan.output;
   const auto scanned = nlohmann::json::parse(scan.output.substr(scan.output.find('{')));
   EXPECT_EQ(scanned["camera"][3], 450001.125) << "in the coordinates of the file";
-  const auto back = report({dir_ / "b.pgm", "-o", dir_ / "c.ply"});
+  const auto back = report({dir_ / "b.pgm", "-o", dir_ / "c.ply", "--local"});
   EXPECT_EQ(back["origin"], (nlohmann::json{450001.0, 5400001.0, 0.0}));
+  EXPECT_EQ(back["origin_added"], false);
   const Outcome box = run({kMerlin, "mesh", "info", dir_ / "c.ply", "--json"});
   EXPECT_NEAR(nlohmann::json::parse(box.output)["box"]["high"][0], 1.125, 0.3);
 }
@@ -263,6 +264,24 @@ TEST_F(MeshImport, AnExportPutsTheOriginBackUnlessItIsToBeLocal) {
   EXPECT_EQ(exported("e.ply"), "") << "nothing is said of a model without an origin";
 }
 
+// The mesh of an OBJ file in the coordinates of a map, whatever it passes through.
+TEST_F(MeshImport, AMeshLiesWhereItsFileDoesUnlessItIsToBeLocal) {
+  const std::string far = dir_ / "far.obj", out = dir_ / "b.obj";
+  writeText(far,
+            "v 450000.125 5400000.25 10\nv 450002.125 5400000.25 10\nv 450002.125 5400002.25 10\n"
+            "v 450000.125 5400002.25 10.5\nf 1 2 3\nf 1 3 4\n");
+  EXPECT_EQ(report({far, "-o", out})["origin_added"], true);
+  EXPECT_NE(readText(out).find("\nv 450002.125 5400002.25 10"), std::string::npos);
+  const Outcome said = import({far, "-o", out});
+  EXPECT_NE(said.output.find("origin    450000, 5400000, 0 is added to the coordinates; --local"),
+            std::string::npos)
+      << said.output;
+  EXPECT_EQ(report({far, "-o", out, "--local"})["origin_added"], false);
+  EXPECT_NE(readText(out).find("\nv 2.125 2.25 10"), std::string::npos);
+  EXPECT_EQ(report({far, "-o", dir_ / "b.stl"})["origin_added"], false) << "floats";
+  expectRefusal({far, "-o", dir_ / "b.mrm", "--local"}, ": --local is for meshes; a model (.mrm)");
+}
+
 TEST_F(MeshImport, SegmentsLieWhereTheMeshDoes) {
   writeText(dir_ / "far.obj",
             "v 450000.5 20000 0\nv 450002.5 20000 0\nv 450000.5 20002 0\nf 1 2 3\n");
@@ -289,10 +308,12 @@ TEST_F(MeshImport, ComparisonsBringTwoOriginsTogether) {
 TEST_F(MeshImport, ACameraWithCoordinatesOfAMapKeepsItsDigitsByAnOrigin) {
   const std::string pixels = readText(scan_).substr(kHeader.size());
   writeText(scan_, kHeader + "# camera: 1 0 0 450000.25 0 1 0 5400000.5 0 0 1 0\n" + pixels);
-  const auto json = report({scan_, "-o", ply_});
+  const auto json = report({scan_, "-o", ply_, "--local"});
   EXPECT_EQ(json["origin"], nlohmann::json({450000.0, 5400000.0, 0.0}));
   const auto info = nlohmann::json::parse(run({kMerlin, "mesh", "info", ply_, "--json"}).output);
   EXPECT_NEAR(info["box"]["low"][0], 0.25 - 0.99817, 1e-5);
+  ASSERT_EQ(import({scan_, "-o", dir_ / "placed.obj"}).status, 0);
+  EXPECT_NE(readText(dir_ / "placed.obj").find(" 5400000."), std::string::npos);
   ASSERT_EQ(import({scan_, "-o", dir_ / "out.mrm"}).status, 0);
   const Outcome said = run({kMerlin, "mesh", "info", dir_ / "out.mrm"});
   EXPECT_NE(said.output.find("mesh.origin=450000 5400000 0"), std::string::npos) << said.output;

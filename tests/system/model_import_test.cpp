@@ -8,6 +8,7 @@
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/sanitizer.h"
+#include "render/correct/io/archive.h"
 #include "render/image/image_file.h"
 #include "render/image/png_writer.h"
 #include "tests/support/gzip.h"
@@ -65,6 +66,30 @@ std::string amf(const std::string& root, const std::string& colour) {
   return text +
          "</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh>"
          "</object></amf>";
+}
+
+// The same triangle as 3MF; `attribute` of its outermost element.
+std::string threeMf(const std::string& attribute) {
+  return *render::correct::zipBytes(
+      {{"[Content_Types].xml",
+        "<?xml version=\"1.0\"?><Types "
+        "xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"><Default "
+        "Extension=\"rels\" "
+        "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/><Default "
+        "Extension=\"model\" "
+        "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>"},
+       {"_rels/.rels",
+        "<?xml version=\"1.0\"?><Relationships "
+        "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+        "Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"},
+       {"3D/3dmodel.model",
+        "<?xml version=\"1.0\"?><model " + attribute +
+            " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
+            "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/>"
+            "<vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices>"
+            "<triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object>"
+            "</resources><build><item objectid=\"1\"/></build></model>"}});
 }
 
 void appendLe16(std::string& bytes, int value) {
@@ -206,11 +231,25 @@ TEST_F(ModelImport, ColladaIsInMetresByItsOwnUnit) {
 TEST_F(ModelImport, AmfWithoutColoursHasNoneAndItsUnitIsSaid) {
   const auto plain = report("a.amf", amf("<amf unit=\"inch\">", ""));
   EXPECT_EQ(features(), "normal ");
-  EXPECT_EQ(plain["notes"].dump(), "[\"its coordinates are left in its unit, inch\"]");
+  EXPECT_EQ(plain["notes"].dump(),
+            "[\"its coordinates are left in its unit, inch; --scale 0.0254 makes them metres\"]");
   const auto red = report("a.amf", amf("<amf>", "<color><r>1</r><g>0</g><b>0</b></color>"));
   EXPECT_EQ(features(), "colour normal ");
   EXPECT_EQ(red["notes"].dump(), "[]");
   EXPECT_NE(readText(out_).find(std::string("\xff\0\0", 3)), std::string::npos);
+}
+
+TEST_F(ModelImport, TheUnitOf3mfIsSaid) {
+  const auto notes = [&](const std::string& attribute) {
+    const auto json = report("a", threeMf(attribute));
+    EXPECT_EQ(json["format"], "3MF");
+    EXPECT_EQ(json["triangles"], 1);
+    return json["notes"].dump();
+  };
+  const std::string left = "[\"its coordinates are left in its unit, ";
+  EXPECT_EQ(notes("unit=\"inch\""), left + "inch; --scale 0.0254 makes them metres\"]");
+  EXPECT_EQ(notes(""), left + "millimeter; --scale 0.001 makes them metres\"]");
+  EXPECT_EQ(notes("unit=\"meter\""), left + "meter\"]");
 }
 
 TEST_F(ModelImport, ThreeDsIsReadByItsChunks) {

@@ -9,6 +9,7 @@
 
 #include "daemon/base/sanitizer.h"
 #include "render/image/image_file.h"
+#include "render/image/pyramid_file.h"
 #include "tests/support/picture_files.h"
 #include "tests/system/merlind.h"
 
@@ -72,6 +73,71 @@ TEST(ImageImport, MarksAPanoramaAndIsLosslessWhereAsked) {
   EXPECT_EQ(nlohmann::json::parse(info.output)["kind"], "panorama");
 }
 
+// A FITS image of one row of 16-bit numbers.
+std::string fits16(const std::vector<std::int16_t>& values) {
+  std::string file;
+  const auto card = [&](std::string text) {
+    text.resize(80, ' ');
+    file += text;
+  };
+  card("SIMPLE  =                    T");
+  card("BITPIX  =                   16");
+  card("NAXIS   =                    2");
+  card(fmt::format("NAXIS1  = {:20}", values.size()));
+  card("NAXIS2  =                    1");
+  card("END");
+  file.resize(2880, ' ');
+  for (const std::int16_t v : values) {
+    file += static_cast<char>(v >> 8);
+    file += static_cast<char>(v & 0xFF);
+  }
+  file.resize(2 * 2880, '\0');
+  return file;
+}
+
+// A binary PGM of 16 bits.
+std::string pgm16(const std::vector<int>& values) {
+  std::string file = fmt::format("P5\n{} 1\n65535\n", values.size());
+  for (const int v : values) {
+    file += static_cast<char>(v >> 8);
+    file += static_cast<char>(v & 0xFF);
+  }
+  return file;
+}
+
+TEST(ImageImport, MeasuredValuesAreShownByTheirRangeWhichIsSaid) {
+  const TempDir dir;
+  const std::string in = dir / "in", out = dir / "out.tif";
+  const auto shades = [&](const std::string& file, std::vector<std::string> more = {}) {
+    writeText(in, file);
+    more.insert(more.end(), {"--quality", "0", "--json"});
+    const Outcome made = import(in, out, more);
+    EXPECT_EQ(made.status, 0) << made.output;
+    const auto json = nlohmann::json::parse(made.output.substr(made.output.rfind("{\"file")));
+    const auto pyramid = render::image::PyramidFile::open(out);
+    EXPECT_TRUE(pyramid) << pyramid.error().what;
+    std::vector<std::uint8_t> rgba(render::image::kTileBytes);
+    EXPECT_TRUE(render::image::PyramidReader(*pyramid).readTile({}, rgba));
+    std::vector<int> first;  // of each pixel
+    for (int x = 0; x < json["width"]; ++x) first.push_back(rgba[4 * static_cast<std::size_t>(x)]);
+    return std::pair(first, json["notes"].dump());
+  };
+  using Shades = std::vector<int>;
+  const auto [found, note] = shades(fits16({-100, 0, 400, 900}));
+  EXPECT_EQ(found, (Shades{0, 26, 128, 255}));
+  EXPECT_NE(note.find("values from -100 (black) to 900 (white) are shown"), std::string::npos)
+      << note;
+  const auto [given, no_note] = shades(fits16({-100, 0, 400, 900}), {"--range", "0", "800"});
+  EXPECT_EQ(given, (Shades{0, 0, 128, 255}));
+  EXPECT_EQ(no_note, "[]");
+  EXPECT_EQ(shades(pgm16({0, 1000, 4000})).first, (Shades{0, 64, 255})) << "12 bits of 16";
+  EXPECT_EQ(shades(pgm16({0, 1000, 65535})).first, (Shades{0, 3, 255})) << "grey as it is";
+  const Outcome refused = import(in, out, {"--range", "5", "5"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.output.find("--range 5 5: the first value"), std::string::npos)
+      << refused.output;
+}
+
 TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
   const TempDir dir;
   const std::string out = dir / "out.tif";
@@ -85,7 +151,11 @@ TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
   writeText(dir / "text.jpg", "this is no picture");
   expectRefused(dir / "text.jpg", 2, "cannot be read as a picture");
   expectRefused(dir / "nothing.jpg", 2, "does not exist");
-  expectRefused(dir.path(), 2, "is not a file");
+  expectRefused(dir.path(), 2, "is a folder; merlin show FOLDER shows its pictures as slides");
+  writeText(dir / "film.mp4", std::string("\0\0\0\x18", 4) + "ftypisom" + std::string(500, 'x'));
+  expectRefused(dir / "film.mp4", 2, "film.mp4: is a video; MERLIN shows models, pictures");
+  writeText(dir / "cut.tif", std::string("II\x2b\0\x08\0\0\0", 8));
+  expectRefused(dir / "cut.tif", 2, "cut.tif: cannot be read as a picture: it is damaged or cut");
   // A header of 10^10 pixels, and hardly any of them.
   writeText(dir / "lies.ppm", "P6\n100000 100000\n255\n" + std::string(1000, 'x'));
   expectRefused(dir / "lies.ppm", 2, "lies.ppm");
@@ -96,7 +166,7 @@ TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
   EXPECT_EQ(import(dir / "good.ppm", dir / "out.png").status, 2) << "it must end in .tif";
   EXPECT_EQ(import(dir / "good.ppm", dir / "no/out.tif").status, 2);
   EXPECT_EQ(import(dir / "good.ppm", out, {"--quality", "101"}).status, 2);
-  EXPECT_EQ(filesIn(dir.path()), 3U);
+  EXPECT_EQ(filesIn(dir.path()), 5U);
 }
 
 TEST(ImageImport, CtrlCLeavesNoHalfFile) {
@@ -151,6 +221,7 @@ class PictureWall : public testing::Test {
     return *dir_ / (m_->instance() + ".shown/" + name);
   }
   Outcome next() { return run({kMerlin, "next_content", "--instance", m_->instance()}); }
+  Outcome previous() { return run({kMerlin, "previous_content", "--instance", m_->instance()}); }
   bool isShown(const std::string& name, const std::string& kind, const std::string& slide = "") {
     return eventually([&] {
       const auto content = m_->status()["content"];
@@ -191,6 +262,15 @@ TEST_F(PictureWall, ShowsPicturesPanoramasSlidesAndFilesByName) {
   next();
   EXPECT_TRUE(isShown("slides", "picture", "2-grey"));
   EXPECT_TRUE(isColoured({120, 120, 120}));
+  EXPECT_EQ(previous().status, 0);
+  EXPECT_TRUE(isShown("slides", "picture", "1-green"));
+  EXPECT_TRUE(isColoured({0, 250, 0}));
+  previous();
+  EXPECT_TRUE(isShown("the sky", "panorama"));
+  next();
+  EXPECT_TRUE(isShown("slides", "picture", "1-green"));
+  next();
+  EXPECT_TRUE(isShown("slides", "picture", "2-grey"));
   next();
   EXPECT_TRUE(isShown("red", "picture"));
   const Outcome other = show(*dir_ / "other.tif");

@@ -101,7 +101,8 @@ TEST_F(PointsImport, WhereThereAreNoPointsTheSurfaceIsTrimmed) {
 }
 
 TEST_F(PointsImport, TheOriginOfLargeCoordinatesIsSaid) {
-  const auto json = report(colouredSphere(500'000), {"--depth", "5", "--neighbours", "10"});
+  const auto json =
+      report(colouredSphere(500'000), {"--depth", "5", "--neighbours", "10", "--local"});
   const double x = json["cloud"]["origin"][0];
   EXPECT_NEAR(x, 500'000, 1);
   EXPECT_EQ(json["cloud"]["neighbours"], 10);
@@ -125,8 +126,8 @@ TEST_F(PointsImport, AnExportLiesWhereThePointsDo) {
 }
 
 TEST_F(PointsImport, TheOriginIsScaledWithThePoints) {
-  const auto json =
-      report(colouredSphere(500'000), {"--depth", "5", "--neighbours", "10", "--scale", "0.5"});
+  const auto json = report(colouredSphere(500'000),
+                           {"--depth", "5", "--neighbours", "10", "--scale", "0.5", "--local"});
   EXPECT_NEAR(json["cloud"]["origin"][0], 250'000, 1);
   double mean = 0;
   const auto mesh = written();

@@ -39,7 +39,7 @@ Result<Ok> moveInto(const std::string& from, const std::string& to) {
 struct Summary {
   double seconds = 0;
   std::uint64_t peak_bytes = 0;
-  std::vector<std::string> lacks;
+  std::vector<std::string> lacks, notes;
 };
 
 void printSummary(const ImageImport& options, const render::image::PyramidFile& file,
@@ -57,7 +57,8 @@ void printSummary(const ImageImport& options, const render::image::PyramidFile& 
                                          {"seconds", summary.seconds},
                                          {"pixels_per_s", rate},
                                          {"peak_memory_bytes", summary.peak_bytes},
-                                         {"lacks", summary.lacks}});
+                                         {"lacks", summary.lacks},
+                                         {"notes", summary.notes}});
     return;
   }
   printOut(
@@ -81,6 +82,10 @@ Result<std::string> runImport(const ImageImport& options, const std::string& fol
                                         "--memory",
                                         std::to_string(options.memory)};
   if (options.panorama) arguments.emplace_back("--panorama");
+  if (!options.range.empty()) {
+    arguments.emplace_back("--range");
+    arguments.push_back(fmt::format("{}:{}", options.range[0], options.range[1]));
+  }
   auto child = ImportChild::start(arguments);
   if (!child) return child.error();
   const SystemClock clock;
@@ -94,6 +99,7 @@ Result<std::string> runImport(const ImageImport& options, const std::string& fol
   if (name) bar.finish(child->report().pixels());
   summary.seconds = toSeconds(clock.now() - began);
   summary.lacks = child->report().lacks();
+  summary.notes = child->report().notes();
   rusage used{};
   ::getrusage(RUSAGE_CHILDREN, &used);
   summary.peak_bytes = static_cast<std::uint64_t>(used.ru_maxrss) * 1024;
@@ -104,10 +110,18 @@ Result<std::string> runImport(const ImageImport& options, const std::string& fol
 Result<Ok> checkOptions(const ImageImport& options) {
   if (const auto ending = checkEnding(options.output, "pyramid", ".tif"); !ending) return ending;
   if (!fileStamp(options.input)) {
-    const bool there = fs::exists(options.input);
-    return Error{Errc::kNotFound,
-                 fmt::format("{}: {}", options.input, there ? "is not a file" : "does not exist")};
+    std::error_code error;
+    const char* const is = fs::is_directory(options.input, error)
+                               ? "is a folder; merlin show FOLDER shows its pictures as slides"
+                           : fs::exists(options.input, error) ? "is not a file"
+                                                              : "does not exist";
+    return Error{Errc::kNotFound, fmt::format("{}: {}", options.input, is)};
   }
+  if (!options.range.empty() && !(options.range[0] < options.range[1]))
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("--range {} {}: the first value, which becomes black, has to be less "
+                             "than the second",
+                             options.range[0], options.range[1])};
   return checkWritable(options.output);
 }
 
@@ -122,6 +136,7 @@ Result<Ok> importImage(const ImageImport& options) {
   const auto made = runImport(options, folder->path(), stop.get(), summary);
   for (const std::string& what : summary.lacks)
     printNote(fmt::format("this system lacks {}; the import ran without it", what));
+  for (const std::string& note : summary.notes) printNote(options.input + ": " + note);
   if (!made) return made.error();
   // Read as the daemon will: what it would refuse is not left behind.
   const auto read = render::image::PyramidFile::open(*made);
@@ -156,6 +171,14 @@ void addImageImport(Command image, Run& run) {
         return value == "256" || value == "512" ? std::string() : value + " is neither 256 nor 512";
       })
       .showDefault();
+  command
+      .option("--range", options->range,
+              "The values that become black and white. By default measured values (floats, signed "
+              "and 32-bit integers, and grey of 16 bits that ends below 16384) are shown from the "
+              "lowest to the highest of the picture, without a thousandth at either end, which a "
+              "note says; colours stay as they are")
+      .typeName("LOW HIGH")
+      .expected(2);
   command
       .option("--memory", options->memory,
               "Address space that the import may take; about 0.5 GB are needed for any size of "

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "daemon/base/result.h"
 #include "daemon/cli/progress.h"
@@ -14,6 +15,8 @@ struct ImageImport {
   bool panorama = false, json = false;
   int quality = 90;  // of JPEG; 0: lossless
   int tile_px = 256;
+  std::vector<double>
+      range;  // the values that become black and white; empty: as they are, or found
   std::size_t memory = std::size_t{4'000'000'000};  // address space of merlin-import [bytes]
   bool quiet = false;           // no summary; notes and progress are printed all the same
   ProgressListener progress{};  // may be empty

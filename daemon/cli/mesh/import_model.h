@@ -23,6 +23,8 @@ struct ImportedModel {
   std::size_t welded_edges = 0, welded_vertices = 0;
   std::optional<PointFacts> cloud{};
   std::vector<std::string> notes{};  // already printed
+
+  const render::mesh::Origin& origin() const { return cloud ? cloud->origin : loaded.origin; }
 };
 
 // Where a foreign format is read meanwhile, and the memory that reading may take, in the program

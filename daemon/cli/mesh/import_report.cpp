@@ -38,17 +38,24 @@ nlohmann::ordered_json finiteOrNull(float value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
-void addOrigin(const render::mesh::Origin& origin, nlohmann::ordered_json& json) {
-  if (origin != render::mesh::Origin{}) json["origin"] = origin;
+void addOrigin(const ImportNames& names, const render::mesh::Origin& origin,
+               const ImportedFile& written, nlohmann::ordered_json& json) {
+  if (origin == render::mesh::Origin{}) return;
+  json["origin"] = origin;
+  json["origin_added"] = written.isMesh() && hasOrigin(origin, names.local, written.mesh);
 }
 
-void printOrigin(const render::mesh::Origin& origin) {
-  if (origin != render::mesh::Origin{})
-    printOut("  origin    the mesh's (0, 0, 0) is at {}, {}, {}\n", origin[0], origin[1],
+void printPlace(const ImportNames& names, const render::mesh::Origin& origin,
+                const ImportedFile& written) {
+  if (written.isMesh())
+    printOrigin(origin, names.local, written.mesh);
+  else if (origin != render::mesh::Origin{})
+    printOut("  origin    the model's (0, 0, 0) is at {}, {}, {}\n", origin[0], origin[1],
              origin[2]);
 }
 
-void addRange(const ImportedRange& range, nlohmann::ordered_json& json) {
+void addRange(const ImportNames& names, const ImportedRange& range, const ImportedFile& written,
+              nlohmann::ordered_json& json) {
   using Json = nlohmann::ordered_json;
   Json features = Json::array();
   for (const FeatureFacts& f : range.features) {
@@ -72,10 +79,8 @@ void addRange(const ImportedRange& range, nlohmann::ordered_json& json) {
   json["features"] = std::move(features);
   const auto& geometry = range.image.geometry;
   if (!geometry.projection.empty()) json["projection"] = geometry.projection;
-  if (geometry.origin)
-    json["origin"] = *geometry.origin;
-  else
-    addOrigin(range.origin, json);
+  addOrigin(names, range.origin, written, json);
+  if (geometry.origin) json["origin"] = *geometry.origin;  // without the height
   json["notes"] = range.notes;
 }
 
@@ -86,14 +91,17 @@ std::string nameOfProjection(const std::string& text) {
   return to == std::string::npos ? excerpt(text) : excerpt(text.substr(from + 1, to - from - 1));
 }
 
-void printMap(const render::range::Geometry& geometry) {
+// Where the map's origin is that of the mesh, printPlace() says so.
+void printMap(const render::range::Geometry& geometry, const render::mesh::Origin& origin) {
   if (geometry.projection.empty() && !geometry.origin) return;
   std::string text = geometry.projection.empty()
                          ? "projection unknown"
                          : "projection " + nameOfProjection(geometry.projection);
   if (geometry.origin)
-    text += fmt::format("; the mesh's (0, 0) is at {}, {}", (*geometry.origin)[0],
-                        (*geometry.origin)[1]);
+    text += fmt::format("; {} is at {}, {}",
+                        origin == render::mesh::Origin{} ? "the mesh's (0, 0)"
+                                                         : "the middle of its lower left pixel",
+                        (*geometry.origin)[0], (*geometry.origin)[1]);
   printOut("  map       {}\n", text);
 }
 
@@ -128,7 +136,6 @@ void printCloud(const std::string& format, const PointFacts& cloud) {
   printOut("  read      {}, {} points, {:.6g} apart\n", format, cloud.points, cloud.spacing);
   if (!cloud.projection.empty())
     printOut("  map       projection {}\n", nameOfProjection(cloud.projection));
-  printOrigin(cloud.origin);
   printOut("  normals   {}\n", cloud.normals);
   if (cloud.used.trim > 0)
     printOut(
@@ -144,7 +151,7 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
                  const ImportTimes& times) {
   if (names.json) {
     auto json = jsonOf(names, range.format, written, times);
-    addRange(range, json);
+    addRange(names, range, written, json);
     printJsonLine(json);
     return;
   }
@@ -159,8 +166,8 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
            image.height, range.returns_in_file, render::range::nameOf(image.geometry.scanner));
   if (range.outside + range.spikes > 0)
     printOut("  removed   {} returns outside --between, {} spikes\n", range.outside, range.spikes);
-  printMap(image.geometry);
-  if (!image.geometry.origin) printOrigin(range.origin);
+  printMap(image.geometry, range.origin);
+  printPlace(names, range.origin, written);
   printFeatures(range);
   if (written.triangles > 0)
     printOut(
@@ -181,7 +188,7 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
       json["welded_edges"] = model.welded_edges;
       json["welded_vertices"] = model.welded_vertices;
     }
-    addOrigin(model.loaded.origin, json);
+    addOrigin(names, model.origin(), written, json);
     if (model.cloud) json["cloud"] = jsonOf(*model.cloud);
     json["features"] = nlohmann::ordered_json::array();
     for (const auto& f : mesh.features)
@@ -194,7 +201,7 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
   }
   printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
   if (model.cloud) printCloud(model.format, *model.cloud);
-  printOrigin(model.loaded.origin);
+  printPlace(names, model.origin(), written);
   if (model.parts) printOut("  read      {}, {} parts\n", model.format, *model.parts);
   if (model.welded_vertices > 0)
     printOut("  welded    {} vertices of different parts, along {} common edges\n",

@@ -13,7 +13,7 @@ namespace merlin::cli {
 
 struct ImportNames {
   std::string input, output;
-  bool json = false;
+  bool json = false, local = false;
 };
 
 // Seconds of the command's steps.
@@ -27,7 +27,9 @@ struct ImportTimes {
 struct ImportedFile {
   std::size_t triangles = 0, vertices = 0;
   std::optional<std::size_t> coarsest{};  // triangles of a model's coarsest level
-  render::mesh::WrittenMesh mesh{};       // of a mesh file
+  render::mesh::WrittenMesh mesh{};       // of a mesh file; its format is empty for a model
+
+  bool isMesh() const { return !mesh.format.empty() && triangles > 0; }
 };
 
 void reportRange(const ImportNames& names, const ImportedRange& range, const ImportedFile& written,

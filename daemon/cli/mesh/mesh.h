@@ -51,6 +51,21 @@ std::string mendedText(const render::mesh::LoadedMesh& loaded);
 // the features that were left out because the file format cannot store them.
 void printWritten(const render::mesh::WrittenMesh& written);
 
+// Whether the coordinates in the file contain the mesh's origin. `local`: the caller wanted it to
+// be left out (--local).
+bool hasOrigin(const render::mesh::Origin& origin, bool local,
+               const render::mesh::WrittenMesh& written);
+
+// Says, for a person, what became of the mesh's origin in the file; nothing of 0 0 0.
+void printOrigin(const render::mesh::Origin& origin, bool local,
+                 const render::mesh::WrittenMesh& written);
+
+// The option --local of commands that write a mesh.
+void addLocal(Command command, bool& local);
+
+// The error for --local and an output that is no mesh.
+Error localIsForMeshes(const std::string& output);
+
 // Checks that the output files can be written and that none of them is the input file; empty names
 // are ignored. To be called before any long work. Errors: kInvalidArgument, those of
 // checkWritable().

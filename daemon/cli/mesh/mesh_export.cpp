@@ -48,23 +48,6 @@ Result<std::size_t> levelOf(const ExportOptions& options, const render::lod::Den
   return found->level;
 }
 
-// Says what became of the model's origin; nothing of 0 0 0. `floats`: the format's ending, if its
-// numbers are floats.
-void printOrigin(const ExportOptions& options, const render::mesh::Origin& origin,
-                 std::string_view floats) {
-  if (origin == render::mesh::Origin{}) return;
-  const std::string at = fmt::format("{}, {}, {}", origin[0], origin[1], origin[2]);
-  if (options.local)
-    printOut("  origin    {} is left out (--local); the mesh's (0, 0, 0) lies there\n", at);
-  else if (!floats.empty())
-    printOut(
-        "  origin    {} is left out, because the numbers of .{} are floats, which keep seven "
-        "digits; the mesh's (0, 0, 0) lies there\n",
-        at, floats);
-  else
-    printOut("  origin    {} is added to the coordinates; --local leaves it out\n", at);
-}
-
 // A map in degrees or feet has an origin that cannot be added to coordinates in metres.
 void printMapOrigin(std::string_view about) {
   const std::string at = valueIn(about, "map.origin");
@@ -90,8 +73,9 @@ int exportAll(const ExportOptions& options) {
   if (!left_out) return fail(left_out.error());
   printOut("{}: {} to {} triangles, {} levels\n", options.output,
            model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
-  printOrigin(options, origin, "iv");
-  printWritten({"iv", *left_out, {}});
+  const render::mesh::WrittenMesh written{"iv", *left_out, {}, origin};
+  printOrigin(origin, options.local, written);
+  printWritten(written);
   return kExitDone;
 }
 
@@ -112,8 +96,7 @@ int exportMesh(const ExportOptions& options) {
   printOut("{}: {} triangles, {} vertices, error estimate {:.4g}\n", options.output,
            mesh.triangleCount(), mesh.vertexCount(), model->errorAt(*level));
   if (origin == render::mesh::Origin{}) printMapOrigin(model->arrays().about);
-  printOrigin(options, origin,
-              written->relative_to == render::mesh::Origin{} ? "" : written->format);
+  printOrigin(origin, options.local, *written);
   printWritten(*written);
   return kExitDone;
 }
@@ -141,9 +124,7 @@ void addMeshExport(Command mesh, Run& run) {
       "--multiresolution", options->multiresolution,
       "Write all resolutions as a node SoMRFaceSet (.iv only); viewers that cannot load the module "
       "of this node show 10,000 triangles");
-  command.flag("--local", options->local,
-               "Keep the coordinates of a model of a map relative to the model's origin "
-               "(merlin mesh info shows it), for programs that read coordinates as floats");
+  addLocal(command, options->local);
   Command resolution = options->choice.addTo(command);
   resolution
       .option(

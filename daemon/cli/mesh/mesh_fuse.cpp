@@ -30,7 +30,7 @@ struct MeshFuse {
   fuse::FuseSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;
-  bool lost_says_nothing = false, json = false;
+  bool lost_says_nothing = false, local = false, json = false;
 
   std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
   bool makesModel() const { return output.ends_with(".mrm"); }
@@ -145,7 +145,8 @@ Result<fuse::Fused> fuseScans(MeshFuse& options,
 Result<Ok> writeFused(const MeshFuse& options, const Scans& scans, const render::mesh::Mesh& mesh,
                       FusedFile& file) {
   if (!options.makesModel()) {
-    auto written = render::mesh::writeMesh(options.output, mesh);
+    auto written = render::mesh::writeMesh(options.output, mesh,
+                                           options.local ? render::mesh::Origin{} : scans.origin);
     if (!written) return written.error();
     file.mesh = *std::move(written);
     return Ok{};
@@ -208,7 +209,11 @@ void reportJson(const MeshFuse& options, const Scans& scans, const fuse::Fused& 
       {"seconds", {{"reading", file.reading}, {"fusing", file.fusing}, {"writing", file.writing}}},
       {"peak_memory_mb", peakMemory() >> 20}};
   if (file.coarsest) json["triangles_coarsest"] = *file.coarsest;
-  if (scans.origin != render::mesh::Origin{}) json["origin"] = scans.origin;
+  if (scans.origin != render::mesh::Origin{}) {
+    json["origin"] = scans.origin;
+    json["origin_added"] =
+        !options.makesModel() && hasOrigin(scans.origin, options.local, file.mesh);
+  }
   printJsonLine(json);
 }
 
@@ -223,8 +228,10 @@ void report(const MeshFuse& options, const Scans& scans, const fuse::Fused& fuse
   const std::size_t inferred = fused.mesh.vertexCount() - fused.measured;
   if (options.settings.close)
     printOut("  closed    {} vertices that no scan saw (feature measured is 0)\n", inferred);
-  if (scans.origin != render::mesh::Origin{})
-    printOut("  origin    the mesh's (0, 0, 0) is at {}, {}, {}\n", scans.origin[0],
+  if (!options.makesModel())
+    printOrigin(scans.origin, options.local, file.mesh);
+  else if (scans.origin != render::mesh::Origin{})
+    printOut("  origin    the model's (0, 0, 0) is at {}, {}, {}\n", scans.origin[0],
              scans.origin[1], scans.origin[2]);
   printFeatures(scans, fused.mesh);
   printWritten(file.mesh);
@@ -256,6 +263,7 @@ Result<Ok> checkFuse(MeshFuse& options) {
                              options.poses.size(), options.scans.size())};
   if (options.lost_says_nothing && !options.settings.close)
     return Error{Errc::kInvalidArgument, "--ignore-background: is for --close"};
+  if (options.local && options.makesModel()) return localIsForMeshes(options.output);
   return Ok{};
 }
 
@@ -335,6 +343,7 @@ void addMeshFuse(Command mesh, Run& run) {
   options->range.addReadingTo(command);
   addVolume(command, *options);
   addLimits(command, options->memory, options->threads);
+  addLocal(command, options->local);
   command.flag("--json", options->json, "Print the report as JSON, for programs");
   command.callback([options, &run] { run = [options] { return fuseFiles(*options); }; });
 }

@@ -27,7 +27,7 @@ namespace merlin::cli {
 namespace {
 
 ImportNames namesOf(const MeshImport& options) {
-  return {options.input(), options.output, options.json};
+  return {options.input(), options.output, options.json, options.local};
 }
 
 std::size_t limitOf(const MeshImport& options) {
@@ -75,9 +75,11 @@ Result<ImportedFile> writeModel(const MeshImport& options, const render::mesh::M
 }
 
 Result<ImportedFile> writeOutput(const MeshImport& options, const render::mesh::Mesh& mesh,
-                                 const std::string& about, ImportTimes& times) {
+                                 const render::mesh::Origin& origin, const std::string& about,
+                                 ImportTimes& times) {
   if (makesModel(options)) return writeModel(options, mesh, about, times);
-  auto done = render::mesh::writeMesh(options.output, mesh);
+  auto done = render::mesh::writeMesh(options.output, mesh,
+                                      options.local ? render::mesh::Origin{} : origin);
   if (!done) return done.error();
   return ImportedFile{mesh.triangleCount(), mesh.vertexCount(), {}, *std::move(done)};
 }
@@ -149,7 +151,7 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
     printNote(fmt::format("{}: {} values of features were not numbers; 0 stands there",
                           options.input(), range->mesh.not_numbers));
   times.meshing = watch.lap();
-  const auto written = writeOutput(options, mesh, aboutRange(*range), times);
+  const auto written = writeOutput(options, mesh, range->origin, aboutRange(*range), times);
   if (!written) return written.error();
   times.writing = watch.lap() - times.reducing;
   if (!options.quiet) reportRange(namesOf(options), *range, *written, times);
@@ -214,7 +216,8 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
   if (!scaled) return scaled.error();
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   times.reading = watch.lap();
-  const auto written = writeOutput(options, mesh, aboutModel(options, *kind, *model), times);
+  const auto written =
+      writeOutput(options, mesh, model->origin(), aboutModel(options, *kind, *model), times);
   if (!written) return written.error();
   times.writing = watch.lap() - times.reducing;
   if (!options.quiet) reportModel(namesOf(options), *model, *written, times);
@@ -241,6 +244,8 @@ Result<Ok> checkOptions(MeshImport& options) {
       return Error{known.error().code,
                    known.error().what + "; models as .mrm, range images as .pgm"};
   }
+  if (options.local && (makesModel(options) || makesImage(options)))
+    return localIsForMeshes(options.output);
   return checkOutputs(options.input(), {options.output});
 }
 
@@ -300,6 +305,7 @@ void addMeshImport(Command mesh, Run& run) {
       .required()
       .typeName("OUT");
   addImportOptions(command, *options);
+  addLocal(command, options->local);
   command.flag("--json", options->json, "Print the report as JSON, for programs");
   command.callback([options, &run] {
     run = [options] {

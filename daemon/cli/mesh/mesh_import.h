@@ -20,6 +20,7 @@ struct MeshImport {
   PointImport points;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;      // 0: all cores
+  bool local = false;        // a mesh is written without its origin
   bool json = false;
   bool quiet = false;           // no report; notes and progress are printed all the same
   ProgressListener progress{};  // may be empty

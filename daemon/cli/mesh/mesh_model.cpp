@@ -76,6 +76,40 @@ void printWritten(const render::mesh::WrittenMesh& written) {
              fmt::join(written.left_out, ", "));
 }
 
+bool hasOrigin(const render::mesh::Origin& origin, bool local,
+               const render::mesh::WrittenMesh& written) {
+  const render::mesh::Origin none{};
+  return origin != none && !local && written.relative_to == none;
+}
+
+void printOrigin(const render::mesh::Origin& origin, bool local,
+                 const render::mesh::WrittenMesh& written) {
+  if (origin == render::mesh::Origin{}) return;
+  const std::string at = fmt::format("{}, {}, {}", origin[0], origin[1], origin[2]);
+  if (hasOrigin(origin, local, written))
+    printOut("  origin    {} is added to the coordinates; --local leaves it out\n", at);
+  else if (local)
+    printOut("  origin    {} is left out (--local); the mesh's (0, 0, 0) lies there\n", at);
+  else
+    printOut(
+        "  origin    {} is left out, because the numbers of .{} are floats, which keep seven "
+        "digits; the mesh's (0, 0, 0) lies there\n",
+        at, written.format);
+}
+
+void addLocal(Command command, bool& local) {
+  command.flag("--local", local,
+               "Keep the coordinates of a mesh of a map or a survey relative to its origin, which "
+               "is named, for programs that read coordinates as floats");
+}
+
+Error localIsForMeshes(const std::string& output) {
+  return {Errc::kInvalidArgument,
+          output +
+              ": --local is for meshes; a model (.mrm) keeps the origin beside its coordinates, "
+              "and a range image (.pgm) its camera: leave the option out"};
+}
+
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs) {
   std::error_code absent;
   for (const std::string& output : outputs) {

@@ -24,6 +24,7 @@ struct SegmentOptions {
   render::segment::SegmentSettings settings;
   View view;
   bool json = false;
+  bool local = false;  // without the origin
 };
 
 void setFeature(render::mesh::Mesh& mesh, render::mesh::Feature feature) {
@@ -94,12 +95,14 @@ int segmentMesh(const SegmentOptions& options) {
   if (!segmentation) return fail(segmentation.error());
   const double seconds = toSeconds(clock.now() - began);
   setFeature(mesh, {"label", 1, {segmentation->labels.begin(), segmentation->labels.end()}});
-  const auto written = render::mesh::writeMesh(options.output, mesh, loaded->origin);
+  const auto written = render::mesh::writeMesh(
+      options.output, mesh, options.local ? render::mesh::Origin{} : loaded->origin);
   if (!written) return fail(written.error());
   if (!options.picture.empty()) {
     if (const auto drawn = draw(options, mesh); !drawn) return fail(drawn.error());
   }
   report(options, *segmentation, seconds, *written);
+  if (!options.json) printOrigin(loaded->origin, options.local, *written);
   return kExitDone;
 }
 
@@ -137,6 +140,7 @@ void addMeshSegment(Command mesh, Run& run) {
               "Write an image of the segments, each in its own colour")
       .typeName("FILE.png");
   options->view.addTo(command);
+  addLocal(command, options->local);
   command.flag("--json", options->json, "Print the report as JSON, for programs");
   command.callback([options, &run] { run = [options] { return segmentMesh(*options); }; });
 }

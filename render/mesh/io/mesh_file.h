@@ -57,8 +57,8 @@ struct MeshFileSize {
 
 // How large the mesh in the file is, before any of it is kept: of .ply and .off as the header
 // declares it, and where faces of .ply may have more than three corners, as the file's size allows;
-// of .obj as its lines are counted. Nothing if the file cannot be opened, its format has no counts,
-// or it declares more elements than the file has bytes. Reads the header only, of .obj all lines.
+// of .obj and ASCII .stl as their lines are counted. Nothing if the file cannot be opened, is
+// damaged, or declares more elements than the file has bytes. Reads the header only, or all lines.
 std::optional<MeshFileSize> meshFileSize(const std::string& path);
 
 // File endings that readMesh() supports, for messages and help: ".ply, .obj and .stl".

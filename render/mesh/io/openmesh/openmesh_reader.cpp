@@ -216,9 +216,13 @@ Result<LoadedMesh> readStl(std::string_view content, const std::string&) {
 }
 
 std::optional<MeshFileSize> stlSize(std::string_view content, const std::string&) {
-  if (!isBinaryStl(content)) return std::nullopt;
-  const std::size_t triangles = littleEndian(content, 80);
-  return MeshFileSize{{3 * triangles, triangles, 0}, {}};
+  if (isBinaryStl(content)) {
+    const std::size_t triangles = littleEndian(content, 80);
+    return MeshFileSize{{3 * triangles, triangles, 0}, {}};
+  }
+  const auto facets = checkStlText(content);
+  if (!facets) return std::nullopt;
+  return MeshFileSize{{3 * *facets, *facets, 0}, content.size()};  // readStl() copies the text
 }
 
 // Its header's third byte is the kind of mesh, its fourth the version.

@@ -13,6 +13,7 @@
 #include "render/mesh/io/ply/ply_body.h"
 #include "render/mesh/io/ply/ply_header.h"
 #include "render/mesh/io/ply/ply_rows.h"
+#include "render/mesh/io/ply/ply_strips.h"
 #include "render/mesh/io/ply_features.h"
 #include "render/mesh/polygon.h"
 
@@ -111,15 +112,14 @@ class Reader {
 
   Result<LoadedMesh> read() {
     for (const Element& e : header_.elements) {
-      const auto done = e.name == "vertex" ? readVertices(e)
-                        : e.name == "face" ? readFaces(e)
-                                           : skip(e);
+      const auto done = e.name == "vertex"      ? readVertices(e)
+                        : e.name == "face"      ? readFaces(e)
+                        : e.name == "tristrips" ? readStrips(e)
+                                                : skip(e);
       if (!done) return explained(done.error());
     }
     if (const std::string row = body_.rest().empty() ? "" : longRowOfText(); !row.empty())
       return Error{Errc::kMalformed, row};
-    if (strips_ && mesh().triangles.empty())
-      return Error{Errc::kUnsupported, "its triangles are strips (tristrips), which are not read"};
     completeTextures();
     cutFans();
     mesh().features = grouped(std::move(mesh().features), mesh().vertexCount());
@@ -162,7 +162,6 @@ class Reader {
 
   Result<Ok> skip(const Element& e) {
     leaveOut(e.name, "");
-    strips_ = strips_ || (e.name == "tristrips" && e.count > 0);
     if (e.properties.empty()) return Ok{};
     for (std::uint64_t row = 0; row < e.count; ++row) {
       for (const Property& p : e.properties) {
@@ -358,6 +357,46 @@ class Reader {
     }
   }
 
+  // The strips of all rows; -1 ends one, and so does the row.
+  Result<Ok> readStrips(const Element& e) {
+    if (const auto room = checkRoom(e); !room) return room;
+    for (std::uint64_t row = 0; row < e.count; ++row) {
+      for (const Property& p : e.properties) {
+        const auto done = isCorners(p) ? readStripRow(e, row, p) : skipProperty(e, row, p);
+        if (!done) return done;
+      }
+    }
+    return Ok{};
+  }
+
+  Result<Ok> readStripRow(const Element& e, std::uint64_t row, const Property& p) {
+    const auto count = readLength(e, row, p);
+    if (!count) return count.error();
+    StripCutter strip;
+    double value = 0;
+    for (std::uint64_t i = 0; i < *count; ++i) {
+      if (!body_.next(p.type, value)) return brokenAt(e, row, p);
+      if (value == -1) {
+        strip.end();
+      } else if (isIndex(value)) {
+        strip.take(static_cast<std::uint32_t>(value), mesh().triangles);
+      } else {
+        return notAnIndex("tristrips", row, i, value);
+      }
+    }
+    return Ok{};
+  }
+
+  static bool isIndex(double value) {
+    return value >= 0 && value < 2147483648.0 && value == std::floor(value);
+  }
+
+  static Error notAnIndex(const char* element, std::uint64_t row, std::uint64_t corner,
+                          double value) {
+    return {Errc::kMalformed,
+            fmt::format("{} {}: corner {} is {}, not a vertex index", element, row, corner, value)};
+  }
+
   static bool isCorners(const Property& p) {
     return p.list && (p.name == "vertex_indices" || p.name == "vertex_index");
   }
@@ -374,10 +413,7 @@ class Reader {
     std::uint32_t first = 0, last = 0;
     for (std::uint64_t i = 0; i < *count; ++i) {
       if (!body_.next(p.type, value)) return brokenAt(e, row, p);
-      if (!(value >= 0 && value < 2147483648.0) || value != std::floor(value)) {
-        return Error{Errc::kMalformed,
-                     fmt::format("face {}: corner {} is {}, not a vertex index", row, i, value)};
-      }
+      if (!isIndex(value)) return notAnIndex("face", row, i, value);
       const auto v = static_cast<std::uint32_t>(value);
       if (i == 0) first = v;
       if (i >= 2) mesh().triangles.insert(mesh().triangles.end(), {first, last, v});
@@ -387,7 +423,7 @@ class Reader {
     return Ok{};
   }
 
-  // Faces of an element without textures may come last.
+  // Faces of an element without textures, and strips, may come last.
   void completeTextures() {
     if (!textures_) return;
     if (!textures_->numbers.empty()) textures_->numbers.resize(mesh().triangleCount(), -1);
@@ -424,7 +460,6 @@ class Reader {
   FaceTextures* textures_;
   std::vector<float> face_texcoords_;  // of this face
   double face_number_ = -1;
-  bool strips_ = false;
   std::string left_out_, left_out_more_;  // names of properties and elements
   std::size_t left_out_count_ = 0, rounded_ = 0;
 };

@@ -98,8 +98,8 @@ bool isNormal(const std::string& property) {
   return property == "nx" || property == "ny" || property == "nz";
 }
 
-// The triangles of faces with any number of corners: what the file has beside its other numbers are
-// the corners. Nothing where there are other lists, whose lengths are not known.
+// The triangles of faces with any number of corners, or of strips: what the file has beside its
+// other numbers are the corners. Nothing where there are other lists, whose lengths are not known.
 std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Header& header) {
   const bool ascii = header.form == ply::Form::kAscii;
   std::size_t left =
@@ -108,11 +108,12 @@ std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Head
   for (const ply::Element& e : header.elements) {
     std::size_t fixed = 0;
     for (const ply::Property& p : e.properties) {
-      if (p.list && (corner > 0 || e.name != "face")) return std::nullopt;
+      if (p.list && (corner > 0 || (e.name != "face" && e.name != "tristrips")))
+        return std::nullopt;
       fixed += ascii ? 1 : ply::sizeOf(p.list ? p.count_type : p.type);
       if (!p.list) continue;
       corner = ascii ? 1 : ply::sizeOf(p.type);
-      faces = e.count;
+      faces = e.name == "face" ? e.count : 0;  // a list of strips has any number
     }
     if (fixed > 0 && e.count > left / fixed) return std::nullopt;  // is cut
     left -= e.count * fixed;
