@@ -209,7 +209,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
     checkInput(options, loaded);
     checkStateFile(file, loaded);
     if (reading == Reading::kStart) wall::checkRenderer(loaded);
-    wall::checkOutputs(loaded);
+    wall::checkOutputs(loaded, reading == Reading::kStart);
     wall::checkPlaylist(loaded);
     if (reading == Reading::kStart) read.contents = wall::readContents(loaded);
   }

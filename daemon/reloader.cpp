@@ -220,9 +220,10 @@ void Reloader::swap(const ReadFile& file) {
         file.trained);
   }
   if (parts_.wall) {
-    parts_.wall->reload(running_,
-                        {plan.has(Part::kRate), plan.has(Part::kPlaylist), plan.has(Part::kScene),
-                         plan.has(Part::kBindings) || plan.has(Part::kHand)});
+    parts_.wall->reload(
+        running_,
+        {plan.has(Part::kRate), plan.has(Part::kPlaylist), plan.has(Part::kScene),
+         plan.has(Part::kBindings) || plan.has(Part::kHand), plan.has(Part::kCorrection)});
   }
   configured_ = file.settings;
 }

@@ -38,6 +38,10 @@ constexpr Taker kTakers[] = {
     {"/wall", kWall, Part::kRestart},
     {"/wall/rate", kWall, Part::kRate},
     {"/wall/playlist", kWall, Part::kPlaylist},
+    {"/wall/outputs/*/correction", kWall, Part::kCorrection},
+    // Measured files are read at the start.
+    {"/wall/outputs/*/correction/mpcdi", kWall, Part::kRestart},
+    {"/wall/outputs/*/correction/mpcdi_region", kWall, Part::kRestart},
     // The initial view, the model's size and the screen's distance are in what was measured and
     // laid out at the start.
     {"/wall/scene", kWall, Part::kRestart},
@@ -155,6 +159,11 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
   if (plan.has(Part::kGestures)) to.gestures = from.gestures;
   if (plan.has(Part::kRate)) running.wall.governor = fresh.wall.governor;
   if (plan.has(Part::kPlaylist)) running.wall.playlist = fresh.wall.playlist;
+  if (plan.has(Part::kCorrection)) {
+    auto& outputs = running.wall.outputs;
+    for (std::size_t i = 0; i < std::min(outputs.size(), fresh.wall.outputs.size()); ++i)
+      outputs[i].correction = fresh.wall.outputs[i].correction;
+  }
   // All of it: a change of the rest of the scene would have needed a restart.
   if (plan.has(Part::kScene)) running.wall.scene = fresh.wall.scene;
 }

@@ -14,14 +14,15 @@ namespace merlin::reload {
 // What can be swapped while merlind runs; kRestart: the process has to start again.
 enum class Part : std::size_t {
   kRestart,
-  kBindings,  // bindings, and when a silent device lets go
-  kLine,      // of a device, which is closed and opened again
-  kHand,      // station and filter of a hand
-  kPostures,  // network, hold times and margin
-  kGestures,  // which gestures, of which hands
-  kRate,      // frame rate and limits of the triangles
-  kPlaylist,  // what the wall shows while nobody is there, and its light then
-  kScene,     // how a person's input moves the model
+  kBindings,    // bindings, and when a silent device lets go
+  kLine,        // of a device, which is closed and opened again
+  kHand,        // station and filter of a hand
+  kPostures,    // network, hold times and margin
+  kGestures,    // which gestures, of which hands
+  kRate,        // frame rate and limits of the triangles
+  kPlaylist,    // what the wall shows while nobody is there, and its light then
+  kScene,       // how a person's input moves the model
+  kCorrection,  // of outputs: warp, blend, colours and black level
   kCount
 };
 

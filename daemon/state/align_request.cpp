@@ -99,6 +99,8 @@ struct TextOf {
 
 Json json(const Offset& o) { return Json::array({o.x, o.y}); }
 
+Json json(const SeenAxes& axes) { return {{"right", json(axes.right)}, {"down", json(axes.down)}}; }
+
 Json json(const ReportedOutput& output, const Alignment& alignment) {
   const OutputForm& form = output.form;
   Json corners = Json::object();
@@ -114,10 +116,10 @@ Json json(const ReportedOutput& output, const Alignment& alignment) {
       points.push_back({{"column", place.column}, {"row", place.row}, {"moved", json(offset)}});
     }
   }
-  return {{"name", form.output},        {"width", form.width},
-          {"height", form.height},      {"mesh", {form.mesh_columns, form.mesh_rows}},
-          {"pending", output.pending},  {"corners", std::move(corners)},
-          {"points", std::move(points)}};
+  return {{"name", form.output},           {"width", form.width},
+          {"height", form.height},         {"mesh", {form.mesh_columns, form.mesh_rows}},
+          {"pending", output.pending},     {"seen", json(output.axes)},
+          {"corners", std::move(corners)}, {"points", std::move(points)}};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "daemon/base/result.h"
 #include "daemon/state/alignment.h"
+#include "daemon/state/seen_axes.h"
 
 namespace merlin::state {
 
@@ -46,6 +47,7 @@ struct ReportedOutput {
   OutputForm form;
   std::vector<double> configured;  // its corners in the configuration, x and y each
   bool pending = false;            // what was changed last is not shown yet
+  SeenAxes axes{};
 };
 
 struct AlignReport {
@@ -56,7 +58,8 @@ struct AlignReport {
   std::string test_card;  // that is shown; else empty
 };
 
-// {"outputs": [{"name", "width", "height", "mesh": [COLUMNS, ROWS], "pending", "corners":
+// {"outputs": [{"name", "width", "height", "mesh": [COLUMNS, ROWS], "pending", "seen": {"right":
+// [X, Y], "down": [X, Y]} (steps on the wall, in pixels of the signal), "corners":
 // {"top_left": {"configured": [X, Y], "moved": [X, Y]}, ...}, "points": [{"column", "row", "moved":
 // [X, Y]}]}], "selected": {"output", "place"}, "undo": N, "redo": N, "done": "", "test_card": ""};
 // [px].

@@ -165,9 +165,25 @@ void Aligner::commit(Alignment next, const std::string& output) {
   for (Entry& entry : entries_) {
     if (entry.output.name == output) ++entry.wanted;
   }
+  wake();
+}
+
+void Aligner::wake() {
   const std::lock_guard lock(asked_mutex_);
   work_ = true;
   wake_.notify_one();
+}
+
+void Aligner::configure(const std::string& output,
+                        const render::correct::CorrectionSettings& configured) {
+  const std::lock_guard lock(mutex_);
+  const auto entry =
+      std::ranges::find_if(entries_, [&](const Entry& e) { return e.output.name == output; });
+  if (entry == entries_.end() || entry->output.configured == configured) return;
+  entry->output.configured = configured;
+  dropMisfits();
+  ++entry->wanted;
+  wake();
 }
 
 Result<Ok> Aligner::move(const state::MoveRequest& request, bool on) {
@@ -239,8 +255,10 @@ std::string Aligner::report() const {
   state::AlignReport report;
   for (const Entry& entry : entries_) {
     const auto& corners = entry.output.configured.corners;
-    report.outputs.push_back(
-        {formOf(entry), {corners.begin(), corners.end()}, entry.wanted != entry.built});
+    report.outputs.push_back({formOf(entry),
+                              {corners.begin(), corners.end()},
+                              entry.wanted != entry.built,
+                              entry.output.axes});
   }
   if (!entries_.empty()) report.selected = entries_[selected_].output.name;
   report.selected_place = state::cornerAt(corner_);
@@ -318,8 +336,13 @@ Result<Ok> Aligner::act(std::size_t action) {
   if (action == 0) choose((selected_ + 1) % entries_.size(), corner_);
   if (action == 1) choose(selected_, (corner_ + 1) % 4);
   if (action < kFirstMove) return Ok{};
-  return move(
-      {entries_[selected_].output.name, state::cornerAt(corner_), kMoves[action - kFirstMove]});
+  return move(seenMove(kMoves[action - kFirstMove]));
+}
+
+// Of the selected corner, by an offset as people before the wall see it.
+state::MoveRequest Aligner::seenMove(const state::Offset& by) const {
+  const AlignedOutput& output = entries_[selected_].output;
+  return {output.name, state::cornerAt(corner_), output.axes.onSignal(by)};
 }
 
 void Aligner::executeAsked(const AlignInput& input) {
@@ -333,7 +356,7 @@ void Aligner::executeAsked(const AlignInput& input) {
   if (input.push == state::Offset{} || entries_.empty()) return;
   const Timestamp now = SystemClock().now();
   const bool on = now - std::exchange(pushed_, now) < kSamePush;
-  keepRefusal(move({entries_[selected_].output.name, state::cornerAt(corner_), input.push}, on));
+  keepRefusal(move(seenMove(input.push), on));
 }
 
 // Builds the correction of each output with its newest settings; after several moves in a row, only

@@ -35,7 +35,8 @@ struct AlignedOutput {
   render::frame::ReplaceableCorrection* correction = nullptr;  // must outlive the aligner
   // Marks of its corners on test cards, in the order of kCornerNames.
   std::array<std::optional<render::testcard::MarkedCorner>, 4> marks{};
-  std::string fixed{};  // why nothing of it may be moved, a sentence; empty: it may
+  std::string fixed{};     // why nothing of it may be moved, a sentence; empty: it may
+  state::SeenAxes axes{};  // bound inputs move corners as they are seen
 };
 
 // Actions that inputs may be bound to, in this order: align_output_next, align_corner_next,
@@ -70,6 +71,11 @@ class Aligner {
   // Errors, which change nothing: kInvalidArgument (no such output or point; the corrected image
   // would be folded, or too far outside the output).
   Result<std::string> run(const std::string& argument);
+
+  // Takes other base values for an output, which are shown some frames later; offsets that no
+  // longer fit them are dropped, with a notice. An output that is not corrected is passed over.
+  // REQUIRES: validate(configured), and the measured file of before.
+  void configure(const std::string& output, const render::correct::CorrectionSettings& configured);
 
   // Shows the test card of this name from one of the next frames on; "off" shows none. The selected
   // corner is marked on it once somebody has selected one. Errors: kInvalidArgument.
@@ -109,11 +115,13 @@ class Aligner {
   Result<Ok> move(const state::MoveRequest& request, bool on = false);
   Result<Ok> step(bool undo);
   Result<Ok> act(std::size_t action);
+  state::MoveRequest seenMove(const state::Offset& by) const;
   void commit(state::Alignment next, const std::string& output);
   std::string report() const;
   void choose(std::size_t output, std::size_t corner);
   void redrawCard();
 
+  void wake();
   void loop(const std::stop_token& stop, Progress& progress);
   void executeAsked(const AlignInput& input);
   void buildPending();

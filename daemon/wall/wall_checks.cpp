@@ -43,7 +43,7 @@ std::vector<WallContent> readEach(LoadedSettings& loaded, bool keep) {
     }
     const auto stamp = fileOrFolderStamp(entry.path);
     std::vector<std::string> skipped;
-    auto content = readContent(entry, loaded.settings.wall.render.model.show, "", skipped);
+    auto content = readContent(entry, loaded.settings.wall.render.model.show, {}, skipped);
     if (content) {
       if (keep) contents.push_back(*std::move(content));
       any = true;
@@ -55,7 +55,10 @@ std::vector<WallContent> readEach(LoadedSettings& loaded, bool keep) {
   }
   for (const WallContent& content : contents) {
     if (content.fault.empty()) continue;
-    const char* const then = any ? "; the wall is shown without it until it can be read" : "";
+    const char* const then =
+        !any   ? ""
+        : keep ? "; the wall is shown without it until it can be read"
+               : "; a reload refuses it, a start shows the wall without it until it can be read";
     loaded.add({any, loaded.lineOf(content.entry.pointer), content.entry.pointer,
                 kCannot + content.fault + then});
   }
@@ -113,13 +116,18 @@ void checkIsPicture(LoadedSettings& loaded, const std::string& path, const std::
   }
 }
 
+// At a start a damaged file makes one output look wrong, which is better than a dark wall.
 void checkMeasured(LoadedSettings& loaded, const render::correct::CorrectionSettings& correction,
-                   const std::string& at) {
+                   const std::string& at, bool is_start) {
   if (correction.mpcdi.empty()) return;
   const auto measured = render::correct::readMeasured(correction.mpcdi, correction.mpcdi_region);
   if (measured) return;
-  const bool region = measured.error().code == Errc::kInvalidArgument;
-  loaded.addFinding(at + (region ? "/mpcdi_region" : "/mpcdi"), kCannot + measured.error().what);
+  const std::string what = kCannot + measured.error().what;
+  if (measured.error().code == Errc::kInvalidArgument)
+    return loaded.addFinding(at + "/mpcdi_region", what);
+  if (!is_start) return loaded.addFinding(at + "/mpcdi", what);
+  loaded.add({true, loaded.lineOf(at + "/mpcdi"), at + "/mpcdi",
+              what + "; the output is shown without its measured warp and blend"});
 }
 
 }  // namespace
@@ -147,11 +155,11 @@ void checkRenderer(LoadedSettings& loaded) {
     loaded.addFinding("/wall/render/gpu", there.error().what);
 }
 
-void checkOutputs(LoadedSettings& loaded) {
+void checkOutputs(LoadedSettings& loaded, bool is_start) {
   const WallSettings wall = loaded.settings.wall;
   for (std::size_t i = 0; i < wall.outputs.size(); ++i) {
-    checkMeasured(loaded, wall.outputs[i].correction,
-                  fmt::format("/wall/outputs/{}/correction", i));
+    checkMeasured(loaded, wall.outputs[i].correction, fmt::format("/wall/outputs/{}/correction", i),
+                  is_start);
     if (const auto there = render::out::checkIsThere(wall.outputs[i].kind); !there) {
       loaded.addFinding(
           fmt::format("/wall/outputs/{}/kind", i),

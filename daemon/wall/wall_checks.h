@@ -17,7 +17,8 @@ namespace merlin::wall {
 // O(size of the models' files).
 std::vector<WallContent> readContents(LoadedSettings& loaded);
 
-// Adds the findings of readContents(), and has one content at a time in memory.
+// Adds the findings of readContents(), and has one content at a time in memory. For a reload, which
+// refuses what a start adjusts, as the findings say.
 void checkContents(LoadedSettings& loaded);
 
 // Adds a finding for each content that has the name of one before it, which commands would find in
@@ -31,8 +32,9 @@ void checkPlaylist(LoadedSettings& loaded);
 
 // Adds a finding for each image file or snapshot folder that cannot be written, for each MPCDI file
 // of a correction that cannot be read or lacks the output's region, and for each output of a kind
-// that this installation lacks.
-void checkOutputs(LoadedSettings& loaded);
+// that this installation lacks. At a start (`is_start`) an MPCDI file that cannot be read is only
+// an adjustment: the output is shown without it.
+void checkOutputs(LoadedSettings& loaded, bool is_start);
 
 // Adds a finding if /wall/render/gpu names no GPU of this machine. Looks for GPUs only if it names
 // one, which takes up to some tenths of a second for each.

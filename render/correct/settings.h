@@ -30,6 +30,7 @@ struct MeshSettings {
   MeshInterpolation interpolation = MeshInterpolation::kBicubic;
 
   bool isOff() const { return columns == 0 && rows == 0 && points.empty(); }
+  bool operator==(const MeshSettings&) const = default;
 };
 
 // Widths of the strips of the uncorrected picture that a neighbour shows too [px of that picture].
@@ -40,6 +41,7 @@ struct BlendSettings {
   double gamma = 2.2;  // the display's: light = signal ^ gamma
 
   bool hasRamp() const { return left > 0 || right > 0 || top > 0 || bottom > 0; }
+  bool operator==(const BlendSettings&) const = default;
 };
 
 struct ColourSettings {
@@ -49,6 +51,7 @@ struct ColourSettings {
   std::array<double, 3> gamma{1, 1, 1};
 
   bool isOff() const;
+  bool operator==(const ColourSettings&) const = default;
 };
 
 struct BlackSettings {
@@ -56,6 +59,7 @@ struct BlackSettings {
   std::array<double, 3> level{};
 
   bool isOff() const { return level == std::array<double, 3>{}; }
+  bool operator==(const BlackSettings&) const = default;
 };
 
 struct CorrectionSettings {
@@ -71,6 +75,7 @@ struct CorrectionSettings {
 
   // Whether the output is sent the uncorrected picture.
   bool isOff() const;
+  bool operator==(const CorrectionSettings&) const = default;
 };
 
 // Pictures of equal size in one signal, each of which the projector stretches over the whole

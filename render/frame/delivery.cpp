@@ -37,7 +37,7 @@ void Delivery::show(std::span<std::uint8_t> canvas, const out::FrameInfo& info,
 bool Delivery::hasChanged(Timestamp now) const {
   if (std::ranges::any_of(overlays_, &Overlay::hasChanged)) return true;
   for (std::size_t i = 0; i < corrections_.size(); ++i) {
-    if (isWatched(i) || outputs_.wantsFrame(i)) return true;
+    if (isWatched(i) || outputs_.wantsFrame(i, now)) return true;
     const bool corrected = corrections_[i] && corrections_[i]->hasChanged();
     if (corrected && outputs_.mayTake(i, {.finished = now})) return true;
   }

@@ -186,7 +186,8 @@ void Clusters::Builder::addRungs() {
   auto triangles = static_cast<double>(d.trianglesAt(finest));
   for (;;) {
     triangles /= triangles > kLargeRung ? kLargeRungStep : kRungStep;
-    if (triangles <= static_cast<double>(d.trianglesAt(c.coarsest_))) return;
+    // Of a model that ends without any triangle, no count of steps would come down to it.
+    if (triangles < 1 || triangles <= static_cast<double>(d.trianglesAt(c.coarsest_))) return;
     const std::size_t level = d.levelFor(static_cast<std::size_t>(triangles));
     const DetailStep& finer = c.steps_.back();
     if (level <= finer.level || level >= c.coarsest_) continue;

@@ -23,7 +23,7 @@ class KmsOutput final : public Output {
   std::optional<std::string> faultNow() const override {
     return worker_->displays().fault(number_);
   }
-  bool wantsFrame() const override { return worker_->displays().wantsFrame(number_); }
+  bool wantsFrame(Timestamp) const override { return worker_->displays().wantsFrame(number_); }
   bool canReadBack() const override { return true; }
   Result<std::vector<DisplayReading>> readBack() override {
     auto read = worker_->displays().readBack(number_);

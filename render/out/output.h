@@ -57,8 +57,8 @@ class Output {
   virtual std::optional<std::string> faultNow() const { return std::nullopt; }
 
   // True if a frame is to be presented although the picture has not changed, since the output has
-  // lost its picture. Thread-safe.
-  virtual bool wantsFrame() const { return false; }
+  // lost its picture, or has left a frame out and could take one at `now`. Thread-safe.
+  virtual bool wantsFrame(Timestamp /*now*/) const { return false; }
 
   // The last vertical blank of the output's display; nothing if it has none. Thread-safe.
   virtual std::optional<Vblank> vblank() const { return std::nullopt; }

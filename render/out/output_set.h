@@ -49,8 +49,8 @@ class OutputSet {
     return entries_[i].named.output->mayTake(info);
   }
 
-  bool wantsFrame(std::size_t i) const {
-    return entries_[i].named.output->wantsFrame() || (checks_ && checks_->wantsFrame(i));
+  bool wantsFrame(std::size_t i, Timestamp now) const {
+    return entries_[i].named.output->wantsFrame(now) || (checks_ && checks_->wantsFrame(i));
   }
 
   // Output i, for whoever reads back what it shows.

@@ -25,7 +25,12 @@ PngOutput::PngOutput(std::string path, double interval_s, ThreadWatch& watch, Wr
 PngOutput::~PngOutput() { thread_.stop(); }
 
 bool PngOutput::mayTake(const FrameInfo& info) const {
-  return last_ == Timestamp{} || info.finished - last_ >= fromSeconds(interval_s_);
+  const Timestamp last = last_.load();
+  return last == Timestamp{} || info.finished - last >= fromSeconds(interval_s_);
+}
+
+bool PngOutput::wantsFrame(Timestamp now) const {
+  return skipped_.load() && mayTake({.finished = now});
 }
 
 Result<std::optional<Timestamp>> PngOutput::present(const Signal& signal, const FrameInfo& info) {
@@ -40,6 +45,7 @@ Result<std::optional<Timestamp>> PngOutput::present(const Signal& signal, const 
     wake_.notify_one();
     shown = info.finished;
   }
+  skipped_ = !shown;
   if (fault_) return *fault_;
   return shown;
 }

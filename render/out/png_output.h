@@ -1,6 +1,7 @@
 // PngOutput: writes the newest frame to a PNG file at intervals, encoded on its own thread.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -14,8 +15,8 @@
 namespace merlin::render::out {
 
 // A frame that arrives before the interval is over, or while the last one is still being written,
-// is skipped, so the wall never waits for a disk. present() returns a write error until a file is
-// written successfully.
+// is skipped, so the wall never waits for a disk; the last one skipped is wanted once the interval
+// is over. present() returns a write error until a file is written successfully.
 class PngOutput final : public Output {
  public:
   // Writes RGBA pixels to the file `path`. Errors: those of image::writePng().
@@ -31,6 +32,7 @@ class PngOutput final : public Output {
   PngOutput& operator=(const PngOutput&) = delete;
 
   bool mayTake(const FrameInfo& info) const override;
+  bool wantsFrame(Timestamp now) const override;
   // A frame counts as shown when it is accepted, not when its file is written.
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override;
 
@@ -40,7 +42,8 @@ class PngOutput final : public Output {
   std::string path_;
   Write write_;
   double interval_s_;
-  Timestamp last_{};
+  std::atomic<Timestamp> last_{Timestamp{}};
+  std::atomic<bool> skipped_ = false;  // the newest frame is not that of the file
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<std::uint8_t> waiting_;  // pixels to be written; empty: none

@@ -1,6 +1,7 @@
 #include "render/out/settings.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -104,6 +105,32 @@ void checkDisplays(const std::vector<OutputSettings>& outputs, SettingFaults& fa
   }
 }
 
+// A mode that is named and smaller than the picture would be refused once the display is there.
+void checkMode(const OutputSettings& o, const tiles::TilesSettings& tiles, const std::string& at,
+               SettingFaults& faults) {
+  const auto mode = kms::parseMode(o.kms.mode);
+  const auto size = pictureSize(o, tiles);
+  if (o.kind != OutputKind::kKms || !mode || !size) return;
+  if (size->width <= mode->width && size->height <= mode->height) return;
+  faults.push_back({at + "/kms/mode",
+                    fmt::format("is {}, and the output's picture has {} x {} pixels, which do not "
+                                "fit; name a larger mode, or make its tiles smaller",
+                                o.kms.mode, size->width, size->height)});
+}
+
+// Of two outputs that write to one file each would overwrite the other's picture.
+void checkFiles(const std::vector<OutputSettings>& outputs, SettingFaults& faults) {
+  std::map<std::string, std::string> written;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (outputs[i].path.empty()) continue;
+    const auto [first, is_new] = written.emplace(outputs[i].path, outputs[i].shownName());
+    if (!is_new)
+      faults.push_back(
+          {fmt::format("/{}/path", i), fmt::format("is {}, to which the output {} writes already",
+                                                   outputs[i].path, first->second)});
+  }
+}
+
 }  // namespace
 
 Rectangle placeOf(const PlacedTile& placed, const tiles::TileSettings& tile,
@@ -144,6 +171,7 @@ SettingFaults validate(const std::vector<OutputSettings>& outputs,
     checkOne(outputs[i], at, faults);
     checkTiles(outputs[i], tiles, at, faults);
     checkCorrection(outputs[i], tiles, at, faults);
+    checkMode(outputs[i], tiles, at, faults);
     if (!names.insert(outputs[i].shownName()).second) {
       faults.push_back({at, fmt::format("is the second output named \"{}\"; give it a \"name\"",
                                         outputs[i].shownName())});
@@ -152,6 +180,7 @@ SettingFaults validate(const std::vector<OutputSettings>& outputs,
     if (in_shared_memory == 2 && outputs[i].kind == OutputKind::kSharedMemory)
       faults.push_back({at, "is the second output of kind shared_memory; a wall has at most one"});
   }
+  checkFiles(outputs, faults);
   return faults;
 }
 

@@ -80,8 +80,11 @@ std::optional<TileOverlap> overlapOf(const tiles::TileSettings& a, const tiles::
   const double width = common(0, first.across.norm(), x, second.across.norm());
   const double height = common(0, first.up.norm(), y, second.up.norm());
   if (!alike || width < kLeast_m || height < kLeast_m) return std::nullopt;
-  return x >= 0 ? TileOverlap{a.name, b.name, width, height}
-                : TileOverlap{b.name, a.name, width, height};
+  const auto shares = [&](const Screen& s) {
+    return std::array{width / s.across.norm(), height / s.up.norm()};
+  };
+  return x >= 0 ? TileOverlap{a.name, b.name, width, height, shares(first), shares(second)}
+                : TileOverlap{b.name, a.name, width, height, shares(second), shares(first)};
 }
 
 }  // namespace

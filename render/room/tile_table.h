@@ -43,6 +43,8 @@ std::vector<TileFigures> tileTable(const tiles::TilesSettings& settings,
 struct TileOverlap {
   std::string left, right;           // names of the tiles
   double width_m = 0, height_m = 0;  // of the common part
+  // The common part's width and height as shares of the tile's.
+  std::array<double, 2> of_left{}, of_right{};
 };
 
 // Overlaps between tiles of the same eye whose screens are in one plane and have the same

@@ -42,14 +42,21 @@ void Area::line(int x0, int y0, int x1, int y1, Colour colour) {
   }
 }
 
-void Area::ring(double x, double y, double outer, double thick, Colour colour) {
-  const double inner = std::max(outer - thick, 0.0);
-  for (int row = static_cast<int>(std::floor(y - outer)); row <= y + outer; ++row) {
-    const double dy = row + 0.5 - y;
-    if (std::abs(dy) > outer) continue;
-    const double far = std::sqrt(outer * outer - dy * dy);
-    const double near = std::abs(dy) < inner ? std::sqrt(inner * inner - dy * dy) : 0;
-    // Pixels whose centres are between the two circles.
+namespace {
+
+// Half the width of an ellipse at `y` from its middle; 0 beyond it.
+double halfWidth(const Pitch& radii, double y) {
+  const double share = radii.y > 0 ? y / radii.y : 1;
+  return std::abs(share) < 1 ? radii.x * std::sqrt(1 - share * share) : 0;
+}
+
+}  // namespace
+
+// Pixels whose centres are between the two ellipses.
+void Area::ring(double x, double y, const Pitch& outer, double thick, Colour colour) {
+  const Pitch inner{std::max(outer.x - thick, 0.0), std::max(outer.y - thick, 0.0)};
+  for (int row = static_cast<int>(std::floor(y - outer.y)); row <= y + outer.y; ++row) {
+    const double dy = row + 0.5 - y, far = halfWidth(outer, dy), near = halfWidth(inner, dy);
     for (int column = static_cast<int>(std::ceil(near - 0.5)); column + 0.5 <= far; ++column) {
       set(static_cast<int>(std::floor(x + column + 0.5)), row, colour);
       set(static_cast<int>(std::ceil(x - column - 0.5)) - 1, row, colour);

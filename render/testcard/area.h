@@ -17,6 +17,11 @@ constexpr Colour grey(int value) {
   return {v, v, v};
 }
 
+// Two lengths in pixels, across and down.
+struct Pitch {
+  double x = 0, y = 0;
+};
+
 // Everything is clipped to the area. Coordinates are pixels from its upper left corner.
 class Area {
  public:
@@ -38,9 +43,9 @@ class Area {
   // The border of a rectangle, a pixel wide, inside it.
   void frame(int x, int y, int width, int height, Colour colour);
   void line(int x0, int y0, int x1, int y1, Colour colour);
-  // A circle around a point between pixels: (1, 1) is where the first four meet. `outer` is its
-  // outer radius; `thick` its width.
-  void ring(double x, double y, double outer, double thick, Colour colour);
+  // An ellipse around a point between pixels: (1, 1) is where the first four meet. `outer` has its
+  // outer radii; `thick` is its width.
+  void ring(double x, double y, const Pitch& outer, double thick, Colour colour);
   // Text of `scale` pixels for each of the font's, 8 * scale high; (x, y) is its upper left corner.
   void text(int x, int y, int scale, std::string_view text, Colour colour);
   // The same around a point, on a black box.

@@ -27,26 +27,63 @@ int scaleFor(const Area& a, std::string_view text, double width_share, double he
   return std::max(1, static_cast<int>(scale));
 }
 
-// Place of line k of n, the first and the last on the outermost pixels.
-int placeOf(int k, int n, int size) {
-  return static_cast<int>(std::lround(static_cast<double>(k) * (size - 1) / n));
+// The part of its plane that a tile shows.
+CardPart partOf(const CardTile& t) {
+  if (t.part.width > 0) return t.part;
+  const double w = t.width, h = t.height;
+  return {0, 0, w, h, w, h};
+}
+
+// The pixel of a line at `place` of a plane, of which the tile has `size` pixels from `from` over
+// `length`; the first and the last line are on the outermost pixels. Nothing beyond the tile.
+std::optional<int> pixelOf(double place, double from, double length, int size) {
+  constexpr double kRounding = 1e-6;
+  const double at = (place - from) / length * size;
+  if (at < -kRounding || at > size + kRounding) return std::nullopt;
+  return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1);
+}
+
+// An even number of lines' distances: the middle has a line.
+int evenly(double distances) {
+  return std::max(2, 2 * static_cast<int>(std::lround(distances / 2)));
+}
+
+void drawGridLines(Area& a, const CardPart& p) {
+  const int columns = evenly(kGridColumns * p.plane_width / p.width);
+  const int rows = evenly(columns * p.plane_height / p.plane_width);
+  for (int k = 0; k <= columns; ++k) {
+    const auto x = pixelOf(p.plane_width * k / columns, p.left, p.width, a.width());
+    if (x) a.fill(*x, 0, 1, a.height(), grey(200));
+  }
+  for (int k = 0; k <= rows; ++k) {
+    const auto y = pixelOf(p.plane_height * k / rows, p.top, p.height, a.height());
+    if (y) a.fill(0, *y, a.width(), 1, grey(200));
+  }
+}
+
+// Circles on the screen, whose pixels need not be square.
+void drawCircles(Area& a, const CardPart& p) {
+  const double w = a.width(), h = a.height();
+  const Pitch pitch{w / p.width, h / p.height};
+  const double r = std::min(p.width, p.height) / 2, small = r / 4;
+  const double thick = std::max(1.0, std::min(w, h) / 480);
+  a.ring(w / 2, h / 2, {r * pitch.x, r * pitch.y}, thick, kWhite);
+  const Pitch radii{small * pitch.x, small * pitch.y};
+  for (const double x : {radii.x, w - radii.x}) {
+    for (const double y : {radii.y, h - radii.y}) a.ring(x, y, radii, thick, kWhite);
+  }
 }
 
 void drawGrid(Area& a, const CardTile& tile) {
   a.fillAll(kBlack);
   const int w = a.width(), h = a.height();
+  const CardPart part = partOf(tile);
   a.line(0, 0, w - 1, h - 1, grey(80));
   a.line(0, h - 1, w - 1, 0, grey(80));
-  const int rows = std::max(2, static_cast<int>(std::lround(1.0 * kGridColumns * h / w / 2)) * 2);
-  for (int k = 0; k <= kGridColumns; ++k) a.fill(placeOf(k, kGridColumns, w), 0, 1, h, grey(200));
-  for (int k = 0; k <= rows; ++k) a.fill(0, placeOf(k, rows, h), w, 1, grey(200));
+  drawGridLines(a, part);
   a.fill((w - 1) / 2, 0, 2 - w % 2, h, kGreen);
   a.fill(0, (h - 1) / 2, w, 2 - h % 2, kGreen);
-  const double r = std::min(w, h) / 2.0, small = r / 4, thick = std::max(1.0, r / 240);
-  a.ring(w / 2.0, h / 2.0, r, thick, kWhite);
-  for (const double x : {small, w - small}) {
-    for (const double y : {small, h - small}) a.ring(x, y, small, thick, kWhite);
-  }
+  drawCircles(a, part);
   a.frame(0, 0, w, h, kWhite);
   a.label(w / 2, h / 2, scaleFor(a, tile.name, 0.25, 0.05), tile.name, kWhite);
 }
@@ -98,17 +135,22 @@ Colour channel(int band, int value) {
   return bands[band];
 }
 
-void drawRamps(Area& a) {
+// Along the plane, so that neighbours show the same grey at their seam and where they overlap.
+void drawRamps(Area& a, const CardPart& p) {
   const int w = a.width(), h = a.height();
   const auto from = [h](int band) { return band * h / 6; };
+  const double first = p.left / p.width * w, last = p.plane_width / p.width * w - 1;  // [px]
   for (int x = 0; x < w; ++x) {
-    const int value = static_cast<int>(std::lround(255.0 * x / (w - 1)));
+    const double along = std::clamp((first + x) / last, 0.0, 1.0);
+    const int value = static_cast<int>(std::lround(255 * along));
     for (int band = 0; band < 4; ++band)
       a.fill(x, from(band), 1, from(band + 1) - from(band), channel(band, value));
-    const int step = x * kGreySteps / w;
-    a.fill(x, from(4), 1, from(5) - from(4), grey(255 * step / (kGreySteps - 1)));
+    const auto stepOf = [&](int steps) {
+      return std::min(static_cast<int>((first + x) / (last + 1) * steps), steps - 1);
+    };
+    a.fill(x, from(4), 1, from(5) - from(4), grey(255 * stepOf(kGreySteps) / (kGreySteps - 1)));
     // 0, 2 ... 14 on the left half, 241, 243 ... 255 on the right one.
-    const int patch = x * 16 / w;
+    const int patch = stepOf(16);
     a.fill(x, from(5), 1, h - from(5), grey(patch < 8 ? 2 * patch : 241 + 2 * (patch - 8)));
   }
 }
@@ -205,9 +247,12 @@ void drawCard(Card card, std::span<const CardTile> tiles, std::optional<MarkedCo
     switch (card) {
       case Card::kGrid: drawGrid(area, t); break;
       case Card::kEdges: drawEdges(area, t); break;
-      case Card::kRamps: drawRamps(area); break;
+      case Card::kRamps: drawRamps(area, partOf(t)); break;
       case Card::kNames: drawNames(area, t, i); break;
       case Card::kFocus: drawFocus(area, t); break;
+      case Card::kAllBlack: area.fillAll(kBlack); break;
+      case Card::kAllGrey: area.fillAll(grey(128)); break;
+      case Card::kAllWhite: area.fillAll(kWhite); break;
     }
     const bool marked = card == Card::kGrid || card == Card::kEdges;
     if (marked && mark && mark->tile == i) drawMark(area, mark->corner);

@@ -11,10 +11,19 @@
 namespace merlin::render::testcard {
 
 // In the order of kCardNames.
-enum class Card { kGrid, kEdges, kRamps, kNames, kFocus };
-inline constexpr const char* kCardNames[] = {"grid", "edges", "ramps", "names", "focus"};
-inline constexpr std::size_t kCards = 5;
+enum class Card { kGrid, kEdges, kRamps, kNames, kFocus, kAllBlack, kAllGrey, kAllWhite };
+inline constexpr const char* kCardNames[] = {"grid",  "edges", "ramps", "names",
+                                             "focus", "black", "grey",  "white"};
+inline constexpr std::size_t kCards = 8;
 std::optional<Card> cardNamed(std::string_view name);
+
+// The part of a plane that a tile shows, from the plane's upper left corner. The plane is what the
+// tiles on one flat screen show together, so that a card's lines meet from one to the next, also
+// where they overlap. In metres, or for a tile without a screen in its pixels.
+struct CardPart {
+  double left = 0, top = 0, width = 0, height = 0;
+  double plane_width = 0, plane_height = 0;
+};
 
 // A tile, with what a card says of it.
 struct CardTile {
@@ -23,6 +32,7 @@ struct CardTile {
   std::vector<std::string> lines{};         // further lines of the card names
   // Strips at its borders that a neighbour shows as well [px].
   int left = 0, right = 0, top = 0, bottom = 0;
+  CardPart part{};  // of width 0: the tile is a plane of its own
 };
 
 // A corner of a tile that is marked: 2 * row + column.
@@ -31,12 +41,14 @@ struct MarkedCorner {
 };
 
 // Draws a card into each tile of a canvas (RGBA, `canvas_width` pixels a row), which has them.
-//   grid   lines at equal distances, the border, diagonals, circles: for geometry
+//   grid   lines at equal distances on the plane, the border, diagonals, circles: for geometry
 //   edges  the tile's outermost pixels, its corners (red, green, blue, yellow: upper left, upper
 //          right, lower left, lower right), strips of overlap with their inner edges
-//   ramps  grey, red, green, blue, from 0 to 255; 17 steps of grey; steps near black and white
+//   ramps  grey, red, green, blue, from 0 to 255 along the plane; 17 steps of grey; steps near
+//          black and white
 //   names  tile, output, size, panel
 //   focus  checkers and lines of single pixels, Siemens stars, small text
+//   black, grey, white  nothing else: for overlaps, where neighbours are to be as bright as one
 // `mark`: a corner that is being moved, on the cards grid and edges. Costs some milliseconds per
 // million pixels.
 void drawCard(Card card, std::span<const CardTile> tiles, std::optional<MarkedCorner> mark,

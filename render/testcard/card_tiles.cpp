@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "render/frame/tile_arrangement.h"
+#include "render/tiles/plane_parts.h"
 
 namespace merlin::render::testcard {
 namespace {
@@ -28,7 +29,7 @@ std::vector<Shown> shownBy(const out::OutputSettings& output, const tiles::TileP
       continue;
     }
     for (const out::PlacedTile& placed : output.tiles) {
-      if (placed.tile != tile.name) continue;
+      if (placed.tile != tile.name && placed.right_eye != tile.name) continue;
       const frame::TileAxes axes = frame::axesOf(placed);
       const bool on_side = axes.column.x == 0;
       all.push_back({i, placed.x, placed.y, on_side ? tile.height : tile.width,
@@ -80,13 +81,50 @@ out::PictureSize sizeOf(const out::OutputSettings& output, const tiles::TilePlan
   return size;
 }
 
+// The name of the tile that was made into one for each eye: "left" of "left.L".
+std::string nameForBothEyes(const tiles::Tile& tile) {
+  return tile.eye == tiles::Eye::kMiddle ? tile.name : tile.name.substr(0, tile.name.rfind('.'));
+}
+
+// In an anaglyph both eyes' tiles lie over one another, and have to say the same.
+bool isInAnaglyph(const tiles::Tile& tile, const std::vector<out::OutputSettings>& outputs) {
+  return std::ranges::any_of(outputs, [&](const out::OutputSettings& output) {
+    return std::ranges::any_of(output.tiles, [&](const out::PlacedTile& placed) {
+      return !placed.right_eye.empty() &&
+             (placed.tile == tile.name || placed.right_eye == tile.name);
+    });
+  });
+}
+
+// The tiles on their planes, with the strips that neighbours there show as well.
+std::vector<CardTile> placedTiles(const tiles::TilePlan& plan) {
+  const auto parts = tiles::planeParts(plan);
+  const auto strips = tiles::sharedStrips(plan, parts);
+  std::vector<CardTile> all;
+  for (std::size_t i = 0; i < plan.tiles.size(); ++i) {
+    const tiles::Tile& t = plan.tiles[i];
+    all.push_back({t.name, t.x, t.y, t.width, t.height});
+    if (!parts[i]) continue;
+    const tiles::PlanePart& p = *parts[i];
+    const auto pixels = [](double metres, int size, double length) {
+      return static_cast<int>(std::lround(metres / length * size));
+    };
+    CardTile& tile = all.back();
+    tile.part = {p.left, p.top, p.width, p.height, p.plane_width, p.plane_height};
+    tile.left = pixels(strips[i].left, t.width, p.width);
+    tile.right = pixels(strips[i].right, t.width, p.width);
+    tile.top = pixels(strips[i].top, t.height, p.height);
+    tile.bottom = pixels(strips[i].bottom, t.height, p.height);
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<CardTile> cardTiles(const tiles::TilePlan& plan,
                                 const std::vector<out::OutputSettings>& outputs,
                                 const std::map<std::string, std::string>& panels) {
-  std::vector<CardTile> tiles;
-  for (const tiles::Tile& t : plan.tiles) tiles.push_back({t.name, t.x, t.y, t.width, t.height});
+  std::vector<CardTile> tiles = placedTiles(plan);
   for (const out::OutputSettings& output : outputs) {
     if (output.kind == out::OutputKind::kSharedMemory) continue;
     const out::PictureSize size = sizeOf(output, plan);
@@ -96,9 +134,12 @@ std::vector<CardTile> cardTiles(const tiles::TilePlan& plan,
       addStrips(tile, shown, size, output.correction.blend);
     }
   }
-  for (CardTile& tile : tiles) {
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    CardTile& tile = tiles[i];
+    const std::string name = nameForBothEyes(plan.tiles[i]);
     tile.lines.push_back(fmt::format("{} x {}", tile.width, tile.height));
-    const auto panel = panels.find(tile.name);
+    if (isInAnaglyph(plan.tiles[i], outputs)) tile.name = name;
+    const auto panel = panels.find(name);
     if (panel != panels.end()) tile.lines.push_back(fmt::format("panel {}", panel->second));
   }
   return tiles;

@@ -65,6 +65,34 @@ class SessionTest : public testing::Test {
   bool open_ = true;
 };
 
+// A projector that hangs upside down, and one that throws from behind.
+TEST_F(SessionTest, KeysMoveWhatIsSeenWhereTheSignalIsTurned) {
+  answer_.outputs[0].axes = {{-1, 0}, {0, -1}};
+  answer_.outputs[0].corners[3].moved = {4, 7};
+  answer_.outputs[1].axes = {{-1, 0}, {0, 1}};
+  AlignSession s = session();
+  ASSERT_TRUE(s.begin());
+  EXPECT_EQ(asked_.back(), "select bottom_right left") << "it is seen at the top left";
+  EXPECT_EQ(pressed(s, "l"), "move bottom_right -1 0 left");
+  EXPECT_EQ(pressed(s, "k"), "move bottom_right 0 1 left");
+  const auto lines = s.screen();
+  EXPECT_EQ(lines[2], "> 1 top_left           -4.0      -7.0   moved      -4.0      -7.0");
+  EXPECT_EQ(lines[6], "corners and directions are as seen on the wall; the signal is turned");
+  EXPECT_EQ(pressed(s, "n"), "select top_right right");
+  EXPECT_EQ(pressed(s, "l"), "move top_right -1 0 right");
+  EXPECT_EQ(pressed(s, "j"), "move top_right 0 1 right");
+}
+
+TEST(SeenAxes, AQuarterTurnGoesThereAndBack) {
+  // Clockwise: what is to the right on the wall is below in the signal.
+  const state::SeenAxes axes{{0, 1}, {-1, 0}};
+  EXPECT_EQ(axes.onSignal({3, 5}), (state::Offset{-5, 3}));
+  EXPECT_EQ(axes.seen({-5, 3}), (state::Offset{3, 5}));
+  EXPECT_EQ(axes.cornerOnSignal(0), 1u) << "the upper left is the signal's upper right";
+  EXPECT_EQ(axes.cornerOnSignal(1), 3u);
+  EXPECT_EQ(axes.cornerOnSignal(3), 2u);
+}
+
 TEST_F(SessionTest, KeysBecomeRequests) {
   AlignSession s = session();
   ASSERT_TRUE(s.begin());

@@ -48,6 +48,7 @@ class AlignerTest : public testing::Test {
     };
     AlignedOutput made{name, width, 480, base, make, correction.get()};
     made.fixed = fixed_;
+    made.axes = axes_;
     return made;
   }
   static render::correct::CorrectionSettings meshed() {
@@ -79,6 +80,7 @@ class AlignerTest : public testing::Test {
   std::vector<render::correct::CorrectionSettings> built_;
   std::unique_ptr<render::frame::ReplaceableCorrection> left_, right_;
   std::string fixed_;
+  state::SeenAxes axes_;
   std::unique_ptr<Aligner> aligner_;
 };
 
@@ -116,7 +118,7 @@ TEST_F(AlignerTest, SaysWhetherATestCardIsShown) {
   EXPECT_FALSE(aligner_->showsCard());
   EXPECT_TRUE(aligner_->showCard("grid"));
   EXPECT_TRUE(aligner_->showsCard());
-  EXPECT_FALSE(aligner_->showCard("grey"));
+  EXPECT_FALSE(aligner_->showCard("purple"));
   EXPECT_TRUE(aligner_->showsCard()) << "as before";
   EXPECT_TRUE(aligner_->showCard("off"));
   EXPECT_FALSE(aligner_->showsCard());
@@ -213,6 +215,38 @@ TEST_F(AlignerTest, AnOutputWithBothEyesPicturesIsNotMoved) {
   const json answer = ask("move top_left 3 2 left");
   ASSERT_TRUE(answer.is_string()) << answer;
   EXPECT_NE(answer.get<std::string>().find("it shows a picture of each eye"), std::string::npos);
+}
+
+// A projector that hangs upside down: the left of who stands before the wall is its right.
+TEST_F(AlignerTest, BoundInputsMoveCornersAsTheyAreSeen) {
+  axes_ = {{-1, 0}, {0, -1}};
+  start();
+  AlignInput input;
+  input.actions = {3, 3, 5};  // right twice, down
+  aligner_->ask(input);
+  EXPECT_TRUE(test::eventually([&] { return moved("top_left") == json({-2, -1}); }));
+  input.actions = {};
+  input.push = {2.5, 0};
+  aligner_->ask(input);
+  EXPECT_TRUE(test::eventually([&] { return moved("top_left") == json({-4.5, -1}); }));
+  EXPECT_EQ(ask("list")["outputs"][0]["seen"], (json{{"right", {-1, 0}}, {"down", {0, -1}}}));
+}
+
+TEST_F(AlignerTest, AnotherConfigurationIsShownAndKeepsWhatWasMoved) {
+  ask("move top_left 3 1 left");
+  EXPECT_EQ(shown(), std::pair(7, 9));
+  auto other = base_;
+  other.blend.right = 80;
+  aligner_->configure("left", other);
+  EXPECT_TRUE(test::eventually([&] {
+    const std::lock_guard lock(mutex_);
+    return built_.back().blend.right == 80;
+  }));
+  EXPECT_EQ(shown(), std::pair(7, 9));
+  other.corners[0] = 5;  // the alignment was for others
+  aligner_->configure("left", other);
+  EXPECT_EQ(moved("top_left"), json({0, 0}));
+  EXPECT_EQ(shown(), std::pair(5, 8));
 }
 
 TEST_F(AlignerTest, ARefusedActionIsANoticeOnce) {

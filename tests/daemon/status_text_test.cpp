@@ -35,6 +35,14 @@ TEST(StatusText, AServiceThatHasFailedHasALineWithItsReason) {
   }
 }
 
+TEST(StatusText, BeforeItsFirstFrameTheWallSaysSo) {
+  Json wall = {{"rate_asked", 30}, {"frames", 0}};
+  EXPECT_TRUE(statusTable(wall).starts_with("wall     has not shown its first frame yet\n"))
+      << statusTable(wall);
+  wall["frames"] = 1;
+  EXPECT_TRUE(statusTable(wall).starts_with("wall     0.0 of 30 Hz")) << statusTable(wall);
+}
+
 TEST(StatusText, AFailedServiceIsNotHiddenByTheOtherRolesOfTheSameName) {
   for (const char* failed : {"devices", "wall"}) {
     Json both = Json::object();

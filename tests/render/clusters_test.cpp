@@ -12,6 +12,7 @@
 
 #include "render/mesh/coincident.h"
 #include "render/reduce/reduce.h"
+#include "tests/render/mrm_files.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::render {
@@ -259,6 +260,14 @@ TEST(Clusters, TheSmallestModelsAreCutToo) {
       EXPECT_EQ(sorted(evenCut(clusters, d, level)), sorted(std::span(expected).first(3 * n)));
     }
   }
+}
+
+// No other reduction than one by hand goes so far.
+TEST(Clusters, AModelThatEndsWithoutTrianglesIsCutToo) {
+  const lod::Dendrogram d = test::goldenCube();
+  ASSERT_EQ(d.trianglesAt(d.levels() - 1), 0u);
+  const lod::Clusters clusters(d, {});
+  EXPECT_EQ(evenCut(clusters, d, 0).size(), 3 * d.triangleCount());
 }
 
 // Otherwise a crack could open along the seam where its sides had different levels.

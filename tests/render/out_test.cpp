@@ -1,4 +1,5 @@
 // Outputs: the shared framebuffer as another process reads it, PNG files as libpng reads them.
+#include <atomic>
 #include <csignal>
 #include <cstring>
 #include <thread>
@@ -353,6 +354,28 @@ TEST(PngOutput, WritesNoMoreOftenThanAsked) {
   // A frame is skipped while the encoder works, so present later frames until one is accepted.
   int seconds = 1060;
   EXPECT_TRUE(test::eventually([&] { return present(output, 4, seconds += 60) && red() == 4; }));
+}
+
+// When a motion ends within the interval, the file would keep a frame of the motion.
+TEST(PngOutput, WantsAFrameOnceItMayTakeOneIfItLeftOutTheLast) {
+  const test::TempDir folder;
+  ThreadWatch watch;
+  std::atomic<int> written = 0;
+  out::PngOutput output(folder / "frame.png", 60, watch,
+                        [&](const std::string&, int, int, std::span<const std::uint8_t>) {
+                          ++written;
+                          return Result<Ok>(Ok{});
+                        });
+  const auto at = [](int seconds) { return Timestamp{std::chrono::seconds(seconds)}; };
+  const Pixels pixels(std::size_t{4} * 16 * 16);
+  ASSERT_TRUE(output.present({16, 16, pixels}, {1, at(1000), 1, true}));
+  EXPECT_FALSE(output.wantsFrame(at(1100))) << "it has the newest";
+  ASSERT_TRUE(output.present({16, 16, pixels}, {2, at(1030), 1, true}));
+  EXPECT_FALSE(output.wantsFrame(at(1059)));
+  EXPECT_TRUE(output.wantsFrame(at(1060)));
+  EXPECT_TRUE(test::eventually([&] { return written == 1; }));
+  ASSERT_TRUE(output.present({16, 16, pixels}, {2, at(1060), 1, true}));
+  EXPECT_FALSE(output.wantsFrame(at(2000)));
 }
 
 TEST(PngOutput, SaysWhatWentWrongUntilAFileIsWrittenAgain) {

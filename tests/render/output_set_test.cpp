@@ -27,7 +27,7 @@ struct FakeOutput final : out::Output {
     if (!fault.empty()) return Error{Errc::kIo, fault};
     return mended;
   }
-  bool wantsFrame() const override { return wants_frame; }
+  bool wantsFrame(Timestamp) const override { return wants_frame; }
   std::optional<out::Vblank> vblank() const override { return last_blank; }
   bool wants_frame = false;
   std::optional<out::Vblank> last_blank;
@@ -304,6 +304,13 @@ TEST(OutputSettings, AreCheckedTogether) {
             " has 9 outputs; a wall has at most 8");
   EXPECT_EQ(faultOf({png, png}), "/1 is the second output named \"png\"; give it a \"name\"");
   EXPECT_EQ(faultOf({png, {out::OutputKind::kPng, "b", "b.png", 60}}), "");
+  EXPECT_EQ(faultOf({png, {out::OutputKind::kPng, "b", "a.png", 60}}),
+            "/1/path is a.png, to which the output png writes already");
+  out::OutputSettings display{out::OutputKind::kKms};
+  display.kms.mode = "640x480@60";
+  EXPECT_EQ(faultOf({display}).find("/0/kms/mode is 640x480@60, and the output's picture has"), 0U);
+  display.kms.mode = "7680x4320";
+  EXPECT_EQ(faultOf({display}), "");
   EXPECT_EQ(faultOf({shared, {out::OutputKind::kSharedMemory, "b", "", 60}}),
             "/1 is the second output of kind shared_memory; a wall has at most one");
   EXPECT_EQ(faultOf({{out::OutputKind::kPng, "", "", 60}}),

@@ -115,10 +115,10 @@ TEST_F(PictureChecksTest, ABlackDisplayIsFoundWithinSixSecondsAndMendedOnce) {
   EXPECT_EQ(verdict(1), PictureVerdict::kBlack);
   EXPECT_EQ(says(1), "is black instead of what was meant, at HDMI-A-2");
   EXPECT_EQ(displays_[1]->times_mended, 1);
-  EXPECT_TRUE(set_->wantsFrame(1)) << "although nothing moves";
-  EXPECT_FALSE(set_->wantsFrame(0));
+  EXPECT_TRUE(set_->wantsFrame(1, Timestamp{})) << "although nothing moves";
+  EXPECT_FALSE(set_->wantsFrame(0, Timestamp{}));
   present(1);
-  EXPECT_FALSE(set_->wantsFrame(1));
+  EXPECT_FALSE(set_->wantsFrame(1, Timestamp{}));
   pass(milliseconds(1100));
   EXPECT_EQ(verdict(1), PictureVerdict::kRight) << "two readings, half a second apart";
   EXPECT_EQ(displays_[1]->times_mended, 1);

@@ -126,6 +126,49 @@ TEST(TestCard, RampsGoFromZeroToFull) {
   EXPECT_EQ(c.inTile(290, 220), (Rgb{253, 253, 253}));
 }
 
+// Two projectors of 320 pixels over 1.6 m each, of which 0.3 m overlap: not a whole number of
+// cells.
+testcard::CardTile projector(double left_m) {
+  testcard::CardTile t = tile();
+  t.part = {left_m, 0, 1.6, 1.2, 2.9, 1.2};
+  return t;
+}
+
+TEST(TestCard, LinesAndRampsOfTilesThatOverlapLieOnOneAnother) {
+  const double pixel_m = 1.6 / 320;
+  const auto places = [&](double left_m) {  // of the lines within the overlap, in metres
+    const Canvas c = drawn(testcard::Card::kGrid, projector(left_m));
+    std::vector<double> found;
+    for (int x = 1; x < 319; ++x) {
+      const double at = left_m + (x + 0.5) * pixel_m;
+      if (c.inTile(x, 3) == Rgb{200, 200, 200} && at > 1.31 && at < 1.59) found.push_back(at);
+    }
+    return found;
+  };
+  const auto left = places(0), right = places(1.3);
+  ASSERT_GE(left.size(), 2u);
+  ASSERT_EQ(left.size(), right.size());
+  for (std::size_t i = 0; i < left.size(); ++i) EXPECT_NEAR(left[i], right[i], pixel_m);
+  const Canvas ramp = drawn(testcard::Card::kRamps, projector(0)),
+               next = drawn(testcard::Card::kRamps, projector(1.3));
+  EXPECT_EQ(ramp.inTile(0, 20)[0], 0);
+  EXPECT_EQ(next.inTile(319, 20)[0], 255);
+  for (int x = 0; x < 60; ++x) {
+    for (const int y : {20, 60, 180, 220})
+      EXPECT_NEAR(ramp.inTile(260 + x, y)[0], next.inTile(x, y)[0], 1) << x;
+  }
+}
+
+TEST(TestCard, CirclesAreRoundOnTheScreenAlsoIfItsPixelsAreNotSquare) {
+  testcard::CardTile half = tile();
+  half.part = {0, 0, 3.2, 1.2, 3.2, 1.2};  // pixels twice as wide as high
+  const Canvas c = drawn(testcard::Card::kGrid, half);
+  for (const int x : {100, 219}) {  // 0.6 m from the middle, 0.01 m a pixel
+    EXPECT_EQ(c.inTile(x, 119), kWhitePixel) << "left and right of the middle";
+  }
+  EXPECT_EQ(c.inTile(150, 2), kWhitePixel) << "and 117 pixels above it";
+}
+
 int count(const Canvas& c, const Rgb& colour, int top, int bottom) {
   int found = 0;
   for (int y = top; y < bottom; ++y) {
@@ -230,6 +273,45 @@ TEST_F(CardTiles, SayWhichOutputShowsThemAndOnWhichPanelTheyAre) {
       testcard::cardTiles(plan_, {out::OutputSettings{}, output_}, {{"right", "p 2"}});
   EXPECT_EQ(tiles[0].lines, (std::vector<std::string>{"output beamer", "320 x 240"}));
   EXPECT_EQ(tiles[1].lines, (std::vector<std::string>{"320 x 240", "panel p 2"}));
+}
+
+// Two projectors on one screen: nobody has set a blend.
+TEST(CardTilesOnAScreen, HaveTheirPartAndTheStripsOfTheirNeighbours) {
+  tiles::TilesSettings settings;
+  settings.frame_width = 640;
+  settings.frame_height = 240;
+  settings.tile_width = 320;
+  settings.tile_height = 240;
+  tiles::TileSettings left{"left", tiles::TileKind::kWall, 0, 0, 0},
+      right{"right", tiles::TileKind::kWall, 320, 0, 0};
+  left.screen_m = {-1.4, -0.6, -2, 0.2, -0.6, -2, -1.4, 0.6, -2};
+  right.screen_m = {-0.2, -0.6, -2, 1.4, -0.6, -2, -0.2, 0.6, -2};
+  settings.tiles = {left, right};
+  const auto plan = tiles::planTiles(settings);
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto cards = testcard::cardTiles(*plan, {}, {});
+  EXPECT_EQ((std::array{cards[0].left, cards[0].right}), (std::array{0, 80}));
+  EXPECT_EQ((std::array{cards[1].left, cards[1].right}), (std::array{80, 0}));
+  EXPECT_EQ((std::array{cards[1].top, cards[1].bottom}), (std::array{0, 0}));
+  EXPECT_NEAR(cards[0].part.left, 0, 1e-9);
+  EXPECT_NEAR(cards[1].part.left, 1.2, 1e-9);
+  EXPECT_NEAR(cards[1].part.width, 1.6, 1e-9);
+  EXPECT_NEAR(cards[1].part.plane_width, 2.8, 1e-9);
+  EXPECT_NEAR(cards[1].part.top, 0, 1e-9);
+}
+
+TEST_F(CardTiles, InAnAnaglyphBothEyesSayTheSame) {
+  output_.tiles = {{"left", 0, 0}};
+  output_.tiles[0].right_eye = "right";
+  plan_.tiles[0].name = output_.tiles[0].tile = "wall.L";
+  plan_.tiles[1].name = output_.tiles[0].right_eye = "wall.R";
+  plan_.tiles[0].eye = tiles::Eye::kLeft;
+  plan_.tiles[1].eye = tiles::Eye::kRight;
+  const auto cards = testcard::cardTiles(plan_, {output_}, {{"wall", "p"}});
+  EXPECT_EQ(cards[0].name, "wall");
+  EXPECT_EQ(cards[1].name, "wall");
+  EXPECT_EQ(cards[0].lines, (std::vector<std::string>{"output beamer", "320 x 240", "panel p"}));
+  EXPECT_EQ(cards[0].lines, cards[1].lines);
 }
 
 TEST_F(CardTiles, StripsAndCornersAreThoseOfTheTileAlsoIfItIsTurned) {

@@ -95,7 +95,7 @@ class Align : public testing::Test {
   std::string stateFile() const { return dir_ / "align.state.json"; }
 
   TempDir dir_;
-  std::string model_ = makeModel(dir_, 2), other_ = dir_ / "full.mrm";
+  std::string model_ = makeModel(dir_, 2), other_ = makeFullModel(dir_);
   json also_ = json::object();
   std::unique_ptr<Merlind> wall_;
 };
@@ -273,6 +273,35 @@ TEST_F(Align, AFileThatIsReadCannotBeTheStateFile) {
   }
 }
 
+// Blends are tuned by trying: the wall does not start again for them.
+TEST_F(Align, AChangedCorrectionIsTakenByAReloadWhileTheWallRuns) {
+  EXPECT_EQ(moveCorner("top_right", "-10", "0").status, 0);
+  EXPECT_TRUE(eventually([&] { return at(signal(), 318, 100) < 128; }));
+  auto config = json::parse(readText(wall_->config()));
+  config["wall"]["outputs"][1]["correction"] = {{"blend", {{"left", 80}}}};
+  writeText(wall_->config(), config.dump());
+  const Outcome done = merlin({"reload"});
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("/wall/outputs/1/correction/blend/left: 0 -> 80"), std::string::npos)
+      << done.output;
+  EXPECT_TRUE(eventually([&] { return at(signal(), 2, 120) < 60; })) << "the ramp";
+  EXPECT_LT(at(signal(), 318, 100), 128) << "the corner stays moved";
+  EXPECT_EQ(done.output.find("started again"), std::string::npos) << done.output;
+}
+
+TEST_F(Align, AnOutputThatWouldBeIgnoredOrIsNotThereIsRefused) {
+  const auto refused = [&](std::vector<std::string> words, const std::string& what) {
+    words.insert(words.begin(), {"wall", "align"});
+    const Outcome done = merlin(words);
+    EXPECT_EQ(done.status, 2) << done.output;
+    EXPECT_NE(done.output.find(what), std::string::npos) << done.output;
+  };
+  refused({"--undo", "--output", "beamer"}, "--undo takes back the last step, whichever output");
+  refused({"--redo", "--output", "beamer"}, "--redo takes back the last step, whichever output");
+  refused({"--list", "--output", "bemaer"},
+          "\"bemaer\" is not an output that can be aligned; there are ");
+}
+
 TEST_F(Align, ATestCardIsShownAndCorrected) {
   EXPECT_EQ(merlin({"wall", "testcard", "grid"}).status, 0);
   const render::image::ImageFile card = signal();
@@ -288,8 +317,9 @@ TEST_F(Align, ATestCardIsShownAndCorrected) {
   EXPECT_EQ(at(signal(), 100, 2), 255);
   const Outcome wrong = merlin({"wall", "testcard", "gird"});
   EXPECT_EQ(wrong.status, 2);
-  EXPECT_NE(wrong.output.find("there are grid, edges, ramps, names, focus, and off"),
-            std::string::npos)
+  EXPECT_NE(
+      wrong.output.find("there are grid, edges, ramps, names, focus, black, grey, white, and off"),
+      std::string::npos)
       << wrong.output;
 }
 

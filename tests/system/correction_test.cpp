@@ -55,6 +55,7 @@ class Correction : public testing::Test {
   const std::string mpcdi_ = dir_ / "wall.mpcdi";
 };
 
+const json kCorners = {40, 20, -30, 0, 5, -12, -8, -40};
 const json kCorrection = {{"corners", {40, 20, -30, 0, 5, -12, -8, -40}},
                           {"blend", {{"right", 96}, {"gamma", 2.4}}},
                           {"black", {{"level", {0.02, 0.02, 0.02}}}}};
@@ -95,17 +96,27 @@ TEST_F(Correction, WhatCannotBeUsedIsRefusedWithItsPlace) {
     EXPECT_EQ(checked.status, 2) << checked.output;
     return checked.output;
   };
-  writeText(mpcdi_, "PK\x03\x04 but no more");
-  EXPECT_NE(finding({{"mpcdi", mpcdi_}})
-                .find("/wall/outputs/1/correction/mpcdi cannot be used: " + mpcdi_ +
-                      ": is not a complete zip archive"),
-            std::string::npos);
   EXPECT_NE(finding({{"corners", {900, 900, 0, 0, 0, 0, 0, 0}}})
                 .find("/wall/outputs/1/correction/corners do not form a convex picture"),
             std::string::npos);
   EXPECT_NE(finding({{"mesh", {{"columns", 3}, {"rows", 3}}}})
                 .find("/wall/outputs/1/correction/mesh/points has 0 points"),
             std::string::npos);
+}
+
+// After a power cut one damaged file must not keep the wall dark.
+TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
+  writeText(mpcdi_, "PK\x03\x04 but no more");
+  const Outcome checked =
+      run({kMerlind, "--check-config", file("cut", {{"mpcdi", mpcdi_}, {"corners", kCorners}})});
+  EXPECT_EQ(checked.status, 1) << "adjusted: " << checked.output;
+  EXPECT_NE(checked.output.find("/wall/outputs/1/correction/mpcdi cannot be used: " + mpcdi_ +
+                                ": is not a complete zip archive"),
+            std::string::npos)
+      << checked.output;
+  const auto cut = shown("cut", {{"mpcdi", mpcdi_}, {"corners", kCorners}}),
+             without = shown("without", {{"corners", kCorners}});
+  EXPECT_EQ(cut.pixels, without.pixels);
 }
 
 TEST_F(Correction, BadWordsAndFilesOfTheCommandAreSaid) {

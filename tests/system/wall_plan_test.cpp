@@ -68,9 +68,12 @@ TEST_F(WallPlan, APresetsProjectorsMayOverlap) {
   const Outcome done = run(
       {kMerlin, "wall", "plan", "--preset", "flat", "--overlap", "0.3", "-o", dir_ / "flat.svg"});
   ASSERT_EQ(done.status, 0) << done.output;
-  EXPECT_NE(done.output.find("panel_1 and panel_2 overlap by 0.300 x 1.200 m."), std::string::npos)
+  EXPECT_NE(done.output.find("panel_1 and panel_2 overlap by 0.300 x 1.200 m: 107 x 480 pixels of "
+                             "panel_1, 107 x 480 of panel_2."),
+            std::string::npos)
       << done.output;
-  EXPECT_NE(readText(dir_ / "flat.svg").find("panel_2 and panel_3 overlap by 0.300 x 1.200 m."),
+  EXPECT_NE(readText(dir_ / "flat.svg")
+                .find("panel_2 and panel_3 overlap by 0.300 x 1.200 m: 107 x 480 "),
             std::string::npos);
   EXPECT_NE(run({kMerlin, "wall", "plan", "--preset", "hexagon", "--overlap", "0.3"}).status, 0);
   EXPECT_NE(run({kMerlin, "wall", "plan", "--overlap", "0.3"}).status, 0);
@@ -80,6 +83,8 @@ TEST_F(WallPlan, APresetIsPrintedAsPanelsThatMakeTheSameWall) {
   for (const char* const preset : {"flat", "three_160", "three_120", "six", "hexagon"}) {
     const Outcome printed = run({kMerlin, "wall", "plan", "--preset", preset, "--panels"});
     ASSERT_EQ(printed.status, 0) << printed.output;
+    for (const char* noise : {"00000", "99999", "camera", "\"view\""})
+      EXPECT_EQ(printed.output.find(noise), std::string::npos) << printed.output;
     writeText(dir_ / "panels.json", printed.output);
     const auto table = [&](const std::string& option, const std::string& value) {
       return json::parse(run({kMerlin, "wall", "plan", option, value, "--json"}).output);
@@ -104,7 +109,7 @@ TEST_F(WallPlan, SaysWhereProjectorsOverlap) {
                                   {{{"name", "<a>"}, {"part_m", {0, 0, 1.6, 1.2}}},
                                    {{"name", "b"}, {"part_m", {1.4, 0, 1.6, 1.2}}}}}});
   const Outcome done = run({kMerlin, "wall", "plan", "-c", file, "-o", dir_ / "room.svg"});
-  EXPECT_NE(done.output.find("<a> and b overlap by 0.200 x 1.200 m."), std::string::npos)
+  EXPECT_NE(done.output.find("<a> and b overlap by 0.200 x 1.200 m: "), std::string::npos)
       << done.output;
   EXPECT_EQ(readText(dir_ / "room.svg").find("<a>"), std::string::npos) << "escaped";
 }

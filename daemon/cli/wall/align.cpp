@@ -42,11 +42,24 @@ Result<state::AlignRequest> moveRequest(const AlignOptions& o) {
 Result<state::AlignRequest> requestOf(const AlignOptions& o) {
   if (!o.by.empty()) return moveRequest(o);
   if (!o.corner.empty() || !o.point.empty()) return usage("--corner and --point need --by DX DY");
+  if ((o.undo || o.redo) && !o.output.empty())
+    return usage(
+        fmt::format("{} takes back the last step, whichever output it moved; leave "
+                    "--output out, or move {} by --by",
+                    o.undo ? "--undo" : "--redo", o.output));
   if (o.undo) return state::AlignRequest{state::UndoRequest{}};
   if (o.redo) return state::AlignRequest{state::RedoRequest{}};
   if (o.reset && o.output.empty()) return usage("--reset needs --output NAME");
   if (o.reset) return state::AlignRequest{state::ResetRequest{o.output}};
   return state::AlignRequest{state::ListRequest{}};
+}
+
+Error unknownOutput(const std::string& name, const AlignAnswer& answer) {
+  std::string known;
+  for (const AlignedPicture& output : answer.outputs)
+    known += (known.empty() ? "" : ", ") + output.name;
+  return usage(fmt::format("\"{}\" is not an output that can be aligned; there are {}", name,
+                           known.empty() ? "none" : known));
 }
 
 int print(const AlignOptions& options, AlignAnswer answer) {
@@ -55,7 +68,7 @@ int print(const AlignOptions& options, AlignAnswer answer) {
     return kExitDone;
   }
   if (!answer.done.empty()) printOut("{}: {}\n", options.undo ? "undone" : "redone", answer.done);
-  if (!options.list && answer.find(options.output))
+  if (answer.find(options.output))
     std::erase_if(answer.outputs, [&](const auto& o) { return o.name != options.output; });
   for (const std::string& line : alignmentLines(answer)) printOut("{}\n", line);
   return kExitDone;
@@ -97,6 +110,8 @@ int align(const AlignOptions& options) {
   if (!request) return fail(request.error());
   auto answer = AlignedWall(options.instance).askAndWait(*request);
   if (!answer) return fail(answer.error());
+  if (!options.output.empty() && !answer->find(options.output))
+    return fail(unknownOutput(options.output, *answer));
   return print(options, *std::move(answer));
 }
 
@@ -114,7 +129,8 @@ void addChoices(Command command, AlignOptions& options) {
   choices.flag(
       "--reset", options.reset,
       "Move all corners and points of the output back to where the configuration has them");
-  choices.flag("--list", options.list, "Only show where the corners are");
+  choices.flag("--list", options.list,
+               "Only show where the corners are, of all outputs or of --output");
   choices.atMostOne();
 }
 
@@ -136,7 +152,8 @@ void addAlign(Command wall, Run& run) {
       .typeName("NAME");
   command
       .option("--corner", options->corner,
-              "The corner that is moved, of the picture that the output is sent")
+              "The corner that is moved, of the picture that the output is sent (after mirror and "
+              "turn_deg; keys and the web page have corners as they are seen on the wall)")
       .oneOf({std::begin(state::kCornerNames), std::end(state::kCornerNames)});
   command
       .option("--point", options->point,

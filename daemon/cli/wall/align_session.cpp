@@ -70,7 +70,7 @@ void AlignSession::move(const AlignKey& key) {
   if (key.what == What::kRight) offset.x = by;
   if (key.what == What::kUp) offset.y = -by;
   if (key.what == What::kDown) offset.y = by;
-  ask(state::MoveRequest{picture().name, place(), offset});
+  ask(state::MoveRequest{picture().name, place(), picture().axes.onSignal(offset)});
 }
 
 void AlignSession::toggleCard() {
@@ -104,12 +104,16 @@ std::vector<std::string> AlignSession::screen() const {
                               answer_.outputs.size(), picture().width, picture().height,
                               card_ ? ", test card on" : ""));
   lines.emplace_back();
+  const state::SeenAxes& axes = picture().axes;
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto& [configured, moved] = picture().corners[i];
+    const AlignedCorner& corner = picture().corners[axes.cornerOnSignal(i)];
+    const state::Offset base = axes.seen(corner.configured), moved = axes.seen(corner.moved);
     lines.push_back(fmt::format("{} {} {:<13} {:>+9.1f} {:>+9.1f}   moved {:>+9.1f} {:>+9.1f}",
                                 i == corner_ ? ">" : " ", i + 1, state::kCornerNames[i],
-                                configured.x + moved.x, configured.y + moved.y, moved.x, moved.y));
+                                base.x + moved.x, base.y + moved.y, moved.x, moved.y));
   }
+  if (axes != state::SeenAxes{})
+    lines.emplace_back("corners and directions are as seen on the wall; the signal is turned");
   lines.emplace_back();
   lines.push_back(fmt::format("step {} px; {} to undo, {} to redo", fine_ ? kFineStep_px : kStep_px,
                               answer_.undo, answer_.redo));

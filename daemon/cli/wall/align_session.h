@@ -40,7 +40,8 @@ class AlignSession {
 
  private:
   const AlignedPicture& picture() const { return answer_.outputs[output_]; }
-  state::Place place() const { return state::cornerAt(corner_); }
+  // The signal's corner that is seen in the chosen corner of the wall.
+  state::Place place() const { return state::cornerAt(picture().axes.cornerOnSignal(corner_)); }
   void ask(const state::AlignRequest& request);
   void choose(std::size_t output, std::size_t corner);
   void move(const AlignKey& key);
@@ -49,7 +50,7 @@ class AlignSession {
   AlignLink link_;
   std::string first_output_, message_;
   AlignAnswer answer_;
-  std::size_t output_ = 0, corner_ = 0;
+  std::size_t output_ = 0, corner_ = 0;  // the corner as it is seen on the wall
   bool fine_ = false, card_ = false;
 };
 

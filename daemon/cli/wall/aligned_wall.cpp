@@ -22,8 +22,13 @@ state::Offset offsetOf(const Json& json) { return {json.at(0).get<double>(), jso
 
 AlignedPicture pictureOf(const Json& json) {
   AlignedPicture picture{
-      json.at("name"),         json.at("width"), json.at("height"), json.at("pending"), {},
-      json.at("points").size()};
+      json.at("name"),
+      json.at("width"),
+      json.at("height"),
+      json.at("pending"),
+      {},
+      json.at("points").size(),
+      {offsetOf(json.at("seen").at("right")), offsetOf(json.at("seen").at("down"))}};
   for (std::size_t i = 0; i < picture.corners.size(); ++i) {
     const Json& corner = json.at("corners").at(state::kCornerNames[i]);
     picture.corners[i] = {offsetOf(corner.at("configured")), offsetOf(corner.at("moved"))};

@@ -20,6 +20,7 @@ struct AlignedPicture {
   bool pending = false;
   std::array<AlignedCorner, 4> corners;  // in the order of state::kCornerNames
   std::size_t moved_points = 0;          // of its mesh
+  state::SeenAxes axes{};
 };
 struct AlignAnswer {
   std::vector<AlignedPicture> outputs;

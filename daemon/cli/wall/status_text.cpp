@@ -128,11 +128,6 @@ void mergeServices(Json& both) {
   if (!merged.empty()) both["services"] = std::move(merged);
 }
 
-void addLostRoles(const std::string& instance, Json& both) {
-  for (const LostRole& lost : lostRoles(instance))
-    both["lost_roles"][lost.role] = {{"silent_s", toSeconds(lost.silent)}, {"reason", lost.what()}};
-}
-
 // A line for each role that has ended without a word.
 std::string lostLines(const Json& s) {
   const Json lost = s.value("lost_roles", Json::object());
@@ -166,6 +161,11 @@ std::string histogramChart(const std::vector<std::uint32_t>& buckets) {
                         100 * n / all);
   }
   return text;
+}
+
+void addLostRoles(const std::string& instance, Json& both) {
+  for (const LostRole& lost : lostRoles(instance))
+    both["lost_roles"][lost.role] = {{"silent_s", toSeconds(lost.silent)}, {"reason", lost.what()}};
 }
 
 void mergeStatus(Json& both, const std::string& document) {
@@ -261,27 +261,30 @@ std::string projectorLines(const Json& s) {
   return text;
 }
 
+std::string frameLines(const Json& s) {
+  if (s.value("frames", 0) == 0) return "wall     has not shown its first frame yet\n";
+  std::string text = fmt::format("wall     {:.1f} of {:.0f} Hz, {} {}, {} (ball mode: {})\n",
+                                 s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
+                                 detailCost(s), costUnit(s), pictureWord(s), s.value("mode", ""));
+  text += fmt::format(
+      "frames   {} drawn; {:.2f} % of those due while moving were late (last minute {:.2f} %), at "
+      "most {} in a row\n",
+      s.value("frames", 0), s.value("late_percent", 0.0), s.value("late_percent_1min", 0.0),
+      s.value("longest_late", 0));
+  text += fmt::format(
+      "work     {:.1f} ms per frame (median of the last second), {:.0f} % of the period, head "
+      "room {:.0f} %\n",
+      s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
+      100 * s.value("head_room", 0.0));
+  return text + paceLines(s);
+}
+
 }  // namespace
 
 std::string statusTable(const Json& s) {
   std::string text = lostLines(s);
-  if (s.contains("rate_asked")) {
-    text += fmt::format("wall     {:.1f} of {:.0f} Hz, {} {}, {} (ball mode: {})\n",
-                        s.value("rate_held", 0.0), s.value("rate_asked", 0.0), detailCost(s),
-                        costUnit(s), pictureWord(s), s.value("mode", ""));
-    text += fmt::format(
-        "frames   {} drawn; {:.2f} % of those due while moving were late (last minute {:.2f} %), "
-        "at "
-        "most {} in a row\n",
-        s.value("frames", 0), s.value("late_percent", 0.0), s.value("late_percent_1min", 0.0),
-        s.value("longest_late", 0));
-    text += fmt::format(
-        "work     {:.1f} ms per frame (median of the last second), {:.0f} % of the period, head "
-        "room {:.0f} %\n",
-        s.value("work_median_ms", 0.0), 100 * s.value("utilisation", 0.0),
-        100 * s.value("head_room", 0.0));
-    text += paceLines(s) + rendererLine(s) + outputLines(s) + missingLines(s);
-  }
+  if (s.contains("rate_asked"))
+    text += frameLines(s) + rendererLine(s) + outputLines(s) + missingLines(s);
   const std::string servers = serverLines(s) + failedServices(s, "service  {:14} {:8} {}\n");
   if (!s.contains("devices")) return text + servers;
   const std::string posture = s.value("posture", "");

@@ -25,6 +25,9 @@ Result<nlohmann::ordered_json> askStatus(const DaemonAddress& daemon);
 // has those of both roles, and of two with the same name the one that has failed.
 void mergeStatus(nlohmann::ordered_json& both, const std::string& document);
 
+// Adds the lost roles of this instance to `both`, as askStatus() does.
+void addLostRoles(const std::string& instance, nlohmann::ordered_json& both);
+
 // The status as a table of several lines.
 std::string statusTable(const nlohmann::ordered_json& status);
 

@@ -55,10 +55,10 @@ void addTestcard(Command wall, Run& run) {
   Command command = wall.subcommand(
       "testcard",
       "Show a test card on all tiles, corrected as the picture is. grid: geometry; edges: the "
-      "outermost pixels, corners and strips of overlap; ramps: grey, red, green, blue; names: "
-      "which "
-      "output is which, and what is up; focus: single pixels and Siemens stars; off: the picture "
-      "again; list: print the names of all cards. A restart ends it too.\n"
+      "outermost pixels, corners and strips of overlap; ramps: grey, red, green, blue along the "
+      "whole screen; names: which output is which, and what is up; focus: single pixels and "
+      "Siemens stars; black, grey, white: nothing else, to see where outputs overlap; off: the "
+      "picture again; list: print the names of all cards. A restart ends it too.\n"
       "Example: merlin wall testcard grid");
   addInstance(command, options->instance);
   command.option("card", options->card, "Name of the card, off or list")

@@ -38,9 +38,15 @@ Json stepEvent(const shm::TraceStep& step, double frame_us, int track) {
   return json;
 }
 
+// A period without a step is one that the frame before it ran over.
+const char* nameOf(const shm::FrameTrace& f) {
+  if (f.moving == 0) return "still";
+  return f.count == 0 ? "missed" : "frame";
+}
+
 void addFrame(const shm::FrameTrace& f, std::int64_t from_ns, Json& events) {
   const double at = microseconds(f.begin_ns - from_ns);
-  Json frame = event(f.moving != 0 ? "frame" : "still", "X", at, kWallTrack);
+  Json frame = event(nameOf(f), "X", at, kWallTrack);
   frame["dur"] = microseconds(f.end_ns - f.begin_ns);
   frame["cat"] = "frame";
   frame["args"] = {{"period", f.period},

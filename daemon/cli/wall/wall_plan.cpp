@@ -96,16 +96,37 @@ Json tableJson(const WallPlan& wall) {
   }
   json["overlaps"] = Json::array();
   for (const render::room::TileOverlap& o : render::room::tileOverlaps(wall.tiles)) {
-    json["overlaps"].push_back(
-        {{"left", o.left}, {"right", o.right}, {"width_m", o.width_m}, {"height_m", o.height_m}});
+    json["overlaps"].push_back({{"left", o.left},
+                                {"right", o.right},
+                                {"width_m", o.width_m},
+                                {"height_m", o.height_m},
+                                {"left_px", pixelsOf(wall, o.left, o.of_left)},
+                                {"right_px", pixelsOf(wall, o.right, o.of_right)}});
   }
   return json;
 }
 
-bool isDefault(const Json& value) {
-  if (value.is_array()) return std::ranges::all_of(value, isDefault);
-  // NOLINTNEXTLINE(readability-container-size-empty): a text of JSON is never "empty"
-  return value == 0 || value == "";
+// Lengths to a micrometre: computed ones end in 0.0000000000001.
+void roundNumbers(Json& value) {
+  if (value.is_number_float()) value = std::round(value.get<double>() * 1e6) / 1e6;
+  if (value.is_structured())
+    for (Json& part : value) roundNumbers(part);
+}
+
+// The settings of `item` that differ from a new one's.
+Json statedOf(const Json& item, const Json& new_one) {
+  Json stated = Json::object();
+  for (const auto& [key, value] : item.items()) {
+    if (!new_one.contains(key) || value != new_one[key]) stated[key] = value;
+  }
+  roundNumbers(stated);
+  return stated;
+}
+
+Json roomOf(const render::room::RoomSettings& room) {
+  Settings settings;
+  settings.wall.room = room;
+  return Json::parse(settingsText(settings))["wall"]["room"];
 }
 
 // The room as a configuration that has nothing else, without settings that only say "none".
@@ -114,20 +135,14 @@ int printPanels(const WallSettings& wall) {
     return fail({Errc::kInvalidArgument,
                  "this wall has no panels: its tiles are set by hand (/wall/tiles/tiles)"});
   }
-  Settings settings;
-  settings.wall.room = render::room::withPanels(wall.room);
-  const Json all = Json::parse(settingsText(settings));
-  Json room = all["wall"]["room"];
+  render::room::RoomSettings new_ones;
+  new_ones.panels.emplace_back();
+  new_ones.displays.emplace_back();
+  const Json untouched = roomOf(new_ones);
+  Json room = roomOf(render::room::withPanels(wall.room));
   room.erase("preset");
-  for (const char* const list : {"panels", "displays"}) {
-    for (Json& item : room[list]) {
-      Json stated = Json::object();
-      for (const auto& [key, value] : item.items()) {
-        if (!isDefault(value)) stated[key] = value;
-      }
-      item = std::move(stated);
-    }
-  }
+  for (const char* const list : {"panels", "displays"})
+    for (Json& item : room[list]) item = statedOf(item, untouched[list][0]);
   fmt::print("{}\n", Json{{"wall", {{"room", std::move(room)}}}}.dump(2));
   return kExitDone;
 }

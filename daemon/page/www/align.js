@@ -41,7 +41,7 @@ export class Alignment {
       button.title = readable(corner);
       button.textContent = {top_left: "◤", top_right: "◥", bottom_left: "◣", bottom_right: "◢"}[corner];
       button.setAttribute("aria-label", readable(corner));
-      button.onclick = () => this.choose(corner);
+      button.onclick = () => this.choose(this.cornerSeenAt(corner));
       byId("align-corners").append(button);
     }
     byId("align-output").onchange = event => {
@@ -72,6 +72,8 @@ export class Alignment {
       dot: make("circle", {class: "handle"}),
       area: make("circle", {class: "handle-area", "data-corner": corner, tabindex: 0, role: "button",
                             "aria-label": readable(corner)})}]));
+    this.group = make("g");
+    this.group.append(this.frame, this.quad, ...Object.values(this.handles).flatMap(h => [h.dot, h.area]));
   }
 
   setCards(names) {
@@ -114,12 +116,38 @@ export class Alignment {
     this.draw();
   }
 
+  // How the current output's signal is seen on the wall: [a, b, c, d, e, f] of an SVG matrix that
+  // takes its pixels to where they are seen, and the size there. A projector may hang upside down.
+  seen(output) {
+    const {right, down} = output.seen, {width, height} = output;
+    const from = ([x, y]) => (x < 0 ? width : 0) + (y < 0 ? height : 0);
+    const size = ([x, y]) => Math.abs(x) * width + Math.abs(y) * height;
+    return {matrix: [right[0], down[0], right[1], down[1], from(right), from(down)],
+            width: size(right), height: size(down)};
+  }
+
+  // The signal's corner that is seen in a corner of the wall.
+  cornerSeenAt(corner) {
+    const output = this.current();
+    if (!output) return corner;
+    const {right, down} = output.seen, i = kCorners.indexOf(corner);
+    const x = 2 * (i % 2) - 1, y = 2 * (i >> 1) - 1;
+    return kCorners[(right[0] * x + down[0] * y > 0 ? 1 : 0) + (right[1] * x + down[1] * y > 0 ? 2 : 0)];
+  }
+
+  // Its name as it is seen.
+  readableSeen(corner) { return readable(kCorners.find(c => this.cornerSeenAt(c) === corner)); }
+
   // The corner is marked on the test card, and bound inputs move it.
   select() { if (this.current()) this.ask(`select ${this.corner} ${this.output}`); }
 
+  // Steps to the right and down as they are seen.
   moveBy([x, y], corner = this.corner) {
-    const step = Number(byId("align-step").value);
-    return this.ask(`move ${corner} ${x * step} ${y * step} ${this.output}`);
+    const output = this.current(), step = Number(byId("align-step").value);
+    if (!output) return undefined;
+    const {right, down} = output.seen;
+    const by = [0, 1].map(i => (right[i] * x + down[i] * y) * step);
+    return this.ask(`move ${corner} ${by[0]} ${by[1]} ${this.output}`);
   }
 
   // Where a corner is, in pixels of the output.
@@ -133,15 +161,17 @@ export class Alignment {
   draw() {
     const output = this.current();
     for (const button of byId("align-corners").children)
-      button.setAttribute("aria-pressed", String(button.dataset.corner === this.corner));
+      button.setAttribute("aria-pressed", String(this.cornerSeenAt(button.dataset.corner) === this.corner));
     if (!output) {
       this.plane.replaceChildren();
       byId("align-state").textContent = "";
       return;
     }
-    const {width, height} = output, margin = Math.max(width, height) * kMargin;
-    this.plane.setAttribute("viewBox", `${-margin} ${-margin} ${width + 2 * margin} ${height + 2 * margin}`);
-    const unit = (width + 2 * margin) / (this.plane.clientWidth || 400);  // of one pixel on the screen
+    const {width, height} = output, seen = this.seen(output), margin = Math.max(width, height) * kMargin;
+    this.plane.setAttribute("viewBox",
+        `${-margin} ${-margin} ${seen.width + 2 * margin} ${seen.height + 2 * margin}`);
+    this.group.setAttribute("transform", `matrix(${seen.matrix.join(" ")})`);
+    const unit = (seen.width + 2 * margin) / (this.plane.clientWidth || 400);  // of one pixel on the screen
     const at = Object.fromEntries(kCorners.map(c => [c, this.place(output, c)]));
     const points = ["top_left", "top_right", "bottom_right", "bottom_left"].map(c => at[c].join(",")).join(" ");
     set(this.frame, {width, height, "stroke-width": unit});
@@ -151,16 +181,17 @@ export class Alignment {
       set(dot, {class: "handle" + chosen, cx, cy, r: 7 * unit, "stroke-width": 2 * unit});
       set(area, {cx, cy, r: 22 * unit});
     }
-    if (!this.plane.hasChildNodes())
-      this.plane.append(this.frame, this.quad, ...Object.values(this.handles).flatMap(h => [h.dot, h.area]));
-    const {moved} = output.corners[this.corner], now = this.dragged ? this.dragged.by : [0, 0];
-    byId("align-state").textContent = `${readable(this.corner)} moved by ${(moved[0] + now[0]).toFixed(2)}, ` +
-        `${(moved[1] + now[1]).toFixed(2)} px${output.pending ? ", being shown" : ""} · ` +
+    if (!this.plane.hasChildNodes()) this.plane.append(this.group);
+    const now = this.dragged ? this.dragged.by : [0, 0];
+    const moved = output.corners[this.corner].moved.map((v, i) => v + now[i]);
+    const {right, down} = output.seen, along = ([x, y]) => (x * moved[0] + y * moved[1]).toFixed(2);
+    byId("align-state").textContent = `${this.readableSeen(this.corner)} moved by ${along(right)}, ` +
+        `${along(down)} px${output.pending ? ", being shown" : ""} · ` +
         `${this.report.undo} to undo, ${this.report.redo} to redo`;
   }
 
   toOutput(event) {
-    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.plane.getScreenCTM().inverse());
+    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.group.getScreenCTM().inverse());
     return [point.x, point.y];
   }
 

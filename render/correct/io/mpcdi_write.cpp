@@ -108,6 +108,22 @@ Result<Ok> addMaps(pugi::xml_node files, const MpcdiOutput& output, std::size_t 
   return Ok{};
 }
 
+// Pixels more than half a pixel outside the picture show nothing: other readers would repeat the
+// picture's edge there, and lift its black.
+void leaveOutside(MpcdiOutput& output) {
+  const auto beyond = [](float share, int size) {
+    const double at = static_cast<double>(share) * size;
+    return !(at >= -0.5 && at <= size + 0.5);
+  };
+  for (std::size_t i = 0; i < output.places.size(); ++i) {
+    Place& place = output.places[i];
+    if (!beyond(place.u, output.width) && !beyond(place.v, output.height)) continue;
+    place = {kNaN, kNaN};
+    if (i < output.shares.gain.size()) output.shares.gain[i] = 0;
+    if (i < output.shares.black.size()) output.shares.black[i] = 0;
+  }
+}
+
 }  // namespace
 
 MpcdiOutput mpcdiOutput(const std::string& name, const CorrectionSettings& settings, int width,
@@ -118,6 +134,7 @@ MpcdiOutput mpcdiOutput(const std::string& name, const CorrectionSettings& setti
   output.shares = sharesOf(settings, width, height, output.places, measured);
   output.black = measured ? measured->beta_level : settings.black.level;
   output.measured = measured != nullptr;
+  leaveOutside(output);
   return output;
 }
 

@@ -22,9 +22,17 @@ struct Key {
   std::string_view key, command;
   bool repeats = false;
 };
-constexpr Key kKeys[] = {{"Home", "reset_view"},       {"R", "reset_view"},   {"M", "next_mode"},
-                         {"PageDown", "next_content"}, {"N", "next_content"}, {"S", "snapshot"},
-                         {"T", "next_testcard"},       {"B", "blank"},        {"F", "freeze"}};
+constexpr Key kKeys[] = {{"Home", "reset_view"},
+                         {"R", "reset_view"},
+                         {"M", "next_mode"},
+                         {"PageDown", "next_content"},
+                         {"N", "next_content"},
+                         {"PageUp", "previous_content"},
+                         {"P", "previous_content"},
+                         {"S", "snapshot"},
+                         {"T", "next_testcard"},
+                         {"B", "blank"},
+                         {"F", "freeze"}};
 // With Ctrl: the keys of `merlin wall align`.
 constexpr Key kCtrlKeys[] = {{"N", "align_output_next"},
                              {"Tab", "align_corner_next"},

@@ -44,7 +44,7 @@ class FaultyOutput final : public out::Output {
     return inner_->present({signal.width, signal.height, black_}, info);
   }
   // Presented again so that what has changed is shown, although nothing moves.
-  bool wantsFrame() const override { return std::exchange(was_, now()) != now(); }
+  bool wantsFrame(Timestamp) const override { return std::exchange(was_, now()) != now(); }
   bool canReadBack() const override { return true; }
   Result<std::vector<out::DisplayReading>> readBack() override { return inner_->readBack(); }
   Result<std::string> mend() override { return inner_->mend(); }
