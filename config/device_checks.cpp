@@ -18,9 +18,9 @@ namespace {
 constexpr std::size_t kLongestName = 16;
 
 // Names in shared memory and of inputs that are no device's.
-constexpr const char* kReserved[] = {"posture", "posture_state", "postures", "gesture",
-                                     "gpio",    "panel",         "actions",  "health",
-                                     "key",     "now_ns",        "time_utc"};
+constexpr const char* kReserved[] = {
+    "posture", "posture_state", "postures", "gesture", "gpio",  "panel",  "actions", "health",
+    "key",     "button",        "axis",     "switch",  "pinch", "spread", "now_ns",  "time_utc"};
 
 std::string deviceAt(std::size_t index) { return fmt::format("/devices/{}", index); }
 std::string handAt(std::size_t index) { return fmt::format("/hands/{}", index); }
@@ -281,12 +281,29 @@ std::string trackerNamed(const DevicesSettings& d, const std::string& name) {
   return first ? first->name : name;
 }
 
+// A station whose poses cannot come: a hand there would never be seen.
+void checkStationComes(const std::string& tracker, int station, const std::string& at,
+                       LoadedSettings& loaded) {
+  const DevicesSettings& d = loaded.settings.devices;
+  const DeviceSettings* const device = findDevice(d, SampleKind::kTracker, tracker);
+  const DriverEntry* const driver = device ? findDriver(device->line.driver) : nullptr;
+  const bool known = station >= 1 && station <= static_cast<int>(kStations);
+  if (!driver || !driver->has_station || !known || driver->has_station(device->own, station))
+    return;
+  loaded.addFinding(
+      at,
+      fmt::format("is {}, and the tracker \"{}\" has no such station: name it in {}/{}/stations",
+                  station, device->name, deviceAt(static_cast<std::size_t>(device - d.list.data())),
+                  driver->name));
+}
+
 // The stations that are worn: each by one hand, or by the head.
 void checkStations(LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
   const auto& head = loaded.settings.wall.stereo.head;
   std::map<std::pair<std::string, int>, std::size_t> worn;
   for (std::size_t i = 0; i < d.hands.size(); ++i) {
+    checkStationComes(d.hands[i].tracker, d.hands[i].station, handAt(i) + "/station", loaded);
     const auto [first, fresh] =
         worn.emplace(std::pair(trackerNamed(d, d.hands[i].tracker), d.hands[i].station), i);
     if (fresh) continue;
@@ -297,6 +314,7 @@ void checkStations(LoadedSettings& loaded) {
                     d.hands[i].station, handAt(first->second), handAt(first->second)));
   }
   checkNamed(head.tracker, SampleKind::kTracker, "/wall/stereo/head/tracker", loaded);
+  checkStationComes(head.tracker, head.station, "/wall/stereo/head/station", loaded);
   const auto found = worn.find({trackerNamed(d, head.tracker), head.station});
   if (head.station == 0 || found == worn.end()) return;
   loaded.addFinding("/wall/stereo/head/station",

@@ -56,13 +56,21 @@ constexpr DriverEntry kDrivers[] = {
      },
      describeOwn<&DriverSettings::vrpn>,
      [](const DriverSettings& s, const LineSettings& line) { return validate(s.vrpn, line); },
-     false, true},
+     false, true,
+     [](const DriverSettings& s, int station) {
+       return s.vrpn.stations[static_cast<std::size_t>(station - 1)] >= 0;
+     }},
     {"osc", SampleKind::kTracker, 0, "tracker whose poses come as OSC messages, over the network",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return osc::makeDevice(s.osc, c, k);
      },
      describeOwn<&DriverSettings::osc>,
-     [](const DriverSettings& s, const LineSettings& line) { return validate(s.osc, line); }},
+     [](const DriverSettings& s, const LineSettings& line) { return validate(s.osc, line); }, false,
+     false,
+     [](const DriverSettings& s, int station) {
+       const auto index = static_cast<std::size_t>(station - 1);
+       return index < s.osc.stations.size() && !s.osc.stations[index].empty();
+     }},
     {"spaceball", SampleKind::kBall, kSpaceballBaud, "Spaceball 1003, 2003, 3003 or 4000 FLX",
      [](const DriverSettings& s, const Clock& c, SampleSink& k) -> DevicePtr {
        return spaceball::makeDevice(s.spaceball, c, k);

@@ -52,6 +52,8 @@ struct DriverEntry {
   bool has_keys = false;  // whether it knows the kernel's keys and buttons by name
   // Whether several devices may be read from one tcp:// port, each by a connection of its own.
   bool shares_server = false;
+  // Of a tracker: whether poses of this station (1 to kStations) can come; null: of each.
+  bool (*has_station)(const DriverSettings&, int station) = nullptr;
 };
 
 std::span<const DriverEntry> drivers();

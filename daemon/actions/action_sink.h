@@ -54,6 +54,8 @@ class ActionSink final : public SampleSink, public HealthSink {
     parts_.samples.publish(sample);
   }
   void describe(const DeviceKeys& keys) noexcept override { keys_ = keys; }
+  Timestamp due() const noexcept override { return writer_.due(); }
+  void tick(Timestamp now) noexcept override { writer_.adopt(toNanoseconds(now)); }
   void publish(const DeviceHealth& health) noexcept override {
     DeviceHealth told = health;
     if (keys_ && health.state == HealthState::kOk && health.reason[0] == '\0')

@@ -6,7 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "daemon/base/clock.h"
 #include "daemon/base/commands.h"
 
 namespace merlin::actions {
@@ -138,7 +137,9 @@ bool ActionWriter::step(ParsedBinding& binding, std::int64_t now_ns) noexcept {
   if (held == binding.was_held) {
     if (!held || binding.repeat_ns == 0 || now_ns < binding.again_ns || binding.chorded)
       return false;
-    binding.again_ns = now_ns + binding.repeat_ns;
+    // Counted from the time before, so that delays do not add up; after a pause from now.
+    binding.again_ns += binding.repeat_ns;
+    if (binding.again_ns <= now_ns) binding.again_ns = now_ns + binding.repeat_ns;
     return begin(binding);
   }
   const bool cancelled = binding.on_leave && (longerOneHeld(binding) || binding.chorded);
@@ -147,6 +148,22 @@ bool ActionWriter::step(ParsedBinding& binding, std::int64_t now_ns) noexcept {
   if ((!binding.lasts && held == binding.on_leave) || cancelled) return false;
   binding.again_ns = now_ns + binding.repeat_ns;
   return begin(binding);
+}
+
+// When step() has something to do though nothing was pressed or released.
+std::optional<std::int64_t> ActionWriter::dueOf(const ParsedBinding& binding) noexcept {
+  if (!binding.pressed || binding.chorded) return std::nullopt;
+  if (!binding.was_held) return binding.since_ns + binding.after_ns;
+  if (binding.repeat_ns > 0) return binding.again_ns;
+  return std::nullopt;
+}
+
+Timestamp ActionWriter::due() const noexcept {
+  Timestamp first = Timestamp::max();
+  for (const ParsedBinding& binding : bindings_) {
+    if (const auto due = dueOf(binding)) first = std::min(first, fromNanoseconds(*due));
+  }
+  return first;
 }
 
 // Bindings that act when their input ends come first: they see whether a longer one is still held.

@@ -12,6 +12,7 @@
 #include "daemon/actions/input.h"
 #include "daemon/actions/pinch.h"
 #include "daemon/actions/settings.h"
+#include "daemon/base/clock.h"
 #include "daemon/base/handover.h"
 #include "daemon/shm/layout.h"
 #include "drivers/port/sample_sink.h"
@@ -50,8 +51,11 @@ class ActionWriter {
   // triggers nothing.
   void rebind(const std::vector<Binding>& bindings);
   // Uses new bindings, if there are any, and begins what time alone begins; each of the calls above
-  // does so too. To be called now and then while the device sends nothing.
+  // does so too. To be called now and then while the device sends nothing, and when it is due.
   void adopt(std::int64_t now_ns) noexcept;
+  // When time alone begins something next, as long as the inputs stay as they are;
+  // Timestamp::max(): never.
+  Timestamp due() const noexcept;
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -82,6 +86,7 @@ class ActionWriter {
   void happen(std::int64_t now_ns, const Happens& happens) noexcept;
   void takeBindings(std::int64_t now_ns) noexcept;
   void stepAll(std::int64_t now_ns) noexcept;
+  static std::optional<std::int64_t> dueOf(const ParsedBinding& binding) noexcept;
   bool step(ParsedBinding& binding, std::int64_t now_ns) noexcept;
   bool longerOneHeld(const ParsedBinding& binding) const noexcept;
   bool begin(ParsedBinding& binding) noexcept;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -88,6 +89,64 @@ std::string partOf(const actions::Input& input) {
   return fmt::format("{} {} {}", static_cast<int>(input.kind), input.button, input.name);
 }
 
+// Whether one event can be both inputs; texts that are no inputs are faults of their own.
+bool overlap(const std::string& a, const std::string& b) {
+  const auto first = actions::parseInput(a), second = actions::parseInput(b);
+  return !first || !second || first->overlaps(*second);
+}
+
+// Whether the bindings need the same two inputs, named in either order.
+bool areSameChord(const Binding& a, const Binding& b) {
+  return !a.with.empty() && a.with == b.input && a.input == b.with;
+}
+
+// The bindings before one, by what their inputs have in common with others.
+class BindingsBefore {
+ public:
+  explicit BindingsBefore(const std::vector<Binding>& all) : all_(all) {}
+
+  void add(std::size_t i) {
+    const Binding& b = all_[i];
+    by_input_[keyOf(b.input, b)].push_back(i);
+    if (!b.with.empty()) by_with_[keyOf(b.with, b)].push_back(i);
+  }
+
+  // One that may not be triggered together with `b`, and would be.
+  std::optional<std::size_t> excluded(const Binding& b) {
+    const auto meets = [&](std::size_t k, const std::string& mine, const std::string& its) {
+      return exclude(all_[k].action, b.action) && overlap(mine, its);
+    };
+    for (const std::size_t k : by_input_[keyOf(b.input, b)]) {
+      const bool same_time = all_[k].with == b.with && all_[k].after_s == b.after_s;
+      if ((same_time || isHeldAction(b.action)) && meets(k, b.input, all_[k].input)) return k;
+    }
+    // The chord may name its inputs in the other order, or be a longer hold of an input alone.
+    for (const std::size_t k : by_with_[keyOf(b.input, b)])
+      if (areTogether(all_[k], b) && meets(k, b.input, all_[k].with)) return k;
+    if (b.with.empty()) return std::nullopt;
+    for (const std::size_t k : by_input_[keyOf(b.with, b)])
+      if (all_[k].with.empty() && isHeldAction(b.action) && meets(k, b.with, all_[k].input))
+        return k;
+    return std::nullopt;
+  }
+
+ private:
+  using Places = std::map<std::pair<std::string, bool>, std::vector<std::size_t>>;
+
+  static std::pair<std::string, bool> keyOf(const std::string& text, const Binding& b) {
+    const auto input = actions::parseInput(text);
+    return {input ? partOf(*input) : text, atLeave(b)};
+  }
+  // `chord` has the first input of `b` as its second one.
+  static bool areTogether(const Binding& chord, const Binding& b) {
+    if (areSameChord(chord, b)) return chord.after_s == b.after_s || isHeldAction(b.action);
+    return b.with.empty() && isHeldAction(b.action);
+  }
+
+  const std::vector<Binding>& all_;
+  Places by_input_, by_with_;
+};
+
 }  // namespace
 
 // Linear in the number of bindings: for each moment of an input at most one binding of each action
@@ -95,24 +154,15 @@ std::string partOf(const actions::Input& input) {
 // happen at different moments: as the chord begins, only the chord acts (ActionWriter).
 SettingFaults validate(const std::vector<Binding>& bindings) {
   SettingFaults faults;
-  std::map<std::pair<std::string, bool>, std::vector<std::size_t>> before;
+  BindingsBefore before(bindings);
   for (std::size_t i = 0; i < bindings.size(); ++i) {
-    const Binding& b = bindings[i];
     const std::string at = fmt::format("/{}", i);
-    checkOne(b, at, faults);
-    const auto input = actions::parseInput(b.input);
-    auto& same_moment = before[{input ? partOf(*input) : b.input, atLeave(b)}];
-    const auto j = std::find_if(same_moment.begin(), same_moment.end(), [&](std::size_t k) {
-      const auto other = actions::parseInput(bindings[k].input);
-      const bool same_time = bindings[k].with == b.with && bindings[k].after_s == b.after_s;
-      return (!input || !other || input->overlaps(*other)) &&
-             (same_time || isHeldAction(b.action)) && exclude(bindings[k].action, b.action);
-    });
-    if (j == same_moment.end()) {
-      same_moment.push_back(i);
-      continue;
-    }
-    faults.push_back({at, conflictText(bindings[*j], b), fmt::format("/{}", *j)});
+    checkOne(bindings[i], at, faults);
+    const auto j = before.excluded(bindings[i]);
+    if (j)
+      faults.push_back({at, conflictText(bindings[*j], bindings[i]), fmt::format("/{}", *j)});
+    else
+      before.add(i);
   }
   return faults;
 }

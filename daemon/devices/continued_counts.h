@@ -21,6 +21,8 @@ class ContinuedCounts final : public SampleSink, public HealthSink {
     pass(sample, tracker_[(sample.station - 1) % kStations]);
   }
   void describe(const DeviceKeys& keys) noexcept override { samples_.describe(keys); }
+  Timestamp due() const noexcept override { return samples_.due(); }
+  void tick(Timestamp now) noexcept override { samples_.tick(now); }
   void publish(const DeviceHealth& health) noexcept override {
     DeviceHealth sum = health;
     sum.samples += before_.samples;

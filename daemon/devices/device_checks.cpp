@@ -1,5 +1,7 @@
 #include "daemon/devices/device_checks.h"
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -91,6 +93,41 @@ std::string nearestKey(const std::string& name) {
   return (isButton(name) ? "button." : "key.") + near;
 }
 
+// The kernel's name of a key without KEY_ or BTN_, in lower case, as an opened input device has it.
+std::string shortKeyName(std::uint16_t code) {
+  std::string name = io::keyRecord(code).text.data();
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
+}
+
+// The name that the list "buttons" has for what is called so elsewhere ("btn_south", "a" of BTN_A),
+// or else the nearest one; empty if there is none.
+std::string nearestButton(const std::string& name, const std::vector<std::string>& names) {
+  for (const char* const prefix : {"", "btn_", "key_"}) {
+    if (const auto code = io::keyCode(prefix + name)) return shortKeyName(*code);
+  }
+  return nearestWord(name, names);
+}
+
+void checkButtons(LoadedSettings& loaded) {
+  std::vector<std::string> names;
+  for (std::uint16_t code = 0; code < io::kKeyCodes; ++code) names.push_back(shortKeyName(code));
+  const auto& list = loaded.settings.devices.list;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::vector<std::string>& buttons = list[i].own.evdev.buttons;
+    for (std::size_t k = 0; k < buttons.size(); ++k) {
+      if (std::ranges::find(names, buttons[k]) != names.end()) continue;
+      const std::string near = nearestButton(buttons[k], names);
+      loaded.addFinding(
+          fmt::format("/devices/{}/evdev/buttons/{}", i, k),
+          fmt::format("is \"{}\", and the kernel knows no key of that name{}", buttons[k],
+                      near.empty() ? "; `merlin devices` lists those of what is plugged in"
+                                   : fmt::format("; did you mean \"{}\"?", near)));
+    }
+  }
+}
+
 // The address with the path of the file that its links lead to. A device that is not there keeps
 // its path: it is compared when it is opened.
 PortAddress withoutLinks(PortAddress address) {
@@ -145,6 +182,7 @@ void checkGestures(LoadedSettings& loaded) {
 }
 
 void checkKeys(LoadedSettings& loaded) {
+  checkButtons(loaded);
   forBindings(loaded, actions::Input::Kind::kKey,
               [&](const std::string& at, const std::string& input, const std::string& name) {
                 if (io::keyCode(name)) return;

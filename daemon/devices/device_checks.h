@@ -15,7 +15,8 @@ void checkPostures(LoadedSettings& loaded);
 // while /gestures/file names none.
 void checkGestures(LoadedSettings& loaded);
 
-// Adds a finding for each binding to a key or button of which the kernel knows none of that name.
+// Adds a finding for each binding to a key or button of which the kernel knows none of that name,
+// and for each such key in the list "buttons" of an input device.
 void checkKeys(LoadedSettings& loaded);
 
 // Adds a finding for each port whose text is invalid, and for each transcript ("replay:FILE") that

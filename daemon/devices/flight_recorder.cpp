@@ -9,6 +9,7 @@
 
 #include "daemon/base/dated_files.h"
 #include "daemon/base/files.h"
+#include "daemon/shm/device_slots.h"
 #include "daemon/shm/segment.h"
 
 namespace merlin::devices {
@@ -36,7 +37,7 @@ FlightRing& FlightRecorder::ringOf(std::size_t device, std::string name, std::st
   if (entry == entries_.end()) {
     auto ring = store_ ? std::make_unique<FlightRing>(store_->memory(device))
                        : std::make_unique<FlightRing>();
-    entry = entries_.insert(entry, {device, {}, std::move(ring)});
+    entry = entries_.insert(entry, {device, {}, std::move(ring), false, 0, {}});
   }
   entry->device = {std::move(name), std::move(driver), baud};
   if (store_) store_->describe(device, entry->device);
@@ -59,7 +60,10 @@ std::vector<Event> FlightRecorder::check() {
     const bool well = health->state == HealthState::kOk;
     const bool fell = entry.was_well && !well && std::string_view(health->reason) != "stopped";
     entry.was_well = well;
+    if (well) entry.well_ns = health->since_ns;
     if (!fell) continue;
+    const bool brief = health->since_ns - entry.well_ns < shm::kBriefly.count();
+    if (std::exchange(entry.fell, health->reason) == health->reason && brief) continue;
     const auto file = write(entry, health->reason);
     events.push_back(
         file ? newsEvent(fmt::format("the last bytes of {} are in {}", entry.device.name, *file))

@@ -37,7 +37,8 @@ class FlightRecorder {
   // The device was stopped on purpose: no reason for a dump. Thread-safe.
   void expectEnd(std::size_t device);
 
-  // Dumps each device that has stopped working since the last call, and those of a run before that
+  // Dumps each device that has stopped working since the last call, unless it did so in the same
+  // way before and worked only briefly since then (shm::kBriefly), and those of a run before that
   // crashed; returns a sentence for each.
   std::vector<Event> check();
 
@@ -50,6 +51,8 @@ class FlightRecorder {
     FlightDevice device;
     std::unique_ptr<FlightRing> ring;
     bool was_well = false;
+    std::int64_t well_ns = 0;  // since when it was well, the last time
+    std::string fell;          // why it fell, the last time
   };
   struct Dump {
     const FlightDevice& device;

@@ -83,4 +83,8 @@ struct DeviceSlots {
 // health was not updated for a second.
 const char* healthName(const DeviceHealth& health, Timestamp now);
 
+// A device that works for less than this between two faults that are the same has had one fault,
+// for messages and recordings.
+inline constexpr Duration kBriefly = std::chrono::seconds(5);
+
 }  // namespace merlin::shm

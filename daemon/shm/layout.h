@@ -171,7 +171,8 @@ struct TraceStep {
   std::uint16_t tile;  // index of the tile, from 0; for kDraw, kReadBack, kRefine
 };
 
-// Times of one frame, or of one period while nothing moves, and of its steps.
+// Times of one frame, or of one period while nothing moves, and of its steps. A period that the
+// frame before ran over has an entry without steps.
 struct FrameTrace {
   std::int64_t begin_ns, end_ns, deadline_ns;  // CLOCK_MONOTONIC
   std::uint64_t period;                        // number of the period since the start

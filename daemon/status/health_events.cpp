@@ -21,6 +21,20 @@ bool isIntended(std::string_view reason) {
 
 }  // namespace
 
+bool HealthEvents::isBrief(Told& told, const DeviceHealth& health, Timestamp now) noexcept {
+  if (health.state != HealthState::kOk) return false;
+  told.ok_ns = health.since_ns;
+  if (now - fromNanoseconds(health.since_ns) >= shm::kBriefly) told.recurs = false;
+  return told.recurs;
+}
+
+void HealthEvents::tellFault(Told& told, const DeviceHealth& health, const std::string& sentence) {
+  if (health.state == HealthState::kOk) return;  // a complaint of one that works
+  const bool brief = health.since_ns < told.ok_ns + shm::kBriefly.count();
+  told.recurs = told.recurs || (sentence == told.fault && brief);
+  told.fault = sentence;
+}
+
 std::vector<Event> HealthEvents::take(Timestamp now) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < devices_.health.size(); ++i) {
@@ -28,16 +42,19 @@ std::vector<Event> HealthEvents::take(Timestamp now) {
     const auto health = slot->read();
     // Opening is not an event: an absent device is opened again every second.
     if (!health || health->state == HealthState::kOpening) continue;
+    Told& told = told_[i];
+    if (isBrief(told, *health, now)) continue;
     const std::string_view state = shm::healthName(*health, now);
     const std::string_view why = health->state == HealthState::kOk && health->reason[0] == '\0'
                                      ? health->identity
                                      : health->reason;
     std::string sentence = fmt::format("{}: {} ({})", device, state, why);
-    if (sentence == last_[i]) continue;
-    last_[i] = sentence;
+    if (sentence == told.last) continue;
+    told.last = sentence;
     const bool works = state == "ok" && health->reason[0] == '\0';
     const Severity unless_it_works =
         isIntended(health->reason) ? Severity::kRoutine : Severity::kFault;
+    if (!works) tellFault(told, *health, sentence);
     events.push_back({std::move(sentence), works ? Severity::kNews : unless_it_works});
   }
   return events;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,19 +18,31 @@ class HealthEvents {
  public:
   explicit HealthEvents(shm::DeviceSlots devices)
       : devices_(std::move(devices)),
-        last_(devices_.health.size()),
+        told_(devices_.health.size()),
         last_gestures_(devices_.hands.size()) {}
 
   // The changes since the last call: "glove: ok (CyberGlove, 22 sensors)", "tracker: absent
   // (/run/merlin/t: No such file)". A device that is retried with the same result is reported once.
-  // Faults are those of a device that is not ok, or complains.
+  // So is one that fails in the same way again and again, with little work between
+  // (shm::kBriefly): that it is ok is then said once it has stayed so for that time. Faults are
+  // those of a device that is not ok, or complains.
   std::vector<Event> take(Timestamp now);
   // The gestures since the last call, of each hand the last one: "hand: gesture swipe_left".
   std::vector<Event> takeGestures();
 
  private:
+  // What was said of a device, and what it did.
+  struct Told {
+    std::string last, fault;  // the last event, and the last one of a device that did not work
+    std::int64_t ok_ns = std::numeric_limits<std::int64_t>::min();  // since when it was ok last
+    bool recurs = false;  // the fault came back after a brief ok
+  };
+  // Whether it is ok without having been so for long enough after a fault that recurs.
+  static bool isBrief(Told& told, const DeviceHealth& health, Timestamp now) noexcept;
+  static void tellFault(Told& told, const DeviceHealth& health, const std::string& sentence);
+
   shm::DeviceSlots devices_;
-  std::vector<std::string> last_;             // the last event of each device
+  std::vector<Told> told_;                    // of each device
   std::vector<std::uint32_t> last_gestures_;  // of each hand, GestureState::counter
 };
 

@@ -25,13 +25,15 @@ Result<std::string> EvdevDevice::open(ByteStream& stream) {
   sink_.describe(reader_.keys());
   complaint_ = input_.choose(settings_);
   input_.fill(ball_.sample());
+  ball_.settle(clock_.now());
   return fmt::format("{}, {} axes, {} keys", input_.name().empty() ? "input device" : input_.name(),
                      input_.axes(), input_.keys());
 }
 
 Result<Ok> EvdevDevice::poll(ByteStream& stream) {
   const auto polled = reader_.poll(
-      stream, ball_.wait(), [&](const EvdevRecord& record) { input_.take(record, clock_.now()); },
+      stream, ball_.wait(clock_.now()),
+      [&](const EvdevRecord& record) { input_.take(record, clock_.now()); },
       [&](Timestamp at) { report(at); });
   if (!polled) return polled.error();
   const Timestamp now = *polled;

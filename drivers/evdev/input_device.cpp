@@ -107,9 +107,10 @@ void InputDevice::take(const EvdevRecord& r, Timestamp arrived) noexcept {
 std::string InputDevice::choose(const EvdevSettings& settings) {
   dead_zone_ = static_cast<float>(settings.dead_zone);
   curve_ = static_cast<float>(settings.curve);
-  const std::string axes = chooseAxes(settings.axes);
-  const std::string buttons = chooseButtons(settings.buttons);
-  return axes.empty() ? buttons : axes;
+  std::vector<std::string> lacking = chooseAxes(settings.axes);
+  for (std::string& key : chooseButtons(settings.buttons)) lacking.push_back(std::move(key));
+  if (lacking.empty()) return {};
+  return fmt::format("it has no {}, which the configuration names", fmt::join(lacking, ", no "));
 }
 
 // Positive is right for x and down or towards the person for y, as the kernel says; the README has
@@ -137,44 +138,46 @@ AxisSources InputDevice::usualSources() const {
           plain(ABS_Z), hat_x};
 }
 
-std::string InputDevice::chooseAxes(const std::vector<std::string>& names) {
-  sources_ = usualSources();
-  if (names.empty()) {
-    for (AxisSource& source : sources_) {
-      if (!has(source.axis)) source = {};
-    }
-    return {};
-  }
-  for (std::size_t i = 0; i < std::min(names.size(), sources_.size()); ++i) {
+// Returns what is lacking, "axis throttle"; what it should move stays at rest.
+std::vector<std::string> InputDevice::chooseAxes(const std::vector<std::string>& names) {
+  std::vector<std::string> lacking;
+  sources_ = names.empty() ? usualSources() : AxisSources{};
+  for (std::size_t i = 0; i < std::min(names.size(), sources_.size()); ++i)
     sources_[i] = parseAxisSource(names[i], axisNumber).value_or(AxisSource{});
-    for (const int code : {sources_[i].axis, sources_[i].minus}) {
-      if (code >= 0 && !has(code))
-        return fmt::format("it has no axis {}, which the configuration names", axisName(code));
+  for (AxisSource& source : sources_) {
+    bool whole = true;
+    for (const int code : {source.axis, source.minus}) {
+      if (code < 0 || has(code)) continue;
+      whole = false;
+      if (!names.empty()) lacking.push_back(fmt::format("axis {}", axisName(code)));
     }
+    if (!whole) source = {};
   }
-  return {};
+  return lacking;
 }
 
-std::string InputDevice::chooseButtons(const std::vector<std::string>& names) {
+// Returns what is lacking, "key \"thumbr\""; the buttons after it keep their numbers.
+std::vector<std::string> InputDevice::chooseButtons(const std::vector<std::string>& names) {
   buttons_.fill(0);
-  std::size_t count = 0;
-  const auto add = [&](const Key& key) {
-    if (count < buttons_.size())
-      buttons_[count++] = 1 + static_cast<std::size_t>(&key - keys_.data());
-  };
-  for (const std::string& name : names) {
-    const auto key = std::ranges::find(keys_, name, &Key::name);
+  if (names.empty()) chooseUsualButtons();
+  std::vector<std::string> lacking;
+  for (std::size_t i = 0; i < std::min(names.size(), buttons_.size()); ++i) {
+    const auto key = std::ranges::find(keys_, names[i], &Key::name);
     if (key == keys_.end())
-      return fmt::format("it has no key \"{}\", which the configuration names", name);
-    add(*key);
+      lacking.push_back(fmt::format("key \"{}\"", names[i]));
+    else
+      buttons_[i] = 1 + static_cast<std::size_t>(key - keys_.begin());
   }
-  if (!names.empty()) return {};
+  return lacking;
+}
+
+void InputDevice::chooseUsualButtons() {
   const bool has_buttons =
       std::ranges::any_of(keys_, [](const Key& key) { return key.code >= BTN_MISC; });
-  for (const Key& key : keys_) {
-    if (!has_buttons || key.code >= BTN_MISC) add(key);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < keys_.size() && count < buttons_.size(); ++i) {
+    if (!has_buttons || keys_[i].code >= BTN_MISC) buttons_[count++] = 1 + i;
   }
-  return {};
 }
 
 float InputDevice::centred(int code) const noexcept { return 2 * oneSided(code) - 1; }

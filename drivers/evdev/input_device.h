@@ -24,8 +24,8 @@ class InputDevice {
   void take(const EvdevRecord& record, Timestamp at) noexcept;
 
   // Chooses axes and buttons by the settings, or by the kind of device; to be called once the
-  // description is complete. Returns a sentence about what the settings name and the device lacks;
-  // empty: nothing.
+  // description is complete. Returns a sentence about all that the settings name and the device
+  // lacks; empty: nothing. The rest of the settings has effect as it stands.
   std::string choose(const EvdevSettings& settings);
 
   // Writes the present state into `sample`: axes, raw values (fillAxes() of drivers/port/axes.h),
@@ -65,8 +65,9 @@ class InputDevice {
   bool has(int code) const noexcept;
   bool hasKey(std::uint16_t code) const noexcept;
   AxisSources usualSources() const;
-  std::string chooseAxes(const std::vector<std::string>& names);
-  std::string chooseButtons(const std::vector<std::string>& names);
+  std::vector<std::string> chooseAxes(const std::vector<std::string>& names);
+  std::vector<std::string> chooseButtons(const std::vector<std::string>& names);
+  void chooseUsualButtons();
   float deflection(const AxisSource& source) const noexcept;
   float centred(int code) const noexcept;
   float oneSided(int code) const noexcept;

@@ -19,6 +19,7 @@ void describe(OscSettings& o, SettingsVisitor& v) {
           "Order in which the quaternion's components are sent: the real part w last or first.");
   v.number("scale", o.scale, {1e-6, 1e3},
            "Metres in the sender's unit of length: 1 for metres, 0.001 for millimetres.");
+  describe(o.placement, v);
 }
 
 }  // namespace merlin

@@ -16,20 +16,22 @@ constexpr const char* kOtherAddress = "OSC messages come, but none to the addres
 constexpr const char* kOtherStation = "poses come only of stations that \"stations\" does not have";
 constexpr const char* kNotFormed = "messages of poses have neither 3 nor 7 numbers";
 constexpr const char* kTooFar = "poses come from beyond 25 m: is \"scale\" right?";
+constexpr const char* kNoNumbers = "poses come with values that are not numbers";
 constexpr const char* kNoRotation = "the orientations that come are not unit quaternions";
 
 bool isNumber(const OscArgument& argument) noexcept {
   return argument.kind == OscArgument::kReal || argument.kind == OscArgument::kInteger;
 }
 
-// Whether an argument is this name: a text, or a number whose digits are the name.
+// Whether an argument is this name: a text, or a whole number whose digits are the name; a sender
+// may have one type for all its numbers.
 bool names(const OscArgument& argument, std::string_view name) noexcept {
   if (argument.kind == OscArgument::kText) return argument.text == name;
-  if (argument.kind != OscArgument::kInteger) return false;
+  if (!isNumber(argument)) return false;
   std::int32_t number = 0;
   const char* const end = name.data() + name.size();
   const auto [stop, error] = std::from_chars(name.data(), end, number);
-  return error == std::errc() && stop == end && number == argument.integer;
+  return error == std::errc() && stop == end && number == argument.number;
 }
 
 void normalise(float (&q)[4]) noexcept {
@@ -37,8 +39,14 @@ void normalise(float (&q)[4]) noexcept {
   for (float& v : q) v /= norm;
 }
 
-bool isNear(const TrackerSample& sample) noexcept {
-  return std::ranges::all_of(sample.position_m, [](float v) { return std::abs(v) <= kFurthest_m; });
+// Why no tracker can have measured this.
+const char* faultOf(const TrackerSample& sample) noexcept {
+  const auto isFinite = [](float v) { return std::isfinite(v); };
+  const auto isNear = [](float v) { return std::abs(v) <= kFurthest_m; };
+  if (!std::ranges::all_of(sample.position_m, isFinite) ||
+      !std::ranges::all_of(sample.orientation_wxyz, isFinite))
+    return kNoNumbers;
+  return std::ranges::all_of(sample.position_m, isNear) ? kNoRotation : kTooFar;
 }
 
 }  // namespace
@@ -109,8 +117,9 @@ void Poses::take(const OscMessage& message) noexcept {
     const std::size_t at = kPosition + (real_first ? i : (i + 3) % 4);
     sample.orientation_wxyz[i] = values.size() == kPose ? value(at) : rest;
   }
-  if (!plausible(sample)) return bad(isNear(sample) ? kNoRotation : kTooFar);
+  if (!plausible(sample)) return bad(faultOf(sample));
   normalise(sample.orientation_wxyz);
+  place(settings_.placement, sample);
   sample.received_ns = toNanoseconds(received_);
   ++sample.counter;
   sample_[station] = sample;

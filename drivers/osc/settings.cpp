@@ -65,6 +65,7 @@ SettingFaults validate(const OscSettings& settings, const LineSettings& line) {
                                      settings.address)});
   }
   checkStations(settings, faults);
+  checkPlacement(settings.placement, "/osc", faults);
   return faults;
 }
 

@@ -6,6 +6,7 @@
 
 #include "daemon/base/setting_fault.h"
 #include "drivers/port/port_address.h"
+#include "drivers/port/tracker_placement.h"
 
 namespace merlin {
 
@@ -21,13 +22,14 @@ struct OscSettings {
   std::vector<std::string> stations = {"1", "2", "3", "4"};
   Quaternion quaternion = Quaternion::kXyzw;  // order in which its components are sent
   double scale = 1;                           // metres in the sender's unit of length
+  TrackerPlacement placement{};
 
   static constexpr const char* kStation = "{station}";
 };
 
 // Finds an address that no message can have, stations without a name of their own, and a port at
 // which no datagram can arrive. Pointers, relative to the tracker: "/port", "/osc/address",
-// "/osc/stations".
+// "/osc/stations", "/osc/axes".
 SettingFaults validate(const OscSettings& settings, const LineSettings& line);
 
 // Calls `visitor` for every setting, in the order of written files.

@@ -1,5 +1,6 @@
 #include "drivers/port/axis_source.h"
 
+#include <map>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -30,10 +31,21 @@ void checkAxisSources(const std::vector<std::string>& texts, const AxisNumber& n
                                            "rotations about them, or none",
                                            texts.size(), kAxes)});
   }
+  std::map<int, std::size_t> used;  // axes of the device, and the first text that names each
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (parseAxisSource(texts[i], number)) continue;
-    faults.push_back({fmt::format("{}/{}", pointer, i),
-                      fmt::format("is \"{}\"; allowed are {}", texts[i], forms)});
+    const std::string at = fmt::format("{}/{}", pointer, i);
+    const auto source = parseAxisSource(texts[i], number);
+    if (!source) {
+      faults.push_back({at, fmt::format("is \"{}\"; allowed are {}", texts[i], forms)});
+      continue;
+    }
+    for (const int axis : {source->axis, source->minus}) {
+      const auto [first, is_new] = used.emplace(axis, i);
+      if (axis < 0 || is_new) continue;
+      faults.push_back({at, fmt::format("is \"{}\", and \"{}\" before it uses that axis already; "
+                                        "an axis moves one thing",
+                                        texts[i], texts[first->second])});
+    }
   }
 }
 

@@ -31,8 +31,9 @@ using AxisNumber = std::function<std::optional<int>(std::string_view name)>;
 // the text is none of these.
 std::optional<AxisSource> parseAxisSource(std::string_view text, const AxisNumber& number);
 
-// Adds a fault for another number of texts than six, unless there are none, and for each text that
-// cannot be parsed. `pointer`: of the list; `forms`: what is allowed, for a person.
+// Adds a fault for another number of texts than six, unless there are none, for each text that
+// cannot be parsed, and for each that names an axis which one before it names. `pointer`: of the
+// list; `forms`: what is allowed, for a person.
 void checkAxisSources(const std::vector<std::string>& texts, const AxisNumber& number,
                       const std::string& pointer, const char* forms, SettingFaults& faults);
 

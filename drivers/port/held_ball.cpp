@@ -25,20 +25,30 @@ void HeldBall::publish(Timestamp at) noexcept {
   sample_.received_ns = ns;
   ++sample_.counter;
   ++samples_;
+  ended_ = false;
+  held_ = pushed() || sample_.buttons != 0 || sample_.keys[0] != 0;
   sink_.publish(sample_);
 }
 
 void HeldBall::hold(Timestamp now) noexcept {
   if (pushed() && now - fromNanoseconds(sample_.received_ns) >= kAgain) publish(now);
+  tickIfDue(sink_, now);
 }
 
-Duration HeldBall::wait() const noexcept { return pushed() ? kAgain : kIdleWait; }
+Duration HeldBall::wait(Timestamp now) const noexcept {
+  return untilDue(sink_, now, pushed() ? kAgain : kIdleWait);
+}
 
 void HeldBall::restart() noexcept {
   const BallSample last = sample_;
   sample_ = {};
   sample_.counter = last.counter;
   sample_.received_ns = last.received_ns;
+  ended_ = held_;
+}
+
+void HeldBall::settle(Timestamp now) noexcept {
+  if (ended_) publish(now);
 }
 
 }  // namespace merlin

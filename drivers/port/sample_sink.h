@@ -5,8 +5,10 @@
 // has one thread; two devices never publish the same kind of sample.
 #pragma once
 
+#include <algorithm>
 #include <bitset>
 
+#include "daemon/base/clock.h"
 #include "drivers/port/samples.h"
 
 namespace merlin {
@@ -26,7 +28,23 @@ class SampleSink {
   // Told each time that a device of the kernel has been opened, before its first sample; other
   // devices tell nothing.
   virtual void describe(const DeviceKeys&) noexcept {}
+
+  // When time alone will change something here, unless a sample comes before: a button that is held
+  // acts after a while. Timestamp::max(): never. The driver of a device that sends nothing while an
+  // input is held then calls tick(), with what time it is.
+  virtual Timestamp due() const noexcept { return Timestamp::max(); }
+  virtual void tick(Timestamp) noexcept {}
 };
+
+// How long the driver may wait for bytes before it calls tick(), and at most `most`.
+inline Duration untilDue(const SampleSink& sink, Timestamp now, Duration most) noexcept {
+  const Timestamp due = sink.due();
+  return due < now + most ? std::max<Duration>(due - now, Duration::zero()) : most;
+}
+// Calls tick() if it is due.
+inline void tickIfDue(SampleSink& sink, Timestamp now) noexcept {
+  if (sink.due() <= now) sink.tick(now);
+}
 
 // Receives the health of one device.
 class HealthSink {

@@ -39,6 +39,11 @@ class TouchFrames {
   // Publishes the frame in any case.
   void publishAnyway(Timestamp at) noexcept;
 
+  // Longest time for which the driver may wait for bytes before it calls hold(), which lets
+  // happen what a held button or pinch does later.
+  Duration wait(Timestamp now) const noexcept { return untilDue(sink_, now, kLongestWait); }
+  void hold(Timestamp now) noexcept { tickIfDue(sink_, now); }
+
   // No finger touches any more, and no button is pressed; published if one was.
   void lift(Timestamp at) noexcept;
 
@@ -46,6 +51,9 @@ class TouchFrames {
   const TouchSample& newest() const noexcept { return newest_; }
 
  private:
+  static constexpr Duration kLongestWait =
+      std::chrono::milliseconds(250);  // as Device::poll() allows
+
   SampleSink& sink_;
   TouchOrientation orientation_;
   TouchSample next_{}, newest_{};

@@ -102,7 +102,7 @@ Result<Ok> SpaceballDevice::setUp(ByteStream& stream) {
 
 Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
   std::array<std::byte, 64> buffer;  // NOLINT: filled by read
-  const auto got = stream.read(buffer, kPollTime);
+  const auto got = stream.read(buffer, untilDue(sink_, clock_.now(), kPollTime));
   if (!got && got.error().code != Errc::kTimeout) return got.error();
   const Timestamp now = clock_.now();
   for (std::size_t i = 0; got && i < *got; ++i) {
@@ -113,6 +113,7 @@ Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
     pinged_ = false;
     if (auto done = handle(*packet, packet_start_, stream); !done) return done;
   }
+  tickIfDue(sink_, now);
   return keepAlive(stream);  // bytes that form no packet count as silence
 }
 

@@ -26,7 +26,9 @@ Result<std::string> SpacenavDevice::open(ByteStream& stream) {
   ball_.restart();
   mouse_lost_ = false;
   if (const auto greeted = greet(stream); !greeted) return greeted.error();
-  return has_names_ ? askName(stream) : Result<std::string>(std::string("space mouse"));
+  auto name = has_names_ ? askName(stream) : Result<std::string>(std::string("space mouse"));
+  if (name) ball_.settle(clock_.now());
+  return name;
 }
 
 // Version 0 takes the word for a sensitivity that is not a number, so it is set to 1 afterwards, as
@@ -72,7 +74,7 @@ Result<std::string> SpacenavDevice::askName(ByteStream& stream) {
 
 Result<Ok> SpacenavDevice::poll(ByteStream& stream) {
   std::array<std::byte, 16 * sizeof(Frame)> buffer;  // NOLINT(*-member-init): filled by read
-  const auto got = stream.read(buffer, ball_.wait());
+  const auto got = stream.read(buffer, ball_.wait(clock_.now()));
   const Timestamp now = clock_.now();
   if (!got && got.error().code != Errc::kTimeout) return got.error();
   for (std::size_t i = 0; got && i < *got; ++i) {

@@ -5,10 +5,6 @@
 namespace merlin::touch {
 namespace {
 
-using std::chrono::milliseconds;
-
-constexpr Duration kPollTime = milliseconds(250);
-
 std::string kindOf(const Surface& surface) {
   switch (surface.kind()) {
     case Surface::Kind::kSlots: return fmt::format("{} fingers", surface.slots());
@@ -49,9 +45,10 @@ Result<std::string> TouchDevice::open(ByteStream& stream) {
 
 Result<Ok> TouchDevice::poll(ByteStream& stream) {
   const auto polled = reader_.poll(
-      stream, kPollTime, [&](const EvdevRecord& record) { surface_.take(record); },
+      stream, frames_.wait(clock_.now()), [&](const EvdevRecord& record) { surface_.take(record); },
       [&](Timestamp at) { publish(at); });
   if (!polled) return polled.error();
+  frames_.hold(*polled);
   return Ok{};
 }
 

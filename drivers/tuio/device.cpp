@@ -6,8 +6,6 @@
 namespace merlin::tuio {
 namespace {
 
-constexpr Duration kPollTime = std::chrono::milliseconds(250);
-
 constexpr const char* kNoneYet = "no TUIO frame has come yet";
 constexpr const char* kSilentNow = "silent: no TUIO frame for 2 s, so nothing touches";
 constexpr const char* kNoOsc = "datagrams come that are not OSC";
@@ -33,7 +31,7 @@ Result<std::string> TuioDevice::open(ByteStream&) {
 
 Result<Ok> TuioDevice::poll(ByteStream& stream) {
   std::array<std::byte, 2048> buffer;  // NOLINT(*-member-init): filled by read
-  const auto got = stream.read(buffer, kPollTime);
+  const auto got = stream.read(buffer, frames_.wait(clock_.now()));
   const Timestamp now = clock_.now();
   if (!got && got.error().code != Errc::kTimeout) return got.error();
   for (std::size_t i = 0; got && i < *got; ++i) {
@@ -41,6 +39,7 @@ Result<Ok> TuioDevice::poll(ByteStream& stream) {
     if (const auto datagram = parser_.feed(buffer[i])) take(*datagram, datagram_start_);
   }
   if (sources_.forgetSilent(now)) publish(now);
+  frames_.hold(now);
   if (now - faulted_ >= Sources::kSilent) fault_ = "";
   const char* const silence = heard_ ? kSilentNow : kNoneYet;
   complaint_ = *fault_ ? fault_ : sources_.number() > 0 ? "" : silence;

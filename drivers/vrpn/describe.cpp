@@ -18,6 +18,7 @@ void describe(VrpnSettings& s, SettingsVisitor& v) {
   v.number("scale", s.scale, {1e-6, 1e3},
            "Metres in the server's unit of length: 1 for metres, which VRPN asks for, 0.001 for a "
            "server that sends millimetres.");
+  describe(s.placement, v);
 }
 
 void describe(VrpnPadSettings& s, SettingsVisitor& v) {

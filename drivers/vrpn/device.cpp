@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "drivers/port/plausible.h"
+#include "drivers/vrpn/identity.h"
 
 namespace merlin::vrpn {
 namespace {
@@ -14,13 +13,20 @@ constexpr Duration kPoseTime = std::chrono::seconds(2);  // without a pose that 
 constexpr const char* kTypes[] = {kVrpnPoseType};
 
 constexpr const char* kNoneCame = "the server has the device, but no pose of it comes";
+constexpr const char* kLeft = "the server has the device no more";
 constexpr const char* kOtherSensors = "poses come only of sensors that \"stations\" does not have";
 constexpr const char* kTooFar = "poses come from beyond 25 m: is \"scale\" right?";
+constexpr const char* kNoNumbers = "poses come with values that are not numbers";
 constexpr const char* kNoRotation = "the orientations that come are not unit quaternions";
 
 // Why no tracker can have measured this.
 const char* faultOf(const TrackerSample& sample) noexcept {
   const auto& p = sample.position_m;
+  const auto& q = sample.orientation_wxyz;
+  const auto isNumber = [](float v) { return std::isfinite(v); };
+  if (!std::all_of(std::begin(p), std::end(p), isNumber) ||
+      !std::all_of(std::begin(q), std::end(q), isNumber))
+    return kNoNumbers;
   const bool near =
       std::all_of(std::begin(p), std::end(p), [](float v) { return std::abs(v) <= kFurthest_m; });
   return near ? kNoRotation : kTooFar;
@@ -51,12 +57,14 @@ Result<std::string> VrpnDevice::open(ByteStream& stream) {
   const std::uint64_t before = samples_;
   const auto version = client_.open(stream, [&] { return samples_ == before ? silence_ : ""; });
   if (!version) return version.error();
-  return fmt::format("VRPN tracker {} at server version {}", settings_.device, *version);
+  return trackerIdentity(settings_.device, *version);
 }
 
 Result<Ok> VrpnDevice::poll(ByteStream& stream) {
   const auto polled = client_.poll(stream);
-  if (polled) complaint_ = clock_.now() - posed_ < kPoseTime ? "" : silence_;
+  if (!polled) return polled;
+  const char* const silence = clock_.now() - posed_ < kPoseTime ? "" : silence_;
+  complaint_ = client_.knowsDevice() ? silence : kLeft;
   return polled;
 }
 
@@ -84,6 +92,7 @@ bool VrpnDevice::publish(const VrpnPose& pose, Timestamp first_byte) noexcept {
     return false;
   }
   normalise(sample.orientation_wxyz);
+  place(settings_.placement, sample);
   sample.received_ns = toNanoseconds(first_byte);
   ++sample.counter;
   newest = sample;

@@ -17,7 +17,8 @@ namespace merlin::vrpn {
 
 // open() takes at most 4 s; it ends with the first pose. Errors also: those of Client, kTimeout if
 // the device has sent no pose. A server that answers and sends no pose is no fault: cameras may
-// have lost the target; complaint() says so after 2 s. Publishes one sample per pose of a sensor
+// have lost the target; complaint() says so after 2 s, and at once if the server has the device no
+// more. Publishes one sample per pose of a sensor
 // that is a station; each station has its own counter.
 class VrpnDevice final : public Device, private Listener {
  public:

@@ -1,6 +1,6 @@
 #include "drivers/vrpn/pad_device.h"
 
-#include <fmt/format.h>
+#include "drivers/vrpn/identity.h"
 
 namespace merlin::vrpn {
 namespace {
@@ -9,6 +9,7 @@ enum Type : std::size_t { kButton, kButtons, kChannels };
 constexpr const char* kTypes[] = {kVrpnButtonType, kVrpnButtonsType, kVrpnChannelsType};
 
 constexpr const char* kNotDescribed = "the server has not described it";
+constexpr const char* kLeft = "the server has the device no more";
 constexpr const char* kNoPad = "the server serves neither buttons nor analogs";
 
 }  // namespace
@@ -27,13 +28,20 @@ Result<std::string> VrpnPad::open(ByteStream& stream) {
   const auto version =
       client_.open(stream, [&] { return client_.knowsDevice() ? "" : kNotDescribed; });
   if (!version) return version.error();
-  return fmt::format("VRPN buttons and analogs {} at server version {}", name_, *version);
+  ball_.settle(clock_.now());
+  return padIdentity(name_, *version);
 }
 
 Result<Ok> VrpnPad::poll(ByteStream& stream) {
-  const auto polled = client_.poll(stream, ball_.wait());
+  const auto polled = client_.poll(stream, ball_.wait(clock_.now()));
   if (!polled) return polled;
-  complaint_ = client_.knowsAType() ? "" : kNoPad;
+  const bool known = client_.knowsDevice();
+  complaint_ = !known ? kLeft : client_.knowsAType() ? "" : kNoPad;
+  if (!known) {  // what was pushed or pressed is over
+    input_.rest();
+    ball_.restart();
+    ball_.settle(clock_.now());
+  }
   ball_.hold(clock_.now());
   return polled;
 }

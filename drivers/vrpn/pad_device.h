@@ -18,8 +18,8 @@ namespace merlin::vrpn {
 
 // open() takes at most 4 s; it ends when the server has described the device. Errors also: those of
 // Client. What rests is silent, so silence is no fault while the server answers; complaint() says
-// if the server serves neither buttons nor analogs. Publishes one sample for each message, and a
-// push that is held again every 50 ms.
+// if the server serves neither buttons nor analogs, or has the device no more. Publishes one sample
+// for each message, and a push that is held again every 50 ms.
 class VrpnPad final : public Device, private Listener {
  public:
   VrpnPad(const VrpnPadSettings& settings, const Clock& clock, SampleSink& sink);

@@ -29,6 +29,7 @@ SettingFaults validate(const VrpnSettings& settings, const LineSettings& line) {
   vrpn::checkPort(line, "vrpn", faults);
   vrpn::checkName(settings.device, "/vrpn/device", faults);
   checkStations(settings, faults);
+  checkPlacement(settings.placement, "/vrpn", faults);
   return faults;
 }
 

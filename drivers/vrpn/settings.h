@@ -7,6 +7,7 @@
 #include "daemon/base/setting_fault.h"
 #include "drivers/port/port_address.h"
 #include "drivers/port/samples.h"
+#include "drivers/port/tracker_placement.h"
 
 namespace merlin {
 
@@ -17,13 +18,14 @@ struct VrpnSettings {
   // For each station the server's sensor that it is; kNoSensor: the station is not used.
   std::array<int, kStations> stations = {0, 1, 2, 3};
   double scale = 1;  // metres in the server's unit of length; VRPN asks for metres
+  TrackerPlacement placement{};
 
   static constexpr int kNoSensor = -1;
 };
 
 // Finds a name that no device can have, and stations that share a sensor or have none; with this
 // driver also a port at which no server can be. Pointers, relative to the tracker: "/port",
-// "/vrpn/device", "/vrpn/stations".
+// "/vrpn/device", "/vrpn/stations", "/vrpn/axes".
 SettingFaults validate(const VrpnSettings& settings, const LineSettings& line);
 
 // Calls `visitor` for every setting, in the order of written files.

@@ -243,6 +243,23 @@ TEST(DevicesConfig, AStationIsWornOnce) {
             "/devices has a, b\n");
 }
 
+TEST(DevicesConfig, AStationWhosePosesCannotComeIsFound) {
+  const auto hand = [](const std::string& tracker, int station) {
+    return devicesAre(tracker,
+                      fmt::format(R"(, "hands": [{{"name": "one", "station": {}}}])", station));
+  };
+  const std::string vrpn = R"({"name": "a", "driver": "vrpn", "port": "tcp://lab:3883",
+                               "vrpn": {"device": "Wand", "stations": [0, -1, -1, -1]}})";
+  const std::string osc = R"({"name": "a", "driver": "osc", "port": "udp:9000",
+                              "osc": {"stations": ["wand", "head"]}})";
+  EXPECT_EQ(hand(vrpn, 1), "");
+  EXPECT_NE(hand(vrpn, 3).find("/hands/0/station is 3, and the tracker \"a\" has no such station: "
+                               "name it in /devices/0/vrpn/stations"),
+            std::string::npos);
+  EXPECT_EQ(hand(osc, 2), "");
+  EXPECT_NE(hand(osc, 3).find("name it in /devices/0/osc/stations"), std::string::npos);
+}
+
 TEST(DevicesConfig, BindingsNameDevicesThatHaveTheInput) {
   const auto bound = [](const std::string& input) {
     return devicesAre(kOneOfEach,
@@ -417,6 +434,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadDevice{
             R"("driver": "evdev", "evdev": {"axes": ["x", "up", "none", "none", "none", "none"]})",
             "/devices/0/evdev/axes/1 is \"up\"; allowed are the kernel's name of an axis"},
+        BadDevice{
+            R"("driver": "evdev", "evdev": {"axes": ["x", "x", "-x", "none", "none", "none"]})",
+            "/devices/0/evdev/axes/1 is \"x\", and \"x\" before it uses that axis already"},
+        BadDevice{R"("driver": "vrpn_pad", "vrpn_pad": {"axes": ["0", "1", "2", "3", "4", "1-0"]})",
+                  "/devices/0/vrpn_pad/axes/5 is \"1-0\", and \"1\" before it uses that axis"},
         BadDevice{
             R"("driver": "evdev", "port": "serial:/dev/input/event5")",
             "/devices/0/port is \"serial:/dev/input/event5\", which is not an input device; the "

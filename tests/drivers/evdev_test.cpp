@@ -236,6 +236,24 @@ TEST_F(EvdevTest, WhatTheConfigurationNamesAndTheDeviceLacksIsAComplaint) {
   EXPECT_STREQ(device_->complaint(), "it has no key \"thumbr\", which the configuration names");
 }
 
+TEST_F(EvdevTest, WhatItLacksIsNamedWholeAndLeavesTheRestAsItIs) {
+  EvdevSettings settings;
+  settings.axes = {"throttle", "none", "none", "none", "z-gas", "x"};
+  settings.buttons = {"sout", "east"};
+  connect(gamepad(), settings);
+  EXPECT_STREQ(device_->complaint(),
+               "it has no axis throttle, no axis gas, no key \"sout\", which the configuration "
+               "names");
+  EXPECT_EQ(device_->input().chosen(), "axes none, none, none, none, none, x; buttons east");
+  const BallSample& s = after(moved(ABS_Y, -32768) + moved(ABS_RX, 32767) + moved(ABS_Z, 255) +
+                              moved(ABS_X, 32767) + pressed(BTN_EAST, 1));
+  for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(s.translation[i], 0) << i;
+  EXPECT_FLOAT_EQ(s.rotation[0], 0);
+  EXPECT_FLOAT_EQ(s.rotation[1], 0) << "half of a pair";
+  EXPECT_FLOAT_EQ(s.rotation[2], 1);
+  EXPECT_EQ(s.buttons, 2u) << "the second one of the configuration";
+}
+
 TEST_F(EvdevTest, AKeyThatIsPressedAtTheBeginningIsPressed) {
   std::string description = gamepad();
   description.insert(description.size() - record(EvdevRecord::kReady).size(), pressed(BTN_EAST, 1));
@@ -255,7 +273,42 @@ TEST_F(EvdevTest, ReconnectedItForgetsTheDeviceOfBefore) {
   const BallSample& s = after(moved(ABS_HAT0X, 0));
   EXPECT_EQ(s.buttons, 0u);
   EXPECT_FLOAT_EQ(s.translation[0], 0);
-  EXPECT_EQ(s.counter, 2u);
+  EXPECT_EQ(s.counter, 3u) << "one said that nothing is pressed any more";
+}
+
+// Nobody sees the release of a button while its device is away.
+TEST_F(EvdevTest, WhatWasHeldWhenItWentIsReleasedWhenItReturns) {
+  connect(gamepad());
+  EXPECT_TRUE(sink_.ball.empty()) << "at rest it is silent";
+  after(pressed(BTN_SOUTH, 1));
+  stream_.feed(gamepad());
+  ASSERT_TRUE(device_->open(stream_));
+  ASSERT_EQ(sink_.ball.size(), 2u);
+  EXPECT_EQ(sink_.ball.back().buttons, 0u);
+  EXPECT_EQ(sink_.ball.back().keys[0], 0);
+  EXPECT_EQ(sink_.ball.back().received_ns, toNanoseconds(clock_.now()));
+  stream_.feed(gamepad());
+  ASSERT_TRUE(device_->open(stream_));
+  EXPECT_EQ(sink_.ball.size(), 2u) << "nothing was held any more";
+  after(pressed(BTN_SOUTH, 1));
+  std::string held = gamepad();
+  held.insert(held.size() - record(EvdevRecord::kReady).size(), pressed(BTN_SOUTH, 1));
+  stream_.feed(held);
+  ASSERT_TRUE(device_->open(stream_));
+  EXPECT_EQ(sink_.ball.back().buttons, 1u) << "it is still held";
+}
+
+TEST_F(EvdevTest, AHeldButtonActsWhenItIsDue) {
+  connect(gamepad());
+  after(pressed(BTN_SOUTH, 1));
+  const Timestamp due = clock_.now() + std::chrono::milliseconds(70);
+  sink_.due_at = due;
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(sink_.ticks, std::vector{due});
+  EXPECT_EQ(sink_.ball.size(), 1u) << "a button that is held is no new sample";
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(clock_.now(), due + std::chrono::milliseconds(250)) << "nothing more is due";
+  EXPECT_EQ(sink_.ticks.size(), 1u);
 }
 
 // A line that describes itself for ever takes no memory.

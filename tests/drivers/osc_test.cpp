@@ -74,6 +74,54 @@ TEST_F(OscTest, APoseIsTheSampleOfItsStation) {
   EXPECT_STREQ(device_->complaint(), "");
 }
 
+TEST_F(OscTest, TheSendersFrameMayLieOtherwise) {
+  OscSettings settings;
+  settings.placement = {{3, -1, -2}, {0.5, 0, 0}};
+  connect(settings, oscMessage("/tracker/1/pose", {1.0F, 2.0F, 3.0F, 0.6F, 0.0F, 0.0F, 0.8F}));
+  const float position[] = {3.5F, -1, -2}, wxyz[] = {0.8F, 0, -0.6F, 0};
+  for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(newest().position_m[i], position[i]) << i;
+  for (int i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(newest().orientation_wxyz[i], wxyz[i]) << i;
+}
+
+// What is turned in the sender's frame and then placed is what is placed and then turned.
+TEST(TrackerPlacement, TurnsPlacesAndRotationsAlikeAlsoIfItMirrors) {
+  using Vector = std::array<float, 3>;
+  const auto turned = [](const float(&q)[4], const Vector& v) {  // q v q*
+    const Vector u{q[1], q[2], q[3]};
+    const auto cross = [](const Vector& a, const Vector& b) {
+      return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                    a[0] * b[1] - a[1] * b[0]};
+    };
+    const Vector first = cross(u, v);
+    Vector t{first[0] + q[0] * v[0], first[1] + q[0] * v[1], first[2] + q[0] * v[2]};
+    t = cross(u, t);
+    return Vector{v[0] + 2 * t[0], v[1] + 2 * t[1], v[2] + 2 * t[2]};
+  };
+  for (const std::array<int, 3>& axes :
+       {std::array{1, 2, 3}, std::array{3, -1, -2}, std::array{2, 1, 3}, std::array{-1, -2, -3}}) {
+    const TrackerPlacement placement{axes, {}};
+    TrackerSample sample{};
+    const float q[4] = {0.5F, 0.1F, -0.7F, 0.5F};
+    std::copy(std::begin(q), std::end(q), std::begin(sample.orientation_wxyz));
+    const auto placed = [&](const Vector& v) {
+      TrackerSample point{};
+      std::copy(v.begin(), v.end(), std::begin(point.position_m));
+      place(placement, point);
+      return Vector{point.position_m[0], point.position_m[1], point.position_m[2]};
+    };
+    place(placement, sample);
+    const Vector v{0.3F, -1, 2};
+    const Vector there = placed(turned(q, v)), here = turned(sample.orientation_wxyz, placed(v));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(there[i], here[i], 1e-5) << axes[0];
+  }
+  SettingFaults faults;
+  checkPlacement({{1, -1, 3}, {}}, "/osc", faults);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].pointer, "/osc/axes");
+  EXPECT_EQ(faults[0].what,
+            "is 1, -1, 3; needed is each of 1, 2 and 3 once, with or without a minus");
+}
+
 TEST_F(OscTest, TheRealPartMayComeFirst) {
   OscSettings settings;
   settings.quaternion = OscSettings::Quaternion::kWxyz;
@@ -119,8 +167,13 @@ TEST_F(OscTest, WithoutItsPlaceInTheAddressTheStationIsTheFirstArgument) {
   EXPECT_EQ(newest().station, 1u);
   EXPECT_EQ(newest().counter, 3u);
   feed(named(8, kAtRest));
-  feed(named(7.0F, kAtRest));  // a number with a fraction is no name
+  feed(named(7.5F, kAtRest));
+  feed(named(std::numeric_limits<float>::quiet_NaN(), kAtRest));
   EXPECT_EQ(sink_.tracker.size(), 4u);
+  feed(named(7.0F, {7.0F, 8.0F, 9.0F}));  // of a sender that has floats only
+  ASSERT_EQ(sink_.tracker.size(), 5u);
+  EXPECT_EQ(newest().station, 1u);
+  EXPECT_FLOAT_EQ(newest().position_m[0], 7);
   EXPECT_EQ(device_->counters().bad_packets, 0u);
 }
 
@@ -145,7 +198,7 @@ TEST_F(OscTest, APoseThatNoTrackerCanMeasureIsDroppedAndSaid) {
   const std::pair<std::string, const char*> bad[] = {
       {pose(1500, 1), "poses come from beyond 25 m: is \"scale\" right?"},
       {pose(std::numeric_limits<float>::quiet_NaN(), 1),
-       "poses come from beyond 25 m: is \"scale\" right?"},
+       "poses come with values that are not numbers"},
       {pose(0, 0), "the orientations that come are not unit quaternions"},
       {oscMessage("/tracker/1/pose", {std::string("x"), 1.0F, 2.0F}),
        "messages of poses have neither 3 nor 7 numbers"},

@@ -94,6 +94,16 @@ TEST(SpaceballDevice, ReportsKeysAndTheEndOfAPush) {
   EXPECT_TRUE(down && up_again && pushed && let_go);
 }
 
+TEST(SpaceballDevice, AHeldButtonActsWhenItIsDue) {
+  Ball ball("still");
+  ASSERT_TRUE(ball.device->open(ball.stream));
+  ASSERT_TRUE(ball.pollFor(*ball.device, seconds(1)));
+  ball.sink.due_at = ball.clock.now() + milliseconds(70);
+  const std::vector due = {ball.sink.due_at};
+  ASSERT_TRUE(ball.device->poll(ball.stream));
+  EXPECT_EQ(ball.sink.ticks, due);
+}
+
 TEST(SpaceballDevice, IsLostThreeSecondsAfterItFallsSilent) {
   Ball ball("turning");
   ASSERT_TRUE(ball.device->open(ball.stream));

@@ -147,6 +147,28 @@ TEST_F(SpacenavTest, AnUnpluggedMouseIsAComplaintAndNothingIsPressedAnyMore) {
   EXPECT_STREQ(device_.complaint(), "");
 }
 
+TEST_F(SpacenavTest, WhatWasHeldWhenSpacenavdEndedIsReleasedWhenItReturns) {
+  connect();
+  feed({kPress, 0, 1});
+  connect();
+  ASSERT_EQ(sink_.ball.size(), 2u);
+  EXPECT_EQ(sink_.ball.back().buttons, 0u);
+  connect();
+  EXPECT_EQ(sink_.ball.size(), 2u) << "nothing was held any more";
+  feed(kPush);
+  connect();
+  EXPECT_FLOAT_EQ(sink_.ball.back().translation[0], 0);
+}
+
+TEST_F(SpacenavTest, AHeldButtonActsWhenItIsDue) {
+  connect();
+  feed({kPress, 0, 1});
+  sink_.due_at = clock_.now() + std::chrono::milliseconds(70);
+  const std::vector due = {sink_.due_at};
+  ASSERT_TRUE(device_.poll(stream_));
+  EXPECT_EQ(sink_.ticks, due);
+}
+
 // spacenavd tells that a mouse went, not whether another one is left.
 TEST_F(SpacenavTest, OfTwoMiceTheOneThatIsLeftIsTheSpaceMouse) {
   connect();

@@ -290,6 +290,14 @@ TEST_F(TouchTest, ReconnectedItHasNoFingerOfBefore) {
   EXPECT_EQ(sink_.touch.back().counter, 3u) << "the finger, its end, and the mouse's beginning";
 }
 
+TEST_F(TouchTest, AHeldPinchActsWhenItIsDue) {
+  connect(frame());
+  sink_.due_at = clock_.now() + std::chrono::milliseconds(70);
+  const std::vector due = {sink_.due_at};
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(sink_.ticks, due);
+}
+
 TEST_F(TouchTest, EventsAllocateNothing) {
   connect(frame());
   sink_.touch.reserve(1000);

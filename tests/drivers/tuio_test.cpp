@@ -227,6 +227,14 @@ TEST_F(TuioTest, ReopenedItHasNoFingerOfBefore) {
   EXPECT_EQ(newest().counter, 2u);
 }
 
+TEST_F(TuioTest, AHeldPinchActsWhenItIsDue) {
+  connect();
+  sink_.due_at = clock_.now() + std::chrono::milliseconds(70);
+  const std::vector due = {sink_.due_at};
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(sink_.ticks, due);
+}
+
 TEST_F(TuioTest, FramesAllocateNothing) {
   connect();
   sink_.touch.reserve(1000);

@@ -215,7 +215,20 @@ TEST_F(VrpnTest, AServerThatAnswersButSendsNoPoseIsAComplaintAndNoFault) {
   EXPECT_STREQ(device_->complaint(), "poses come only of sensors that \"stations\" does not have");
   EXPECT_EQ(samplesOf(pose(1, {0, 1200, 0})), 0u);
   EXPECT_STREQ(device_->complaint(), "poses come from beyond 25 m: is \"scale\" right?");
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::string& none : {pose(1, {nan, 0, 0}), pose(1, {0, 0, 0}, {1, nan, 0, 0})}) {
+    EXPECT_EQ(samplesOf(pose(1, {0, 1200, 0}) + none), 0u);
+    EXPECT_STREQ(device_->complaint(), "poses come with values that are not numbers");
+  }
   EXPECT_EQ(samplesOf(pose(1, {0, 0, 0})), 1u);
+  EXPECT_STREQ(device_->complaint(), "");
+}
+
+TEST_F(VrpnTest, ADeviceThatLeavesItsServerIsSaid) {
+  connect();
+  EXPECT_EQ(samplesOf(sender(kTracker, "Wand")), 0u);
+  EXPECT_STREQ(device_->complaint(), "the server has the device no more");
+  EXPECT_EQ(samplesOf(sender(kTracker, "Tracker0") + pose(0, {1, 2, 3})), 1u);
   EXPECT_STREQ(device_->complaint(), "");
 }
 

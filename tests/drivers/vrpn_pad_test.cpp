@@ -214,12 +214,16 @@ TEST_F(VrpnPadTest, APushThatIsHeldIsPublishedAgainAndEndsWithTheConnection) {
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(device_->poll(stream_));
   EXPECT_EQ(sink_.ball.size(), before + 4) << "each 50 ms";
   EXPECT_FLOAT_EQ(sink_.ball.back().translation[0], 1);
-  stream_.feed(vrpnCookie() + descriptions() + button(3, true));
+  stream_.feed(vrpnCookie() + descriptions());
   ASSERT_TRUE(device_->open(stream_));
-  ASSERT_TRUE(device_->poll(stream_));
-  EXPECT_EQ(sink_.ball.back().buttons, 8u);
+  EXPECT_EQ(sink_.ball.back().buttons, 0u) << "nobody saw the release";
   EXPECT_FLOAT_EQ(sink_.ball.back().translation[0], 0);
   EXPECT_EQ(sink_.ball.back().counter, before + 5) << "the counter goes on";
+  EXPECT_EQ(samplesOf(button(0, true)), 1u);
+  stream_.feed(vrpnCookie() + descriptions() + button(3, true));
+  ASSERT_TRUE(device_->open(stream_));
+  EXPECT_EQ(sink_.ball.back().buttons, 8u);
+  EXPECT_EQ(sink_.ball.size(), before + 7) << "what is held now says that enough";
 }
 
 TEST_F(VrpnPadTest, AMessageThatNoDeviceSendsIsDroppedAndCounted) {
@@ -262,6 +266,19 @@ TEST_F(VrpnPadTest, ADeviceOrAServerThatHasNoneIsSaid) {
   ASSERT_TRUE(device_->open(stream_));
   EXPECT_EQ(samplesOf(""), 0u);
   EXPECT_STREQ(device_->complaint(), "the server serves neither buttons nor analogs");
+}
+
+TEST_F(VrpnPadTest, ADeviceThatLeavesItsServerIsSaidAndLetsGo) {
+  connect();
+  EXPECT_EQ(samplesOf(button(1, true) + channels({1})), 2u);
+  EXPECT_EQ(samplesOf(test::vrpnSender(kStick, "Wand")), 1u);
+  EXPECT_STREQ(device_->complaint(), "the server has the device no more");
+  EXPECT_EQ(sink_.ball.back().buttons, 0u);
+  EXPECT_FLOAT_EQ(sink_.ball.back().translation[0], 0);
+  EXPECT_EQ(samplesOf(message(kOther, kPong, "")), 0u);
+  EXPECT_EQ(samplesOf(test::vrpnSender(kStick, "Joystick0") + button(2, true)), 1u);
+  EXPECT_STREQ(device_->complaint(), "");
+  EXPECT_EQ(sink_.ball.back().buttons, 4u);
 }
 
 // Damage of every byte of a stream: no sample that is not plausible, and no end but a refusal.

@@ -169,6 +169,14 @@ std::vector<std::string> takenNames(const std::vector<Configured>& running,
   return taken;
 }
 
+// Adds the devices of VRPN servers that the running merlind reads, or has read since its start.
+void addRunning(const std::vector<Configured>& running, DevicesSettings& devices) {
+  for (const Configured& device : running) {
+    if (auto reads = vrpnDeviceOf(device.name, device.health.port, device.health.identity))
+      devices.list.push_back(*std::move(reads));
+  }
+}
+
 // What there is beside the devices of the running merlind, with names that are free.
 struct Found {
   std::vector<Plugged> plugged;
@@ -176,9 +184,11 @@ struct Found {
 };
 
 Result<Found> findBeside(const std::vector<Configured>& running, const DevicesOptions& options) {
-  const auto settings = settingsOf(options);
-  if (!settings) return settings.error();
-  std::vector<std::string> taken = takenNames(running, *settings), servers;
+  const auto loaded = settingsOf(options);
+  if (!loaded) return loaded.error();
+  Settings settings = *loaded;
+  addRunning(running, settings.devices);
+  std::vector<std::string> taken = takenNames(running, settings), servers;
   for (const std::string& text : options.vrpn) servers.push_back(*vrpnPort(text));
   Found found;
   found.plugged = findPlugged();
@@ -186,8 +196,8 @@ Result<Found> findBeside(const std::vector<Configured>& running, const DevicesOp
   for (const Plugged& plugged : found.plugged) {
     for (const Plugged::Use& use : plugged.uses) taken.push_back(use.name);
   }
-  const auto answers = askServers(serversToAsk(settings->devices, servers), kVrpnWait);
-  found.vrpn = listOffers(answers, *settings, options.instance, taken);
+  const auto answers = askServers(serversToAsk(settings.devices, servers), kVrpnWait);
+  found.vrpn = listOffers(answers, settings, options.instance, taken);
   return found;
 }
 
@@ -267,13 +277,14 @@ void addDevices(Command app, Run& run) {
       "the entry for the configuration's list \"devices\" that makes it a device, and the axes and "
       "keys of input devices by the names that the configuration uses. No device is opened. VRPN "
       "servers are asked for their devices: that of this machine at port 3883, those that the "
-      "configuration names and those of --vrpn, for half a second.\n"
+      "configuration names, those that merlind reads and those of --vrpn, for half a second.\n"
       "Example: merlin devices; merlin devices --vrpn lab; merlin devices --watch");
   addInstance(command, options->instance);
   command
-      .option("-c,--config", options->config,
-              "The configuration whose VRPN servers are asked and whose devices are not offered "
-              "again; /etc/merlin/merlin.json if none is named")
+      .option(
+          "-c,--config", options->config,
+          "The configuration whose VRPN servers are asked and whose devices are not offered "
+          "again, beside those of the running merlind; /etc/merlin/merlin.json if none is named")
       .typeName("FILE");
   command.option("--vrpn", options->vrpn, "Another VRPN server that is asked; may be repeated")
       .typeName("HOST[:PORT]")

@@ -133,8 +133,9 @@ std::string liveTable(const shm::DeviceSlots& devices, Timestamp now) {
     const auto health = slot->read();
     if (!health) continue;
     const std::string_view state = shm::healthName(*health, now);
-    text += fmt::format("  {:10} {:8} {:7.1f} Hz  {}\n", device, state, health->rate_hz,
-                        state == "ok" ? health->identity : health->reason);
+    const std::string_view identity = state == "ok" ? health->identity : "", why = health->reason;
+    text += fmt::format("  {:10} {:8} {:7.1f} Hz  {}{}{}\n", device, state, health->rate_hz,
+                        identity, identity.empty() || why.empty() ? "" : "; ", why);
     if (state == "ok") text += valuesOf(device, devices);
   }
   return text + gestureLines(devices, now);

@@ -8,9 +8,10 @@
 
 namespace merlin::cli {
 
-// Each device with its health; below it, if it works, what it measures now: bars for the ball's
-// axes and the numbers of its buttons, the glove's joints in degrees and its posture, the position
-// of each of the tracker's stations. Below all, the last gesture of each hand.
+// Each device with its health and what it complains of; below it, if it works, what it measures
+// now: bars for the ball's axes and the numbers of its buttons, the glove's joints in degrees and
+// its posture, the position of each of the tracker's stations. Below all, the last gesture of each
+// hand.
 std::string liveTable(const shm::DeviceSlots& devices, Timestamp now);
 
 // "[----|##  ]" for a share -1..1.

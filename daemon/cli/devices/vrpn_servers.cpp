@@ -13,6 +13,7 @@
 #include "drivers/io/open_stream.h"
 #include "drivers/port/port_address.h"
 #include "drivers/vrpn/ask_server.h"
+#include "drivers/vrpn/identity.h"
 
 namespace merlin::cli {
 namespace {
@@ -39,6 +40,8 @@ void ask(const PortAddress& at, Timestamp until, VrpnAnswer& answer) {
   const auto stream = io::openPort(at, 0);
   if (!stream) {
     answer.fault = faultOf(stream.error(), at);
+    if (answer.port == kUsualHere)  // which is asked though nobody may have named it
+      answer.fault += "; no VRPN server runs on this machine";
     return;
   }
   const auto asked = vrpn::askServer(**stream, clock, until, answer.catalog);
@@ -67,6 +70,18 @@ std::optional<std::string> vrpnPort(const std::string& text) {
   const bool alone = host.ends_with(']') || host.find(':') == std::string::npos;
   const std::string port = scheme + host + (alone ? ":3883" : "");
   return parsePort(port) ? std::optional(port) : std::nullopt;
+}
+
+std::optional<DeviceSettings> vrpnDeviceOf(const std::string& name, const std::string& port,
+                                           const std::string& identity) {
+  const auto reads = vrpn::readIdentity(identity);
+  if (!reads) return std::nullopt;
+  DeviceSettings device;
+  device.name = name;
+  device.line.driver = reads->driver;
+  device.line.port = port;
+  (reads->driver == "vrpn" ? device.own.vrpn.device : device.own.vrpn_pad.device) = reads->device;
+  return device;
 }
 
 std::vector<std::string> serversToAsk(const DevicesSettings& devices,

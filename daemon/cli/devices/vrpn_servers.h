@@ -16,6 +16,11 @@ namespace merlin::cli {
 // if the text is none of these.
 std::optional<std::string> vrpnPort(const std::string& text);
 
+// What a running merlind reads under this name, by its health; nothing if that is no device of a
+// VRPN server, or one that has not been opened yet.
+std::optional<DeviceSettings> vrpnDeviceOf(const std::string& name, const std::string& port,
+                                           const std::string& identity);
+
 // That at VRPN's usual port of this machine, those of the configuration's devices, and `given`, in
 // this order, each once. REQUIRES: `given` are ports.
 std::vector<std::string> serversToAsk(const DevicesSettings& devices,

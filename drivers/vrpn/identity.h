@@ -1,0 +1,21 @@
+// The identities of devices of VRPN servers, as their drivers tell them. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace merlin::vrpn {
+
+// "VRPN tracker Wand0 at server version 07.38", and "VRPN buttons and analogs Wand0 at ...".
+std::string trackerIdentity(std::string_view device, std::string_view version);
+std::string padIdentity(std::string_view device, std::string_view version);
+
+struct Identified {
+  std::string driver;  // "vrpn" or "vrpn_pad"
+  std::string device;  // its name at the server, without its end if the identity was cut
+};
+// What has this identity; nothing if it is no device of a VRPN server.
+std::optional<Identified> readIdentity(std::string_view identity);
+
+}  // namespace merlin::vrpn
