@@ -57,7 +57,8 @@ void checkProjectors(const DevicesSettings& d, LoadedSettings& loaded) {
 }
 
 // Finds bindings whose action could never have an effect. Walls on other machines, which receive
-// actions through /serve/samples_endpoint, may have the folder or the models that this wall lacks.
+// actions through /serve/samples_endpoint, may have the folder that this wall lacks. The next
+// content may be the next slide of a folder that somebody shows.
 void checkBindings(const Settings& s, LoadedSettings& loaded) {
   addFaults(validate(s.devices.bindings), "/bindings", loaded);
   const bool other_walls = !s.serve.samples_endpoint.empty();
@@ -72,9 +73,6 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
     if (action == "operator_panel" && !s.wall.operator_tile.panel && !other_walls)
       loaded.addFinding(at,
                         "is operator_panel, which needs the panel: /wall/operator/panel is off");
-    if (action == "next_content" && s.wall.contents.empty() && !other_walls)
-      loaded.addFinding(
-          at, "is next_content, and there is one content only: /wall/contents names none");
     if (action.starts_with("lamp_") && !lamp)
       loaded.addFinding(at, fmt::format("is {}, which needs a lamp: /gpio has no chip with a "
                                         "lamp_line",

@@ -220,6 +220,7 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "reset_view") return request(p, wall::WallLoop::kResetView);
   if (name == "next_mode") return request(p, wall::WallLoop::kNextMode);
   if (name == "next_content") return request(p, wall::WallLoop::kNextContent);
+  if (name == "previous_content") return request(p, wall::WallLoop::kPreviousContent);
   if (name == "show") return requestOf(p.wall->show(argument));
   if (name == "show_file") return requestOf(p.wall->showFile(argument));
   if (name == "notice") return notice(p, argument);

@@ -43,6 +43,9 @@ inline constexpr CommandInfo kCommands[] = {
      Bindable::kOnce, true},
     {"next_content", CommandOf::kWall, "",
      "Show the next slide, or the next content of the configuration.", Bindable::kOnce, true},
+    {"previous_content", CommandOf::kWall, "",
+     "Show the previous slide, or the previous content of the configuration.", Bindable::kOnce,
+     true},
     {"show", CommandOf::kWall, "NAME", "Show the content of the configuration of that name.",
      Bindable::kNo, false},
     {"show_file", CommandOf::kWall, "NAME",
@@ -63,8 +66,8 @@ inline constexpr CommandInfo kCommands[] = {
      Bindable::kNo, true},
     {"move", CommandOf::kWall, "X Y Z RX RY RZ",
      "Move what the ball moves, at once: X Y Z times the model's radius to the right, up and "
-     "towards "
-     "the viewer, and RX RY RZ degrees about these axes.",
+     "towards the viewer, and RX RY RZ degrees about these axes. A picture is not turned: 180 "
+     "degrees about X or Y move it by 1.5 radii down or to the right.",
      Bindable::kNo, false},
     {"operator_panel", CommandOf::kWall, "",
      "Let the ball work the panel on the operator's tile, or what it moved before.",
@@ -86,7 +89,8 @@ inline constexpr CommandInfo kCommands[] = {
     {"align", CommandOf::kWall, "REQUEST",
      "Move the corners of an output's picture; the request list shows them.", Bindable::kNo, false},
     {"testcard", CommandOf::kWall, "NAME|off",
-     "Show a test card instead of the picture: grid, edges, ramps, names, focus; off ends it.",
+     "Show a test card instead of the picture: grid, edges, ramps, names, focus, black, grey, "
+     "white; off ends it.",
      Bindable::kNo, false},
     {"next_testcard", CommandOf::kWall, "", "Show the next test card, and none after the last.",
      Bindable::kOnce, false},

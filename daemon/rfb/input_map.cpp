@@ -17,23 +17,34 @@ enum Button : unsigned { kLeft = 1, kMiddle = 2, kWheelUp = 8, kWheelDown = 16 }
 
 // X11 keysyms
 constexpr std::uint32_t kHome = 0xFF50, kArrowLeft = 0xFF51, kArrowUp = 0xFF52,
-                        kArrowRight = 0xFF53, kArrowDown = 0xFF54, kPageDown = 0xFF56,
-                        kShiftLeft = 0xFFE1, kShiftRight = 0xFFE2, kKeypadPlus = 0xFFAB,
-                        kKeypadMinus = 0xFFAD;
+                        kArrowRight = 0xFF53, kArrowDown = 0xFF54, kPageUp = 0xFF55,
+                        kPageDown = 0xFF56, kShiftLeft = 0xFFE1, kShiftRight = 0xFFE2,
+                        kKeypadPlus = 0xFFAB, kKeypadMinus = 0xFFAD;
 
 struct KeyCommand {
   std::uint32_t keysym;
   const char* command;
 };
 constexpr KeyCommand kKeyCommands[] = {
-    {'r', "reset_view"},    {'R', "reset_view"},
-    {kHome, "reset_view"},  {'m', "next_mode"},
-    {'M', "next_mode"},     {'n', "next_content"},
-    {'N', "next_content"},  {'s', "snapshot"},
-    {'S', "snapshot"},      {kPageDown, "next_content"},
-    {'t', "next_testcard"}, {'T', "next_testcard"},
-    {'b', "blank"},         {'B', "blank"},
-    {'f', "freeze"},        {'F', "freeze"},
+    {'r', "reset_view"},
+    {'R', "reset_view"},
+    {kHome, "reset_view"},
+    {'m', "next_mode"},
+    {'M', "next_mode"},
+    {'n', "next_content"},
+    {'N', "next_content"},
+    {'s', "snapshot"},
+    {'S', "snapshot"},
+    {kPageDown, "next_content"},
+    {'t', "next_testcard"},
+    {'T', "next_testcard"},
+    {'b', "blank"},
+    {'B', "blank"},
+    {'f', "freeze"},
+    {'F', "freeze"},
+    {'p', "previous_content"},
+    {'P', "previous_content"},
+    {kPageUp, "previous_content"},
 };
 static_assert(std::all_of(std::begin(kKeyCommands), std::end(kKeyCommands),
                           [](const KeyCommand& k) { return isPlainCommand(k.command); }));

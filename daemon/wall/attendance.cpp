@@ -21,7 +21,8 @@ bool acts(const WallInput& input) {
   const bool stepped = !scene.step.way_m.isZero(0) || !scene.step.turn_rad.isZero(0);
   const bool aligned = !input.align.actions.empty();
   return stepped || aligned || scene.reset_view > 0 || scene.next_mode > 0 ||
-         input.next_content > 0 || input.snapshot > 0 || input.operator_panel > 0;
+         input.next_content > 0 || input.previous_content > 0 || input.snapshot > 0 ||
+         input.operator_panel > 0;
 }
 
 }  // namespace
@@ -81,17 +82,31 @@ bool Attendance::handMoves(const render::scene::SceneInput& input) {
   return moves;
 }
 
-// Whether the ball is pushed, a finger touches, a mouse's wheel turns, one of the ball's buttons is
-// pressed now, or a hand moves.
+// A finger may rest on a touch surface for ever, or a marked object stand on it. A mouse's wheel
+// moves without a finger.
+bool Attendance::fingersMove(const render::scene::TouchMotion& touch) {
+  const bool others = std::exchange(fingers_, touch.fingers) != touch.fingers;
+  const std::array moved{touch.right, touch.up, touch.spread, touch.turn_rad};
+  float most = 0;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    fingers_moved_[i] += moved[i];
+    most = std::max(most, std::abs(fingers_moved_[i]));
+  }
+  const bool moves = others || most > kFingersMove;
+  if (moves) fingers_moved_ = {};
+  return moves;
+}
+
+// Whether the ball is pushed, fingers come, move or go, a mouse's wheel turns, one of the ball's
+// buttons is pressed now, or a hand moves.
 bool Attendance::moves(const WallInput& input) {
   const auto& ball = input.scene.ball;
   const std::uint32_t buttons = ball ? ball->buttons : 0;
   const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
-  const auto& touch = input.scene.touch;  // a wheel moves it without a finger
-  const bool pushed = (ball && isPushed(*ball)) || touch.fingers > 0 || touch.moves() ||
-                      input.scene.held.moves() || input.panel_pushed ||
+  const bool pushed = (ball && isPushed(*ball)) || input.scene.held.moves() || input.panel_pushed ||
                       input.align.push != state::Offset{};
-  return handMoves(input.scene) || pushed || pressed != 0;
+  const bool hand = handMoves(input.scene), fingers = fingersMove(input.scene.touch);
+  return hand || fingers || pushed || pressed != 0;
 }
 
 Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {

@@ -2,8 +2,8 @@
 // what the commands blank and freeze do, until the next touch.
 //
 // A touch is anything by which a visitor or an operator acts on the wall: a push of the ball, a
-// button, a finger on a touch surface, a turn of a mouse's wheel, a hand that moves while it holds
-// an action, a command that changes what is shown.
+// button, a finger that comes to a touch surface, moves on it or leaves it, a turn of a mouse's
+// wheel, a hand that moves while it holds an action, a command that changes what is shown.
 #pragma once
 
 #include <array>
@@ -60,6 +60,9 @@ class Attendance {
   static constexpr Duration kPause = std::chrono::milliseconds(500);
   // Motion of a hand, above the tracker's noise, that is a touch while the hand holds an action.
   static constexpr float kHandMoves_m = 0.02F;
+  // The same of fingers, above the noise of one at rest: in heights of the surface or, where they
+  // spread or turn, as TouchMotion has it.
+  static constexpr float kFingersMove = 0.005F;
 
  private:
   struct Asked {
@@ -69,6 +72,7 @@ class Attendance {
   Asked takeAsked(const WallInput& input);
   bool moves(const WallInput& input);
   bool handMoves(const render::scene::SceneInput& input);
+  bool fingersMove(const render::scene::TouchMotion& touch);
 
   std::mutex mutex_;
   Asked asked_;  // guarded by mutex_: since the last update()
@@ -81,6 +85,9 @@ class Attendance {
   std::array<bool, 3> holding_{};
   std::uint32_t buttons_ = 0;
   std::array<float, 3> hand_m_{};
+  // Number of fingers of the last frame, and what they moved since that counted as a motion.
+  std::uint32_t fingers_ = 0;
+  std::array<float, 4> fingers_moved_{};
 };
 
 }  // namespace merlin::wall

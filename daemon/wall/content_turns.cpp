@@ -85,8 +85,17 @@ void ContentTurns::expectInitialView() const {
 
 void ContentTurns::requestNext(std::uint32_t times) {
   for (std::uint32_t i = 0; i < times; ++i) {
-    const bool stays = asked_ == index_ && source_ && source_->nextWithin(asked_);
-    if (!stays) requestPlaceAfter({});
+    back_ = false;
+    if (!isShownNow() || !source_->nextWithin(asked_)) requestPlaceAfter({});
+    chosen_ = true;
+  }
+}
+
+void ContentTurns::requestPrevious(std::uint32_t times) {
+  for (std::uint32_t i = 0; i < times; ++i) {
+    back_ = true;
+    if (!isShownNow() || !source_->previousWithin(asked_)) requestPlaceBefore();
+    chosen_ = true;
   }
 }
 
@@ -100,27 +109,46 @@ void ContentTurns::requestPlaceAfter(std::span<const std::size_t> places) {
   }
 }
 
+void ContentTurns::requestPlaceBefore() {
+  std::size_t turn = asked_ < listed_ ? in_turn_ : in_turn_ + 1;
+  for (std::size_t tried = 0; tried < listed_; ++tried) {
+    turn = (turn + listed_ - 1) % listed_;
+    if (!contents_[turn].missing) return request(turn);
+  }
+}
+
 bool ContentTurns::leave(std::size_t place, std::span<const std::size_t> places) {
   if (asked_ != place || index_ != place) return false;
-  requestPlaceAfter(places);
+  const bool chosen = chosen_;
+  if (back_)
+    requestPlaceBefore();
+  else
+    requestPlaceAfter(places);
+  chosen_ = chosen;
   return asked_ != place;
 }
 
-bool ContentTurns::isOf(std::span<const std::size_t> places) const {
+bool ContentTurns::belongsTo(std::span<const std::size_t> places) const {
+  if (chosen_) return true;
   if (places.empty()) return asked_ < listed_;
   return std::ranges::find(places, asked_) != places.end();
 }
 
 void ContentTurns::requestNextOf(std::span<const std::size_t> places) {
-  if (places.empty()) return requestNext(1);
-  const bool listed = isOf(places);
-  if (listed && asked_ == index_ && source_ && source_->nextWithin(asked_)) return;
+  back_ = false;
+  if (belongsTo(places) && isShownNow() && source_->nextWithin(asked_)) return;
   requestPlaceAfter(places);
 }
 
+void ContentTurns::choose(std::size_t place) noexcept {
+  request(place);
+  if (asked_ == place) chosen_ = true;
+}
+
+// Another part of the place that is shown is no other choice.
 void ContentTurns::request(std::size_t place) noexcept {
   if (place >= contents_.size() || contents_[place].missing) return;
-  asked_ = place;
+  if (std::exchange(asked_, place) != place) chosen_ = false;
   if (place < listed_) in_turn_ = place;
 }
 

@@ -59,6 +59,11 @@ class ContentSource {
     static_cast<void>(place);
     return false;
   }
+  // The same backwards: whether another part comes before the place before.
+  virtual bool previousWithin(std::size_t place) {
+    static_cast<void>(place);
+    return false;
+  }
 };
 
 // Thread-bound to the wall's thread.
@@ -84,20 +89,27 @@ class ContentTurns {
   // Tells the governor the cost of the initial view of the content shown, if it was measured.
   void expectInitialView() const;
 
-  // requestNext() requests the content that is `times` further in the list, cyclically. Those that
-  // are missing do not count, here and below.
+  // What a person chooses. requestNext() requests the content that is `times` further in the list,
+  // cyclically, requestPrevious() the one that is as much before; what is not in the list stands
+  // behind the one of it that was asked for last. Those that are missing do not count, here and
+  // below.
   // showRequested() makes the change; it returns true if another content is shown now.
   void requestNext(std::uint32_t times);
-  // The next of `places`, cyclically: after the one that was asked for last, or the first if that
-  // is none of them. Before it come further parts of the place that is shown (slides). No places:
-  // all that come by turns.
+  void requestPrevious(std::uint32_t times);
+  // Requests the content of a place. Nothing happens if there is none.
+  void choose(std::size_t place) noexcept;
+  // What the playlist wants: the next of `places`, cyclically: after the one that was asked for
+  // last, or the first if that is none of them. Before it come further parts of the place that is
+  // shown (slides), if it belongs to the playlist. No places: all that come by turns.
   void requestNextOf(std::span<const std::size_t> places);
   // Requests the next of `places`, as above, if `place` is shown and nothing else was asked for: no
-  // further part of it can be shown. Returns whether it is left.
+  // further part of it can be shown. If a person wanted the part before, the place before follows.
+  // Returns whether it is left.
   bool leave(std::size_t place, std::span<const std::size_t> places);
-  // Whether the one that was asked for last is one of them.
-  bool isOf(std::span<const std::size_t> places) const;
-  // Requests the content of a place. Nothing happens if there is none.
+  // Whether a playlist of these places may go on with the one that was asked for last: it is one of
+  // them, or a person chose it.
+  bool belongsTo(std::span<const std::size_t> places) const;
+  // Requests the content of a place, which nobody chose.
   void request(std::size_t place) noexcept;
   bool showRequested();
   // The place that was asked for last.
@@ -112,7 +124,9 @@ class ContentTurns {
 
  private:
   const ShownContent& shown() const noexcept { return contents_[index_]; }
+  bool isShownNow() const noexcept { return asked_ == index_ && source_; }
   void requestPlaceAfter(std::span<const std::size_t> places);
+  void requestPlaceBefore();
   std::size_t firstThere() const noexcept;
   render::frame::DrawTimes draw(std::size_t step, const Eigen::Isometry3f& T_eye_content) const;
   void measureInitialView(const Eigen::Isometry3f& T_eye_content, std::size_t cost);
@@ -131,6 +145,8 @@ class ContentTurns {
   std::size_t index_;    // shown
   std::size_t asked_;    // to be shown by showRequested()
   std::size_t in_turn_;  // the one of the list that was asked for last
+  bool chosen_ = false;  // a person chose asked_
+  bool back_ = false;    // the part of a place that was wanted last is the one before
   int size_divisor_ = 1;
 };
 

@@ -283,6 +283,7 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
   input.scene.reset_view = begun(actionIndex("reset_view"));
   input.scene.next_mode = begun(actionIndex("next_mode"));
   input.next_content = begun(actionIndex("next_content"));
+  input.previous_content = begun(actionIndex("previous_content"));
   input.snapshot = begun(actionIndex("snapshot"));
   input.blank = begun(actionIndex("blank"));
   input.freeze = begun(actionIndex("freeze"));

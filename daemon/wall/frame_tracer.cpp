@@ -7,6 +7,8 @@
 namespace merlin::wall {
 namespace {
 
+constexpr std::size_t kMostRunOver = 200;  // fewer than the trace keeps
+
 // Times within a frame are 32-bit nanoseconds; those above 4.29 s are clamped.
 std::uint32_t clampedNs(Duration d) {
   constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
@@ -28,17 +30,20 @@ shm::StepKind inSharedMemory(render::frame::FrameStep::Kind kind) {
 }  // namespace
 
 void FrameTracer::begin(Timestamp at, Timestamp deadline, bool moving) {
-  frame_ = {};
-  frame_.begin_ns = toNanoseconds(at);
-  frame_.deadline_ns = toNanoseconds(deadline);
-  frame_.period = periods_++;
-  frame_.moving = moving ? 1 : 0;
+  frames_.resize(1);
+  left_out_ = false;
+  frame() = {};
+  frame().begin_ns = toNanoseconds(at);
+  frame().deadline_ns = toNanoseconds(deadline);
+  frame().period = periods_++;
+  frame().moving = moving ? 1 : 0;
 }
 
 void FrameTracer::add(shm::StepKind kind, Timestamp from, Timestamp to, std::uint16_t tile) {
-  if (frame_.count == std::size(frame_.steps)) return;
-  const Timestamp begin = fromNanoseconds(frame_.begin_ns);
-  frame_.steps[frame_.count++] = {clampedNs(from - begin), clampedNs(to - from), kind, tile};
+  shm::FrameTrace& now = frame();
+  if (now.count == std::size(now.steps)) return;
+  const Timestamp begin = fromNanoseconds(now.begin_ns);
+  now.steps[now.count++] = {clampedNs(from - begin), clampedNs(to - from), kind, tile};
 }
 
 void FrameTracer::add(std::span<const render::frame::FrameStep> steps) {
@@ -46,10 +51,22 @@ void FrameTracer::add(std::span<const render::frame::FrameStep> steps) {
     add(inSharedMemory(s.kind), s.begin, s.end, s.tile);
 }
 
+void FrameTracer::runOver(Timestamp begin, Timestamp deadline) {
+  if (frames_.size() > kMostRunOver) frames_.erase(frames_.begin() + 1);
+  shm::FrameTrace& missed = frames_.emplace_back();
+  missed.begin_ns = toNanoseconds(begin);
+  missed.deadline_ns = toNanoseconds(deadline);
+  missed.period = periods_++;
+  missed.moving = missed.late = 1;
+}
+
 void FrameTracer::end(Timestamp at, std::uint32_t cost) {
-  frame_.end_ns = toNanoseconds(at);
-  frame_.late = frame_.moving && frame_.end_ns > frame_.deadline_ns ? 1 : 0;
-  frame_.cost = cost;
+  const std::int64_t at_ns = toNanoseconds(at);
+  frame().late = frame().moving && (left_out_ || at_ns > frame().deadline_ns) ? 1 : 0;
+  for (shm::FrameTrace& f : frames_) {
+    f.end_ns = f.late ? std::max(at_ns, f.deadline_ns + 1) : at_ns;
+    f.cost = cost;
+  }
 }
 
 }  // namespace merlin::wall

@@ -19,7 +19,7 @@ struct WallInput {
   render::scene::SceneInput scene;
   std::optional<TrackerSample> head;  // sample of the tracker station on the viewer's head
   // How often each was requested since the last read.
-  std::uint32_t next_content = 0, snapshot = 0, blank = 0, freeze = 0;
+  std::uint32_t next_content = 0, previous_content = 0, snapshot = 0, blank = 0, freeze = 0;
   std::uint32_t operator_panel = 0;
   bool panel_pushed = false;  // the ball is pushed, on the operator's panel
   AlignInput align;

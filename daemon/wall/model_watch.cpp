@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,6 +39,7 @@ ModelWatch::ModelWatch(std::vector<Watched> files, Make make, MissingContents& m
       report(faultEvent(
           fmt::format("{} is left out until it can be read: {}", file.path, file.fault)));
     }
+    if (!file.left_out.empty()) noteLeftOut(file.path, file.left_out);
   }
   gone_.resize(files_.size());
   tried_.resize(files_.size(), clock_.now());
@@ -71,7 +73,16 @@ void ModelWatch::ask(Asked asked) {
   asked_changed_.notify_one();
 }
 
+// Said once, and again when there are others: a folder is read anew for each slide.
+void ModelWatch::noteLeftOut(const std::string& slide, const std::string& left_out) {
+  const std::string folder = std::filesystem::path(slide).parent_path().string();
+  const std::lock_guard lock(mutex_);
+  if (std::exchange(left_out_[folder], left_out) != left_out && !left_out.empty())
+    events_.push_back(faultEvent(left_out));
+}
+
 void ModelWatch::offer(ReadyModel ready) {
+  if (ready.is_slide) noteLeftOut(ready.path, ready.left_out);
   const std::lock_guard lock(mutex_);
   offered_.emplace_back(ready.place,
                         Watched{ready.path, ready.stamp, ready.picture ? "picture" : "model"});

@@ -5,6 +5,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -51,7 +52,8 @@ struct ReadyModel {
   std::shared_ptr<const render::content::Picture> picture{};  // instead of these two
   std::string name{};
   FileStamp stamp{};
-  bool is_slide = false, is_last_slide = false;
+  bool is_slide = false, is_first_slide = false, is_last_slide = false;
+  std::string left_out{};     // see WallContent
   bool asked_for = false;     // to be shown now, from its start view
   bool was_replaced = false;  // its file was replaced by another one
   std::uint32_t request = 0;  // of WallRole::show(); 0: none
@@ -69,6 +71,7 @@ class ModelWatch {
     // Why nothing of it is shown yet; then `path` may be a folder, and `shown` is the stamp of what
     // was tried. Empty: it is shown.
     std::string fault{};
+    std::string left_out{};  // see WallContent
   };
   // Reads and prepares the file of a place again; called on the watch's own thread. Errors: why the
   // file cannot be shown.
@@ -105,6 +108,7 @@ class ModelWatch {
   void readAsked(Progress& progress);
   void followOffered();
   void noteWhetherThere(std::size_t place, bool there);
+  void noteLeftOut(const std::string& slide, const std::string& left_out);
 
   std::vector<Watched> files_;
   std::vector<ReplacedFile> replaced_;
@@ -126,6 +130,7 @@ class ModelWatch {
   std::condition_variable_any asked_changed_;
   std::vector<ReadyModel> ready_;
   std::vector<Event> events_;
+  std::map<std::string, std::string> left_out_;  // by folder of slides: what was said last
   std::vector<Asked> asked_;
   std::vector<std::pair<std::size_t, Watched>> offered_;  // files to look at from now on, by place
   WatchedThread thread_;

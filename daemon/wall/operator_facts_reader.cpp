@@ -6,6 +6,7 @@
 
 #include "daemon/base/fixed_text.h"
 #include "daemon/base/printable_text.h"
+#include "daemon/wall/useful_cost.h"
 
 namespace merlin::wall {
 namespace {
@@ -21,6 +22,9 @@ std::string textOf(const char (&field)[N]) {
   return std::string(wholeCharacters(textIn(field)));
 }
 
+// Without a list of devices there are the usual ones, without ports.
+bool isConfigured(const DeviceHealth& health) { return textIn(health.reason) != "not configured"; }
+
 // Why it is not well is said where there is a reason; one that works says what it lacks.
 DeviceFact deviceFact(std::string name, const DeviceHealth& health, Timestamp now) {
   const std::string_view state = shm::healthName(health, now);
@@ -31,6 +35,13 @@ DeviceFact deviceFact(std::string name, const DeviceHealth& health, Timestamp no
   if (works && reason.empty()) fact.light = DeviceLight::kGood;
   if (opens || (works && !reason.empty())) fact.light = DeviceLight::kWaiting;
   return fact;
+}
+
+// What the ball moves. A picture and a panorama have no viewer that could be moved.
+std::string ballMoves(std::string_view kind, bool flies) {
+  if (kind == "picture") return "moves the picture";
+  if (kind == "panorama") return "turns the view";
+  return flies ? "moves the viewer" : "moves the model";
 }
 
 // In steps of an eighth, so that a message that fades changes the plate eight times.
@@ -62,18 +73,18 @@ void OperatorFactsReader::readStats(OperatorFacts& facts) const {
   facts.late_percent = std::round(static_cast<double>(s->late_share_1min) * 1000) / 10;
   facts.cost = s->cost;
   facts.full_cost = s->full_cost;
-  facts.budget = s->budget;
+  facts.budget = usefulCost(*s, s->budget);
   facts.budget_by_hand = s->held_cost > 0;
   facts.full_detail = s->full_detail != 0;
   facts.cost_unit = textOf(s->cost_unit);
-  const bool flies = std::string_view(s->mode) == "fly";
-  facts.mode = flies ? "moves the viewer" : "moves the model";
   facts.posture = textOf(s->posture);
 }
 
 void OperatorFactsReader::readContent(OperatorFacts& facts) const {
   const auto content = wall_.content.read();
+  const auto stats = wall_.stats.read();
   if (!content) return;
+  facts.mode = ballMoves(textOf(content->kind), stats && textIn(stats->mode) == "fly");
   facts.content = textOf(content->name);
   facts.slide = textOf(content->slide);
 }
@@ -93,9 +104,11 @@ void OperatorFactsReader::readFrames(double rate_hz) {
 
 void OperatorFactsReader::readDevices(Timestamp now, OperatorFacts& facts) {
   const shm::DeviceSlots* const devices = devices_.get(now);
+  facts.devices_missing = !devices && expects_devices_;
   if (!devices) return;
   for (const auto& [name, slot] : devices->health) {
-    if (const auto health = slot->read()) facts.devices.push_back(deviceFact(name, *health, now));
+    const auto health = slot->read();
+    if (health && isConfigured(*health)) facts.devices.push_back(deviceFact(name, *health, now));
   }
 }
 

@@ -15,9 +15,14 @@ namespace merlin::wall {
 // Thread-bound to the wall's thread. Takes no lock for which it would have to wait.
 class OperatorFactsReader final : public render::text::OperatorSource {
  public:
-  // `wall` and `board` must outlive this object. `devices`: the name of the devices' segment.
-  OperatorFactsReader(const shm::WallSegment& wall, std::string devices, const MessageBoard& board)
-      : wall_(wall), devices_(std::move(devices)), board_(board) {}
+  // `wall` and `board` must outlive this object. `devices`: the name of the devices' segment;
+  // `expects_devices`: whether some are configured.
+  OperatorFactsReader(const shm::WallSegment& wall, std::string devices, bool expects_devices,
+                      const MessageBoard& board)
+      : wall_(wall),
+        devices_(std::move(devices)),
+        expects_devices_(expects_devices),
+        board_(board) {}
 
   render::text::OperatorFacts read(Timestamp now) override;
 
@@ -30,6 +35,7 @@ class OperatorFactsReader final : public render::text::OperatorSource {
 
   const shm::WallSegment& wall_;
   shm::SegmentFollower<shm::DevicesReader> devices_;
+  const bool expects_devices_;
   const MessageBoard& board_;
   std::vector<BoardMessage> messages_;
   render::text::FrameChart chart_;

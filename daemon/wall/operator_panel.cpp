@@ -7,6 +7,7 @@
 
 #include "daemon/base/fixed_text.h"
 #include "daemon/base/printable_text.h"
+#include "daemon/wall/useful_cost.h"
 
 namespace merlin::wall {
 namespace {
@@ -143,7 +144,8 @@ void OperatorPanel::readFacts(Timestamp now) {
     facts.rate_hz = static_cast<double>(stats->rate_asked_hz);
     facts.rate_by_hand = std::abs(facts.rate_hz - parts_.rate_hz) > 0.01;
     facts.detail_by_hand = stats->held_cost > 0;
-    facts.detail = facts.detail_by_hand ? stats->held_cost : twoDigits(stats->budget);
+    facts.detail =
+        usefulCost(*stats, facts.detail_by_hand ? stats->held_cost : twoDigits(stats->budget));
     facts.full_detail = stats->full_cost;
     facts.detail_unit = panelText(stats->cost_unit);
     facts.flies = textIn(stats->mode) == "fly";

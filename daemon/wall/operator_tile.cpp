@@ -1,10 +1,21 @@
 #include "daemon/wall/operator_tile.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "daemon/base/log.h"
 
 namespace merlin::wall {
+namespace {
+
+// Whether a device of this machine has a port, or another machine's are used.
+bool expectsDevices(const Settings& settings) {
+  const auto hasPort = [](const DeviceSettings& d) { return !d.line.port.empty(); };
+  return !settings.wall.input.endpoint.empty() ||
+         std::ranges::any_of(settings.devices.list, hasPort);
+}
+
+}  // namespace
 
 OperatorTile::OperatorTile(const Parts& parts) : parts_(parts) {
   const Settings& settings = parts_.settings;
@@ -29,7 +40,7 @@ std::optional<PanelPointer::Place> OperatorTile::panelInFrame() const {
 render::frame::Overlay* OperatorTile::makePlates() {
   if (!parts_.settings.wall.operator_tile.overlay) return nullptr;
   facts_.emplace(parts_.segment, shm::segmentName(parts_.settings.instance, "devices"),
-                 parts_.board);
+                 expectsDevices(parts_.settings), parts_.board);
   auto made = render::text::OperatorOverlay::make(parts_.plan, *facts_, parts_.clock);
   if (!made) logWarning("nothing is drawn over the operator's tile: {}", made.error().what);
   if (made) plates_ = *std::move(made);

@@ -19,7 +19,9 @@ Result<ReadyModel> prepareContent(std::size_t place, WallContent content,
   ready.name = content.entry.name;
   ready.stamp = content.stamp;
   ready.is_slide = content.entry.kind == ContentKind::kSlides;
+  ready.is_first_slide = content.is_first_slide;
   ready.is_last_slide = content.is_last_slide;
+  ready.left_out = std::move(content.left_out);
   if (!content.isModel()) {
     ready.picture = std::get<1>(std::move(content.data));
     return ready;
@@ -79,7 +81,9 @@ Result<Ok> ShownModels::makeViewer(const Eigen::Isometry3f& T_eye_model) {
 
 Result<Ok> ShownModels::add(ReadyModel ready, ContentEntry entry,
                             const Eigen::Isometry3f& T_eye_model) {
-  Shown shown{std::move(entry), nullptr, nullptr, ready.picture, ready.path, ready.is_last_slide};
+  Shown shown{std::move(entry), nullptr, nullptr, ready.picture, ready.path};
+  shown.is_first_slide = ready.is_first_slide;
+  shown.is_last_slide = ready.is_last_slide;
   if (!ready.picture) {
     auto renderer = attach(ready, T_eye_model);
     if (!renderer) return renderer.error();
@@ -117,7 +121,7 @@ ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
     if (slide) entry.kind = ContentKind::kPicture;
     entry.path = path;
     std::vector<std::string> skipped;
-    auto read = readContent(entry, settings.render.model.show, "", skipped);
+    auto read = readContent(entry, settings.render.model.show, {}, skipped);
     if (!read) return read.error();
     auto ready = prepareContent(place, *std::move(read), settings);
     if (ready) ready->is_slide = ready->is_slide || slide;
@@ -186,21 +190,34 @@ void ShownModels::prepare(std::size_t place) {
 bool ShownModels::nextWithin(std::size_t place) {
   const Shown& shown = shown_[place];
   if (shown.entry.kind != ContentKind::kSlides) return false;
-  const bool more = !shown.is_last_slide || (place < listed() && listed() == 1);
+  const bool more = !shown.is_last_slide || isAlone(place);
+  askForSlide(place, {shown.file, false}, more);
+  return more;
+}
+
+// Before the first slide comes the previous content; where there is no other, the last slide.
+bool ShownModels::previousWithin(std::size_t place) {
+  const Shown& shown = shown_[place];
+  if (shown.entry.kind != ContentKind::kSlides) return false;
+  const bool more = !shown.is_first_slide || isAlone(place);
+  if (more) askForSlide(place, {shown.file, true}, true);
+  return more;
+}
+
+void ShownModels::askForSlide(std::size_t place, const SlideTurn& turn, bool to_be_shown) {
   ModelWatch& watch = parts_.watch;
   const WallSettings& settings = parts_.settings;
-  const auto read = [&watch, &settings, place, more, entry = shown.entry,
-                     after = shown.file]() -> Result<ReadyModel> {
+  const auto read = [&watch, &settings, place, turn, to_be_shown,
+                     entry = shown_[place].entry]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;
-    auto slide = readContent(entry, settings.render.model.show, after, skipped);
+    auto slide = readContent(entry, settings.render.model.show, turn, skipped);
     for (const std::string& why : skipped) watch.report(faultEvent(why));
     if (!slide) return slide.error();
     auto ready = prepareContent(place, *std::move(slide), settings);
-    if (ready) ready->asked_for = more;
+    if (ready) ready->asked_for = to_be_shown;
     return ready;
   };
   watch.askForSlide(read, place);
-  return more;
 }
 
 void ShownModels::takePicture(ReadyModel& ready) {
@@ -239,7 +256,10 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
         newsEvent(fmt::format("{} can be read now, and is shown in its turn", shown.entry.path)));
   }
   shown.file = ready.path;
-  shown.is_last_slide = ready.is_last_slide;
+  if (!ready.was_replaced) {  // by a file of the same name, which has the same place among slides
+    shown.is_first_slide = ready.is_first_slide;
+    shown.is_last_slide = ready.is_last_slide;
+  }
   if (ready.place < listed()) return;
   shown.entry.name = ready.name;
   shown.entry.below = parts_.settings.shown.folder;

@@ -55,6 +55,7 @@ class ShownModels final : public ContentSource {
   std::optional<Replacement> take(bool moving, const Eigen::Isometry3f& T_eye_model) override;
   void prepare(std::size_t place) override;
   bool nextWithin(std::size_t place) override;
+  bool previousWithin(std::size_t place) override;
 
   static constexpr Duration kPatience = std::chrono::seconds(5);
 
@@ -65,7 +66,7 @@ class ShownModels final : public ContentSource {
     std::unique_ptr<render::frame::FrameRenderer> renderer;
     std::shared_ptr<const render::content::Picture> picture;  // instead of these two
     std::string file;
-    bool is_last_slide = false;
+    bool is_first_slide = false, is_last_slide = false;
     bool missing = false;  // `picture` is empty
   };
   explicit ShownModels(const Parts& parts) : parts_(parts) {}
@@ -73,6 +74,9 @@ class ShownModels final : public ContentSource {
   Result<Ok> add(ReadyModel ready, ContentEntry entry, const Eigen::Isometry3f& T_eye_model);
   Result<std::unique_ptr<render::frame::FrameRenderer>> attach(
       ReadyModel& ready, const Eigen::Isometry3f& T_eye_model) const;
+  // Whether it is the only content of the configuration.
+  bool isAlone(std::size_t place) const noexcept { return place < listed() && listed() == 1; }
+  void askForSlide(std::size_t place, const SlideTurn& turn, bool to_be_shown);
   void takePicture(ReadyModel& ready);
   Result<Ok> takeModel(ReadyModel& ready, const Eigen::Isometry3f& T_eye_model);
   void noteFile(const ReadyModel& ready, ContentKind kind);

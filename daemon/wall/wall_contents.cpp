@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -84,10 +83,25 @@ Result<WallContent> readPicture(const ContentEntry& entry, const std::string& fi
   return WallContent{entry, file, stamp, *std::move(picture)};
 }
 
-// Names of the folder's pyramids, in order.
-Result<std::vector<std::string>> slidesIn(const ContentEntry& entry) {
+// Whether this is a picture of a kind that people put into a folder of slides: `merlin image
+// import` reads these, and more.
+bool isOrdinaryPicture(const std::string& name) {
+  constexpr std::string_view kEndings[] = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".gif"};
+  std::string ending = fs::path(name).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) {
+    return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  });
+  return std::ranges::find(kEndings, ending) != std::end(kEndings);
+}
+
+// Names of the files in a folder of slides, each kind in order.
+struct FilesOfSlides {
+  std::vector<std::string> pyramids, pictures;
+};
+
+Result<FilesOfSlides> slidesIn(const ContentEntry& entry) {
   const std::string& folder = entry.path;
-  std::vector<std::string> slides;
+  FilesOfSlides files;
   std::error_code error;
   UniqueFd opened;  // so that nobody can put a link in its place meanwhile
   if (!entry.below.empty()) {
@@ -99,27 +113,47 @@ Result<std::vector<std::string>> slidesIn(const ContentEntry& entry) {
       opened.valid() ? fmt::format("/proc/self/fd/{}", opened.get()) : folder;
   for (fs::directory_iterator it(listed, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (isPyramid(name) && !name.starts_with(".") && slides.size() < kMostSlides)
-      slides.push_back(name);
+    if (name.starts_with(".")) continue;
+    if (isPyramid(name) && files.pyramids.size() < kMostSlides) files.pyramids.push_back(name);
+    if (isOrdinaryPicture(name) && files.pictures.size() < kMostSlides)
+      files.pictures.push_back(name);
   }
   if (error) {
     const bool missing = error == std::errc::no_such_file_or_directory;
     return Error{missing ? Errc::kNotFound : Errc::kIo,
                  fmt::format("{}: {}", folder, error.message())};
   }
-  if (slides.empty()) {
+  if (files.pyramids.empty()) {
     return Error{Errc::kNotFound,
                  fmt::format("{}: has no pyramid (.tif); make one: merlin image import IN -o "
                              "{}/NAME.tif",
                              folder, folder)};
   }
-  std::ranges::sort(slides);
-  return slides;
+  std::ranges::sort(files.pyramids);
+  std::ranges::sort(files.pictures);
+  return files;
+}
+
+// What is said of pictures in a folder of slides; nothing if there are none.
+std::string leftOut(const std::string& folder, const std::vector<std::string>& pictures) {
+  if (pictures.empty()) return "";
+  constexpr std::size_t kMostNamed = 3;
+  const std::string& first = pictures.front();
+  const std::string pyramid = fs::path(first).replace_extension(".tif").string();
+  std::string names = excerpt(first);
+  for (std::size_t i = 1; i < std::min(pictures.size(), kMostNamed); ++i)
+    names += ", " + excerpt(pictures[i]);
+  if (pictures.size() > kMostNamed)
+    names += fmt::format(" and {} more", pictures.size() - kMostNamed);
+  const char* const are = pictures.size() == 1 ? "is no pyramid, so it is not shown"
+                                               : "are no pyramids, so they are not shown";
+  return fmt::format("{}: {} {}: merlin image import {} -o {} makes one", folder, names, are,
+                     excerpt(first), excerpt(pyramid));
 }
 
 // The first of these that can be shown; nothing if there is none. The others before it are added to
 // `skipped`.
-std::optional<WallContent> firstOf(std::span<const std::string> names, const ContentEntry& entry,
+std::optional<WallContent> firstOf(const std::vector<std::string>& names, const ContentEntry& entry,
                                    std::vector<std::string>& skipped) {
   for (const std::string& name : names) {
     auto read = readPicture(entry, (fs::path(entry.path) / name).string());
@@ -129,28 +163,50 @@ std::optional<WallContent> firstOf(std::span<const std::string> names, const Con
   return std::nullopt;
 }
 
+// The names on the way from the slide of this name, to the end of the list; and those that follow
+// from its other end, up to that slide.
+struct Way {
+  std::vector<std::string> ahead, around;
+};
+
+Way wayFrom(std::vector<std::string> slides, const std::string& name, bool back) {
+  if (back) std::ranges::reverse(slides);
+  const auto passed = [&](const std::string& s) { return back ? s >= name : s <= name; };
+  const auto ahead = name.empty() ? slides.begin() : std::ranges::find_if_not(slides, passed);
+  return {{ahead, slides.end()}, {slides.begin(), ahead}};
+}
+
+// Whether none can be shown from a slide on. Those that cannot are added to `skipped` if it is so:
+// they do not come up by themselves.
+bool isEnd(const std::vector<std::string>& ahead, const ContentEntry& entry,
+           std::vector<std::string>& skipped) {
+  std::vector<std::string> behind_it;
+  if (firstOf(ahead, entry, behind_it)) return false;
+  std::ranges::move(behind_it, std::back_inserter(skipped));
+  return true;
+}
+
 // The last slide is the last one that can be shown: otherwise a damaged file at the end would keep
-// the next content from its turn.
-Result<WallContent> readSlide(const ContentEntry& entry, const std::string& after,
+// the next content from its turn. Likewise the first.
+Result<WallContent> readSlide(const ContentEntry& entry, const SlideTurn& turn,
                               std::vector<std::string>& skipped) {
-  const auto slides = slidesIn(entry);
-  if (!slides) return slides.error();
-  const auto behind = [&](const std::string& file) {
-    const auto next = std::ranges::upper_bound(*slides, fs::path(file).filename().string());
-    return std::span(*slides).subspan(static_cast<std::size_t>(next - slides->begin()));
-  };
-  auto read = firstOf(behind(after), entry, skipped);
-  if (!read) {
-    const std::size_t before = slides->size() - behind(after).size();
-    read = firstOf(std::span(*slides).first(before), entry, skipped);
-  }
+  const auto files = slidesIn(entry);
+  if (!files) return files.error();
+  const std::vector<std::string>& slides = files->pyramids;
+  const Way way = wayFrom(slides, fs::path(turn.from).filename().string(), turn.back);
+  auto read = firstOf(way.ahead, entry, skipped);
+  if (!read) read = firstOf(way.around, entry, skipped);
   if (!read) {
     return Error{Errc::kNotFound, fmt::format("{}: none of its {} pyramids can be shown: {}",
-                                              entry.path, slides->size(), skipped.back())};
+                                              entry.path, slides.size(), skipped.back())};
   }
-  std::vector<std::string> behind_it;
-  read->is_last_slide = !firstOf(behind(read->file), entry, behind_it);
-  if (read->is_last_slide) std::ranges::move(behind_it, std::back_inserter(skipped));
+  const std::string name = fs::path(read->file).filename().string();
+  std::vector<std::string> passed;  // about those behind it, which have had their turn
+  read->is_last_slide =
+      isEnd(wayFrom(slides, name, false).ahead, entry, turn.back ? passed : skipped);
+  read->is_first_slide =
+      isEnd(wayFrom(slides, name, true).ahead, entry, turn.back ? skipped : passed);
+  read->left_out = leftOut(entry.path, files->pictures);
   return *std::move(read);
 }
 
@@ -211,12 +267,12 @@ WallContent missingContent(const ContentEntry& entry, std::string fault,
 }
 
 Result<WallContent> readContent(const ContentEntry& entry,
-                                const render::content::ShownFeature& show, const std::string& after,
+                                const render::content::ShownFeature& show, const SlideTurn& turn,
                                 std::vector<std::string>& skipped) {
   switch (entry.kind) {
     case ContentKind::kModel: return readModel(entry, show);
     case ContentKind::kPicture: return readPicture(entry, entry.path);
-    case ContentKind::kSlides: return readSlide(entry, after, skipped);
+    case ContentKind::kSlides: return readSlide(entry, turn, skipped);
   }
   return Error{Errc::kUnsupported, entry.path};
 }

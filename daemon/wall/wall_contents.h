@@ -50,7 +50,10 @@ struct WallContent {
   std::string file;  // that was read: the entry's, or one slide of it
   FileStamp stamp;   // of that file
   std::variant<render::lod::Dendrogram, std::shared_ptr<const render::content::Picture>> data;
-  bool is_last_slide = false;
+  bool is_first_slide = false, is_last_slide = false;
+  // Of slides: a sentence about the ordinary pictures in their folder, which are not shown. Empty:
+  // there are none.
+  std::string left_out{};
   // Why there is nothing to show; then `data` is an empty picture, and `stamp` that of the file or
   // folder that was tried, if there was one. Empty: it was read.
   std::string fault{};
@@ -63,14 +66,21 @@ struct WallContent {
 WallContent missingContent(const ContentEntry& entry, std::string fault,
                            const std::optional<FileStamp>& tried);
 
+// Which slide of a folder is wanted: the one after `from`, a file, in the order of their names, or
+// the one before it. The default: the first one.
+struct SlideTurn {
+  std::string from{};
+  bool back = false;
+};
+
 // Reads a content: a model as a whole, of a picture its coarsest level. Of slides it reads the
-// first that can be shown after the slide `after` in the order of their names, cyclically, and
-// tries the next one, to see whether it is the last; sentences about those that cannot be shown are
+// first that can be shown on the way from `turn.from`, cyclically, and tries its neighbours, to see
+// whether it is the first or the last; sentences about those on the way that cannot be shown are
 // added to `skipped`. Errors: those of readMrmCopy(), openPicture(), openBelow(); kInvalidArgument
 // (a model lacks the feature that `show` names); kNotFound (a folder without a pyramid that can be
 // shown). O(size of a model's file).
 Result<WallContent> readContent(const ContentEntry& entry,
-                                const render::content::ShownFeature& show, const std::string& after,
+                                const render::content::ShownFeature& show, const SlideTurn& turn,
                                 std::vector<std::string>& skipped);
 
 }  // namespace merlin::wall

@@ -65,13 +65,12 @@ void WallLoop::applyRequests() {
   const std::uint32_t requests = requests_.exchange(0);
   if (requests & kResetView) returnToInitialView();
   if (requests & kNextMode) parts_.scene.nextMode();
-  if (requests & kNextContent) {
-    turns_.requestNext(1);
-    parts_.scene.reset();
-  }
+  if (requests & kNextContent) turns_.requestNext(1);
+  if (requests & kPreviousContent) turns_.requestPrevious(1);
+  if (requests & (kNextContent | kPreviousContent)) parts_.scene.reset();
   const std::int64_t place = place_asked_.exchange(-1);
   if (place >= 0) {
-    turns_.request(static_cast<std::size_t>(place));
+    turns_.choose(static_cast<std::size_t>(place));
     parts_.scene.reset();
   }
   if (requests != 0 || place >= 0) parts_.attendance.touch();
@@ -146,15 +145,23 @@ void WallLoop::replaceContents() {
   if (!fresh) return;
   if (!fresh->refused.empty()) return noteRefusal(*fresh);
   const bool shown = turns_.replace(*fresh);
+  if (fresh->request > 0) showChosen(*fresh);
   if (fresh->asked_for) {
     turns_.request(fresh->place);
     parts_.scene.reset();
   }
-  if (fresh->request > 0) finishRequest(fresh->request, {});
   if (!shown) return;
   useNavigation();
   showContent();
   still_.restart();
+}
+
+// A file that took long to read may come while the playlist runs again: then that ends, so that the
+// file is shown for as long as what a person shows at once.
+void WallLoop::showChosen(const ContentSource::Replacement& chosen) {
+  turns_.choose(chosen.place);
+  parts_.attendance.attend();
+  finishRequest(chosen.request, {});
 }
 
 // A folder of slides that vanished, or is empty now, keeps nobody from the other contents.
@@ -180,10 +187,11 @@ WallInput WallLoop::attendedInput(Timestamp now) {
   return input;
 }
 
-// What it shows begins with the initial view, wherever a visitor left it.
+// What it shows begins with the initial view, wherever a visitor left it. What a person has chosen
+// is shown first, and as long as each content of the playlist.
 void WallLoop::followPlaylist(const Playlist::Wanted& wanted) {
   const std::size_t before = turns_.asked();
-  if (wanted.next || (wanted.begins && !turns_.isOf(parts_.playlist)))
+  if (wanted.next || (wanted.begins && !turns_.belongsTo(parts_.playlist)))
     turns_.requestNextOf(parts_.playlist);
   if (turns_.asked() != before)
     parts_.scene.reset();
@@ -208,7 +216,8 @@ void WallLoop::readInput(std::int64_t k, Timestamp began) {
   const bool was_moving = view_.moving;
   // The next content is shown after the scene's update, from its initial view.
   turns_.requestNext(input.next_content);
-  if (input.next_content > 0) parts_.scene.reset();
+  turns_.requestPrevious(input.previous_content);
+  if (input.next_content + input.previous_content > 0) parts_.scene.reset();
   for (std::uint32_t i = 0; i < input.snapshot; ++i) parts_.on_snapshot();
   snapshots_ += input.snapshot;
   if (!input.align.isNothing()) parts_.on_align(input.align);
@@ -269,6 +278,7 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   tracer_.add(StepKind::kGovernor, choosing, parts_.clock.now());
   if (step == detail().steps()) {
     stats_.deadline(deadline(k), true, false);
+    tracer_.leaveOut();
     if (pace_.observe(true, true)) turns_.setSizeDivisor(pace_.sizeDivisor());
     return k + 1;
   }
@@ -295,8 +305,10 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
 std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
   const std::int64_t reached = parts_.frame_clock.frameAt(finished);
   stats_.deadline(deadline(k), true, finished <= deadline(k));
-  for (std::int64_t missed = k + 1; missed < reached; ++missed)
+  for (std::int64_t missed = k + 1; missed < reached; ++missed) {
     stats_.deadline(deadline(missed), true, false);
+    tracer_.runOver(deadline(missed - 1), deadline(missed));
+  }
   return std::max(k + 1, reached);
 }
 
@@ -321,6 +333,8 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
     showFading();
   else if (parts_.delivery.hasChanged(parts_.clock.now()))
     present(painter().pixels(), full_detail_);
+  // A part that could not be loaded before has come after all.
+  if (painter().pending() == render::content::Pending::kArrived) full_detail_ = false;
   if (needsRefining()) refine(k);
   // The frame shown is still valid, so every deadline that has passed counts as met.
   const std::int64_t reached = parts_.frame_clock.frameAt(parts_.clock.now());

@@ -85,7 +85,12 @@ class WallLoop {
   void run(const std::stop_token& stop, const std::function<void()>& first_frame);
 
   // Thread-safe: executed before the next frame.
-  enum Request : std::uint32_t { kResetView = 1, kNextMode = 2, kNextContent = 4 };
+  enum Request : std::uint32_t {
+    kResetView = 1,
+    kNextMode = 2,
+    kNextContent = 4,
+    kPreviousContent = 8
+  };
   void request(Request what) noexcept { requests_.fetch_or(what); }
 
   // Thread-safe: shows the content of a place, before the next frame. Nothing happens if there is
@@ -138,6 +143,7 @@ class WallLoop {
   void useNavigation();
   bool needsRefining() const;
   void replaceContents();
+  void showChosen(const ContentSource::Replacement& chosen);
   void noteRefusal(const ContentSource::Replacement& refused);
   render::frame::PointerMarker::Points pointedAt() const;
   void publish();

@@ -63,7 +63,8 @@ void fillPace(shm::WallStats& out, const WallPublisher::State& s, Timestamp now)
 }  // namespace
 
 void WallPublisher::trace(const FrameTracer& tracer) {
-  if (slots_.trace) slots_.trace->publish(tracer.frame());
+  if (!slots_.trace) return;
+  for (const shm::FrameTrace& frame : tracer.frames()) slots_.trace->publish(frame);
 }
 
 void WallPublisher::stats(shm::WallStats out, const State& s, Timestamp now) {

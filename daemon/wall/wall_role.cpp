@@ -28,8 +28,8 @@ namespace {
 std::vector<ModelWatch::Watched> filesOf(const std::vector<WallContent>& contents) {
   std::vector<ModelWatch::Watched> files;
   for (const WallContent& content : contents)
-    files.push_back(
-        {content.file, content.stamp, content.isModel() ? "model" : "picture", content.fault});
+    files.push_back({content.file, content.stamp, content.isModel() ? "model" : "picture",
+                     content.fault, content.left_out});
   files.push_back({});
   return files;
 }
@@ -60,6 +60,21 @@ std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
     if (!display.panel.empty()) panels[display.name] = display.panel;
   }
   return panels;
+}
+
+render::out::OutputSettings withoutMeasured(render::out::OutputSettings output) {
+  output.correction.mpcdi.clear();
+  output.correction.mpcdi_region.clear();
+  return output;
+}
+
+// Of an output whose tiles are all mounted alike.
+state::SeenAxes seenAxes(const render::out::PlacedTile& placed) {
+  const render::frame::TileAxes axes = render::frame::axesOf(placed);
+  const auto step = [](const render::frame::TileAxes::Step& s) {
+    return state::Offset{static_cast<double>(s.x), static_cast<double>(s.y)};
+  };
+  return {step(axes.column), step(axes.row)};
 }
 
 Error notShownYet() { return {Errc::kBusy, "the wall has not shown its first frame yet"}; }
@@ -144,7 +159,7 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       notice_(plan_, segment_->notice, clock_),
       model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), missing_,
                    watch_, clock_),
-      tiles_(watch_) {}
+      tiles_(watch_, clock_) {}
 
 void WallRole::makeChecks() {
   std::vector<render::out::PictureChecks::Checked> checked;
@@ -166,8 +181,18 @@ Result<Ok> WallRole::makeCorrections() {
       continue;
     }
     const auto parts = render::stereo::signalParts(output, settings_.wall.tiles);
-    auto made = alignedOutput(output, *render::out::pictureSize(output, settings_.wall.tiles),
-                              parts.value_or(render::correct::SignalParts{}), team_, shader_pass_);
+    const auto make = [&](const render::out::OutputSettings& shown) {
+      return alignedOutput(shown, *render::out::pictureSize(output, settings_.wall.tiles),
+                           parts.value_or(render::correct::SignalParts{}), team_, shader_pass_);
+    };
+    auto made = make(output);
+    if (!made && !output.correction.mpcdi.empty()) {
+      model_watch_.report(faultEvent(
+          fmt::format("output {} is shown without its measured warp and blend: {}; mend the file "
+                      "and restart the wall",
+                      output.shownName(), made.error().what)));
+      made = make(withoutMeasured(output));
+    }
     if (!made)
       return Error{made.error().code,
                    fmt::format("/wall/outputs/{}/correction: {}", i, made.error().what)};
@@ -176,6 +201,7 @@ Result<Ok> WallRole::makeCorrections() {
       links.push_back(std::make_unique<render::frame::TileArrangement>(plan_, output.tiles));
     auto correction = std::make_unique<render::frame::ReplaceableCorrection>();
     made->correction = correction.get();
+    if (!output.tiles.empty()) made->axes = seenAxes(output.tiles.front());
     for (std::size_t corner = 0; corner < made->marks.size(); ++corner)
       made->marks[corner] = render::testcard::cornerOf(plan_, output, corner);
     links.push_back(std::move(correction));
@@ -319,6 +345,9 @@ void WallRole::reload(const Settings& settings, const WallChanges& changes) {
   if (changes.scene) tuning.scene = settings.wall.scene;
   if (changes.rate || changes.input) tuning.feed = feedSettings(settings);
   if (WallLoop* loop = loop_.load()) loop->tune(std::move(tuning));
+  if (!changes.corrections) return;
+  for (const render::out::OutputSettings& output : settings.wall.outputs)
+    aligner_->configure(output.shownName(), output.correction);
 }
 
 // From the first to the last that is drawn: a test card hides the plates of the operator's tile,
@@ -446,7 +475,7 @@ Result<std::uint32_t> WallRole::showFile(const std::string& name) {
 Result<Ok> WallRole::showEntry(const ContentEntry& entry, std::uint32_t request) {
   const auto read = [this, entry, request]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;
-    auto content = readContent(entry, settings_.wall.render.model.show, "", skipped);
+    auto content = readContent(entry, settings_.wall.render.model.show, {}, skipped);
     for (const std::string& why : skipped) model_watch_.report(faultEvent(why));
     if (!content) return content.error();
     auto ready = prepareContent(entries_.size(), *std::move(content), settings_.wall);

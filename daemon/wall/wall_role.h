@@ -38,7 +38,7 @@ namespace merlin::wall {
 
 // What changed in the settings while the wall is drawn.
 struct WallChanges {
-  bool rate = false, playlist = false, scene = false, input = false;
+  bool rate = false, playlist = false, scene = false, input = false, corrections = false;
 };
 
 // Who draws the wall, for the status.

@@ -22,7 +22,7 @@ struct Control {
 constexpr Control kControls[] = {
     {ControlId::kModel, "Model", Acts::kClick, "show"},
     {ControlId::kPicture, "Picture", Acts::kClick, "show"},
-    {ControlId::kPrevious, "‹", Acts::kClick, "show"},
+    {ControlId::kPrevious, "‹", Acts::kClick, "previous_content"},
     {ControlId::kNext, "›", Acts::kClick, "next_content"},
     {ControlId::kUp, "▲", Acts::kMotion, ""},
     {ControlId::kLeft, "◀", Acts::kMotion, ""},
@@ -113,16 +113,11 @@ std::string nextOfKind(bool is_model, const PanelFacts& facts, const PanelOption
   return "";
 }
 
-std::string previousName(const PanelFacts& facts, const PanelOptions& options) {
-  const auto& all = options.contents;
-  const auto shown = std::ranges::find(all, facts.content, &PanelContent::name);
-  if (all.empty() || (all.size() == 1 && shown != all.end())) return "";
-  const auto at = shown == all.end() ? 0 : static_cast<std::size_t>(shown - all.begin());
-  for (std::size_t back = 1; back <= all.size(); ++back) {
-    const PanelContent& content = all[(at + all.size() - back) % all.size()];
-    if (!isMissing(content, facts)) return content.name == facts.content ? "" : content.name;
-  }
-  return "";
+// Whether there is a content that can be shown instead of the one that is.
+bool hasOther(const PanelFacts& facts, const PanelOptions& options) {
+  return std::ranges::any_of(options.contents, [&](const PanelContent& content) {
+    return content.name != facts.content && !isMissing(content, facts);
+  });
 }
 
 // The argument of a command that has one; empty: there is nothing to do.
@@ -130,7 +125,6 @@ std::string argumentOf(ControlId id, const PanelFacts& facts, const PanelOptions
   switch (id) {
     case ControlId::kModel: return nextOfKind(true, facts, options);
     case ControlId::kPicture: return nextOfKind(false, facts, options);
-    case ControlId::kPrevious: return previousName(facts, options);
     case ControlId::kRateLess: return lessRate(facts.rate_hz);
     case ControlId::kRateMore: return moreRate(facts.rate_hz);
     case ControlId::kDetailLess: return detailTimes(facts, 1 / kDetailStep);
@@ -156,8 +150,9 @@ std::optional<Request> requestOf(ControlId id, const PanelFacts& facts,
   const Control& control = controlOf(id);
   if (control.command.empty()) return std::nullopt;
   if (id == ControlId::kSnapshot && !options.snapshots) return std::nullopt;
-  if (id == ControlId::kNext && options.contents.size() < 2 && facts.slide.empty())
-    return std::nullopt;
+  if (id == ControlId::kMode && facts.kind != ShownKind::kModel) return std::nullopt;
+  const bool steps = id == ControlId::kPrevious || id == ControlId::kNext;
+  if (steps && facts.slide.empty() && !hasOther(facts, options)) return std::nullopt;
   Request request{std::string(control.command)};
   if (isPlainCommand(control.command)) return request;
   request.argument = argumentOf(id, facts, options);

@@ -13,6 +13,10 @@ constexpr float kRadian = std::numbers::pi_v<float> / 180;
 // Time step of ball and flight at most, also after a frame that took longer.
 constexpr float kLongestStep_s = 0.1F;
 constexpr float kMostShear = 1e-4F;
+// What a drag over the height of a picture does: it turns an object, or the view of a panorama, by
+// this angle; it moves a plane about as far as the pointer, at the initial distance.
+constexpr float kTurnPerHeight = std::numbers::pi_v<float>;
+constexpr float kRadiiPerHeight = 1.5F;
 
 // Limits the translation to kWorld_m, within which a float resolves 1 mm; nothing farther away is
 // visible. Makes the rotation orthonormal again, since rounding errors of many rotations would
@@ -171,10 +175,17 @@ bool Scene::moveByBall(const SceneInput& input, float seconds) {
   return true;
 }
 
-// Returns whether a step is requested.
+// A plane can't be turned: it is moved as far as a drag would that turns an object so much. So the
+// same drag and the same key do something for each content. Returns whether a step is requested.
 bool Scene::moveByStep(const SceneInput& input) {
   if (input.step.way_m.isZero(0) && input.step.turn_rad.isZero(0)) return false;
-  navigator_->push(poses_, input.step, mode_);
+  Push step = input.step;
+  if (navigation_ == content::Navigation::kPlane) {
+    const Eigen::Vector3f heights(step.turn_rad.y(), -step.turn_rad.x(), 0);
+    step.way_m +=
+        heights / kTurnPerHeight * kRadiiPerHeight * static_cast<float>(settings_.model_radius_m);
+  }
+  navigator_->push(poses_, step, mode_);
   return true;
 }
 
@@ -182,8 +193,6 @@ bool Scene::moveByStep(const SceneInput& input) {
 // window; two move and turn it in the picture's plane, and bring it nearer as they move apart. A
 // plane and a panorama are moved by any number. Returns whether the fingers move.
 bool Scene::moveByTouch(const TouchMotion& touch) {
-  constexpr float kTurnPerHeight = std::numbers::pi_v<float>;
-  constexpr float kRadiiPerHeight = 1.5F;
   if (!touch.moves()) return false;
   const float height_m = kRadiiPerHeight * static_cast<float>(settings_.model_radius_m);
   const bool object = navigation_ == content::Navigation::kObject;

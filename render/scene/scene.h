@@ -41,7 +41,9 @@ struct SceneInput {
   TouchMotion touch;                            // of the fingers on a touch surface
   std::vector<TrackerSample> other_pointers;    // hands that point, besides `hand`
   HeldMotion held;
-  Push step;             // requested by the command move since the last frame: applied at once
+  // Requested by the command move since the last frame: applied at once. A plane is moved by its
+  // rotation, too.
+  Push step;
   float turn_rad_s = 0;  // speed at which the content turns by itself: see Navigator::turn()
 };
 

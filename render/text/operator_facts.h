@@ -40,10 +40,11 @@ struct OperatorFacts {
   bool full_detail = false;
   std::string cost_unit;  // "triangles"
 
-  std::string content, slide;  // names; no slide: empty
-  std::string mode;            // what the ball moves
-  std::string posture;         // empty: none
-  std::vector<DeviceFact> devices;
+  std::string content, slide;         // names; no slide: empty
+  std::string mode;                   // what the ball moves
+  std::string posture;                // empty: none
+  std::vector<DeviceFact> devices;    // those that are configured
+  bool devices_missing = false;       // some are configured, and nothing is known of them
   std::vector<MessageFact> messages;  // the newest first
 
   bool operator==(const OperatorFacts&) const = default;

@@ -144,7 +144,8 @@ void drawState(const OperatorFacts& facts, Rows& rows) {
 }
 
 void drawDevices(const OperatorFacts& facts, Rows& rows) {
-  if (facts.devices.empty()) return rows.row("Devices", "none", kBad);
+  if (facts.devices_missing) return rows.row("Devices", "not known", kBad);
+  if (facts.devices.empty()) return rows.row("Devices", "none configured", kDim);
   const int em = rows.fonts().text.metrics().em_px;
   for (const DeviceFact& device : facts.devices) {
     const Rect line = rows.take(rows.lineHeight());

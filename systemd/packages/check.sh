@@ -62,7 +62,7 @@ check_documents() {
 check_wall() {
   "$root/usr/bin/merlin" --version >/dev/null
   sed -e "s|/usr/share|$root/usr/share|; s|{|{\"instance\": \"$instance\", \"run_directory\": \"$work/run\", \"state_file\": \"$work/state.json\",|" \
-    -e 's|"connector": "\*"|"card": "/dev/dri/none", "connector": "*"|; s|"after_s": 5|"after_s": 0.2|' \
+    -e 's|"connector": "\*"|"card": "/dev/dri/none", "connector": "*"|; s|"after_s": [0-9.]*|"after_s": 0.2|' \
     "$root/etc/merlin/merlin.json" | sed -e '2,$s|{"instance[^,]*, "run_directory[^,]*, "state_file[^,]*,|{|g' >"$root/etc/merlin/check.json"
   mkdir -p "$work/run"
   "$root/usr/bin/merlind" --check-config "$root/etc/merlin/check.json" >/dev/null || fail "the installed configuration is not valid"

@@ -14,7 +14,7 @@ constexpr std::size_t kMostUnreadable = 65'536;  // tiles of one picture that ar
 
 }  // namespace
 
-TileLoader::TileLoader(ThreadWatch& watch) {
+TileLoader::TileLoader(ThreadWatch& watch, const Clock& clock) : clock_(clock) {
   thread_ = WatchedThread(watch, "picture tiles",
                           [this](const std::stop_token& s, Progress& p) { run(s, p); });
 }
@@ -24,14 +24,20 @@ void TileLoader::ask(const std::shared_ptr<const Picture>& picture,
   const std::lock_guard lock(mutex_);
   if (std::exchange(picture_, picture) != picture) {
     unreadable_.clear();
+    said_ = false;
     loaded_.clear();
     loading_.reset();
   }
   places_.clear();
+  again_.clear();
   for (const image::TilePlace& place : places) {
     const bool waits =
         std::ranges::any_of(loaded_, [&](const LoadedTile& tile) { return tile.place == place; });
-    if (!waits && place != loading_ && unreadable_.count(place) == 0) places_.push_back(place);
+    if (waits || place == loading_) continue;
+    if (unreadable_.count(place) > 0)
+      again_.push_back(place);
+    else
+      places_.push_back(place);
   }
   if (hasWork()) changed_.notify_one();
 }
@@ -67,11 +73,22 @@ void TileLoader::run(const std::stop_token& stop, Progress& progress) {
   while (!stop.stop_requested()) {
     changed_.wait_for(lock, stop, std::chrono::milliseconds(500), [&] { return hasWork(); });
     progress.step();
+    tryAgain();
     if (hasWork() && !stop.stop_requested()) {
       const Progress::Pause pause(progress);  // a file server may be slow
       load(lock, reader);
     }
   }
+}
+
+// Those of another call come first: they may well be readable.
+void TileLoader::tryAgain() {
+  const Timestamp now = clock_.now();
+  std::erase_if(again_, [&](const image::TilePlace& place) {
+    const bool due = now - unreadable_[place] >= kTryAgain;
+    if (due) places_.push_back(place);
+    return due;
+  });
 }
 
 // Loads the most urgent tile; the lock is released meanwhile. A tile that was asked for by an
@@ -95,19 +112,24 @@ void TileLoader::load(std::unique_lock<std::mutex>& lock,
   lock.lock();
   if (picture_ != picture) return;
   loading_.reset();
-  if (!fault.empty()) {
-    tile.pixels.clear();
-    noteFault(place, fault);
+  if (fault.empty()) {
+    unreadable_.erase(place);
+    loaded_.push_back(std::move(tile));
+    return;
   }
-  loaded_.push_back(std::move(tile));
+  // The wall draws without it; told of it once, it does not draw the same again and again.
+  if (unreadable_.count(place) == 0) loaded_.push_back({picture, place, {}});
+  noteFault(place, fault);
+  if (unreadable_.count(place) > 0) again_.push_back(place);
 }
 
 void TileLoader::noteFault(const image::TilePlace& place, const std::string& what) {
-  if (unreadable_.empty() && faults_.size() < kMostFaults) {
+  if (!std::exchange(said_, true) && faults_.size() < kMostFaults) {
     faults_.push_back(fmt::format(
         "a part of the picture cannot be read and is shown coarser ({}); import it again", what));
   }
-  if (unreadable_.size() < kMostUnreadable) unreadable_.insert(place);
+  if (unreadable_.size() < kMostUnreadable || unreadable_.count(place) > 0)
+    unreadable_[place] = clock_.now();
 }
 
 }  // namespace merlin::render::content

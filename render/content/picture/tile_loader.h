@@ -4,14 +4,15 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "daemon/base/clock.h"
 #include "daemon/base/watched_thread.h"
 #include "render/content/picture/picture.h"
 
@@ -29,7 +30,7 @@ class TileSource {
   virtual ~TileSource() = default;
 
   // Asks for tiles of a picture, the most urgent first, instead of those that were asked for
-  // before. A tile that could not be read is not tried again until another picture is asked for.
+  // before. A tile that could not be read is tried again after some time while it is among them.
   virtual void ask(const std::shared_ptr<const Picture>& picture,
                    std::span<const image::TilePlace> places) = 0;
   // A tile that was loaded, if there is one; tiles that nobody asks for any more may be among them.
@@ -44,8 +45,8 @@ class TileSource {
 // All are for the wall's thread, takeFaults() is thread-safe.
 class TileLoader final : public TileSource {
  public:
-  // `watch` must outlive this object. Memory: kMostLoaded tiles, and a reader.
-  explicit TileLoader(ThreadWatch& watch);
+  // `watch` and `clock` must outlive this object. Memory: kMostLoaded tiles, and a reader.
+  TileLoader(ThreadWatch& watch, const Clock& clock);
   ~TileLoader() override { thread_.stop(); }
   TileLoader(const TileLoader&) = delete;
   TileLoader& operator=(const TileLoader&) = delete;
@@ -60,20 +61,26 @@ class TileLoader final : public TileSource {
   std::vector<std::string> takeFaults();
 
   static constexpr std::size_t kMostLoaded = 32;  // tiles that wait for take()
+  // A file server that does not answer for a moment leaves no part of a picture coarse for good.
+  static constexpr Duration kTryAgain = std::chrono::seconds(10);
 
  private:
   void run(const std::stop_token& stop, Progress& progress);
   bool hasWork() const { return !places_.empty() && loaded_.size() < kMostLoaded; }
   void load(std::unique_lock<std::mutex>& lock, std::optional<image::PyramidReader>& reader);
+  void tryAgain();
   void noteFault(const image::TilePlace& place, const std::string& what);
 
+  const Clock& clock_;
   mutable std::mutex mutex_;  // protects all up to thread_
   std::condition_variable_any changed_;
   std::shared_ptr<const Picture> picture_;
   std::deque<image::TilePlace> places_;      // still to load
+  std::vector<image::TilePlace> again_;      // asked for, and to be tried again
   std::optional<image::TilePlace> loading_;  // by the thread, now; of picture_
   std::deque<LoadedTile> loaded_;
-  std::set<image::TilePlace> unreadable_;  // of picture_
+  std::map<image::TilePlace, Timestamp> unreadable_;  // of picture_: when each was tried last
+  bool said_ = false;                                 // of picture_: that a tile cannot be read
   std::vector<std::string> faults_;
   WatchedThread thread_;
 };
