@@ -23,6 +23,7 @@ struct Request {
   std::map<std::string, std::string> headers;
   bool repeated = false;
   std::string body;
+  bool passed_on = false;  // it has one of kProxyHeaders
 
   // Empty if the request lacks it.
   const std::string& header(const std::string& name) const {
@@ -36,6 +37,11 @@ struct Request {
 inline constexpr const char* kKeptHeaders[] = {"host",           "origin",        "sec-fetch-site",
                                                "sec-fetch-mode", "authorization", "content-type",
                                                "if-none-match",  "accept"};
+
+// Headers by which a proxy says that it passes on the request of another machine. How often and
+// with which value does not matter.
+inline constexpr const char* kProxyHeaders[] = {
+    "forwarded", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip", "via"};
 
 struct Answer {
   unsigned status = 200;

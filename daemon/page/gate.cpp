@@ -78,7 +78,9 @@ std::optional<Answer> refuse(const Request& request, Needs needs, const GateSett
   const auto host = hostOf(request.header("host"));
   if (auto refused = refuseHost(request, host, settings)) return refused;
   if (auto refused = refuseSite(request)) return refused;
-  const bool free = needs == Needs::kReading && settings.loopback && isLoopbackHost(*host);
+  // A proxy on this machine has a loopback address, and may ask under a loopback name.
+  const bool free =
+      needs == Needs::kReading && settings.loopback && isLoopbackHost(*host) && !request.passed_on;
   if (needs == Needs::kNothing || free) return std::nullopt;
   return refuseToken(request, settings);
 }

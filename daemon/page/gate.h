@@ -19,7 +19,8 @@ struct GateSettings {
 // What a request needs.
 enum class Needs {
   kNothing,  // the page's own files, which hold nothing of the wall
-  kReading,  // free on loopback under a name of this machine; elsewhere with the token
+  kReading,  // free on loopback under a name of this machine, unless a proxy passes it on;
+             // elsewhere with the token
   kCommand   // always with the token
 };
 

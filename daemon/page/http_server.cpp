@@ -73,7 +73,9 @@ MHD_Result queue(MHD_Connection* connection, const Answer& answer) {
 
 void keepHeader(Request& request, std::string name, std::string_view value) {
   name = lowerCase(name);
-  if (std::ranges::none_of(kKeptHeaders, [&](const char* kept) { return name == kept; })) return;
+  const auto is = [&](const char* known) { return name == known; };
+  request.passed_on = request.passed_on || std::ranges::any_of(kProxyHeaders, is);
+  if (std::ranges::none_of(kKeptHeaders, is)) return;
   request.repeated = !request.headers.emplace(std::move(name), value).second || request.repeated;
 }
 
@@ -84,6 +86,7 @@ struct HttpServer::Client {
   Timestamp until{};     // closed then, unless a request was completed
   bool busy = false;     // a request is being answered
   bool closing = false;  // was closed here; the library will notice
+  TokenBucket own;       // its requests that no other client can use up
 };
 
 struct HttpServer::Exchange {
@@ -292,7 +295,11 @@ void HttpServer::accept() {
       ::close(fd);
       continue;
     }
-    clients_[fd] = {{peer, now, now, false}, now + limits_.patience, false, false};
+    clients_.insert_or_assign(fd, Client{{peer, now, now, false},
+                                         now + limits_.patience,
+                                         false,
+                                         false,
+                                         {limits_.own_per_s, limits_.own_burst}});
     count(&net::ServerReport::accepted, "");
     // From here on the library owns the descriptor, also if this fails.
     if (MHD_add_connection(library_, fd, reinterpret_cast<const sockaddr*>(&address), size) !=
@@ -320,7 +327,7 @@ bool HttpServer::admit(const net::Peer& peer, Timestamp now) {
   }
   if (decision.kind == net::Decision::Kind::kReplace) {
     const int victim = descriptors[decision.victim];
-    clients_[victim].closing = true;
+    clients_.at(victim).closing = true;
     ::shutdown(victim, SHUT_RDWR);
     count(&net::ServerReport::replaced,
           fmt::format("closed {} for a newcomer", net::peerName(occupants[decision.victim].peer)));
@@ -342,9 +349,16 @@ void HttpServer::closeSilent(Timestamp now) {
   }
 }
 
+// A client that asks for more than its own share takes from what is left for all.
+bool HttpServer::mayAsk(MHD_Connection* connection) {
+  const Timestamp now = clock_.now();
+  Client* const client = Library::clientOf(*this, connection);
+  return (client && client->own.take(1, now)) || request_tokens_.take(1, now);
+}
+
 std::optional<Answer> HttpServer::respond(Exchange& exchange) {
   ++requests_;
-  if (!request_tokens_.take(1, clock_.now()))
+  if (!mayAsk(exchange.connection))
     return errorAnswer(429, "there are too many requests; try again later");
   if (exchange.too_large)
     return errorAnswer(413, fmt::format("the content has more than {} bytes", kMostBodyBytes));

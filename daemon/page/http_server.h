@@ -32,7 +32,10 @@ struct HttpLimits {
   net::Places places{.all = 64, .per_peer = 48};
   Duration patience = std::chrono::seconds(15);  // from one request's end to that of the next one
   double accepts_per_s = 200, accepts_burst = 100;
-  double requests_per_s = 300, requests_burst = 300;  // of all clients; more are answered by 429
+  // Requests that each connection may send whatever the others do, and how many beyond those all of
+  // them may send together; what is more is answered by 429.
+  double own_per_s = 20, own_burst = 10;
+  double requests_per_s = 300, requests_burst = 300;
 };
 
 // Thread-bound except for report().
@@ -72,6 +75,7 @@ class HttpServer {
   bool admit(const net::Peer& peer, Timestamp now);
   void closeSilent(Timestamp now);
   void count(std::uint64_t net::ServerReport::*counter, const std::string& last);
+  bool mayAsk(MHD_Connection* connection);
   std::optional<Answer> respond(Exchange& exchange);
 
   UniqueFd listener_;

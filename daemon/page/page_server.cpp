@@ -49,6 +49,13 @@ rfb::View viewOf(const std::string& name) {
 Answer pictureAnswer(const MadePicture& picture) {
   Answer answer{200, "image/jpeg", picture.jpeg, {}};
   answer.headers.emplace_back("X-Picture-Number", std::to_string(picture.number));
+  answer.headers.emplace_back("X-Picture-Size",
+                              fmt::format("{} {}", picture.width, picture.height));
+  if (const auto& at = picture.panel) {
+    answer.headers.emplace_back(
+        "X-Picture-Panel", fmt::format("{} {} {} {} {} {}", at->x, at->y, at->width, at->height,
+                                       at->to_frame_x, at->to_frame_y));
+  }
   return answer;
 }
 

@@ -138,7 +138,8 @@ void PictureMaker::make(const PictureKind& kind, const View& view) {
     ++made_;
     const auto found = std::ranges::find(kinds_, kind, &Kind::kind);
     if (found == kinds_.end()) return;
-    found->made = {next_++, std::move(bytes)};
+    found->made = {next_++, std::move(bytes), view.shown->width(), view.shown->height(),
+                   view.shown->panel()};
     found->changes = view.changes;
   }
   const std::uint64_t one = 1;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/panel_pointer.h"
 #include "daemon/base/unique_fd.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/rfb/shown_picture.h"
@@ -30,6 +31,8 @@ struct PictureKind {
 struct MadePicture {
   std::uint64_t number = 0;  // differs from that of every other picture; 0: there is none
   std::shared_ptr<const std::string> jpeg;
+  int width = 0, height = 0;                 // of the view, before it was made smaller [px]
+  std::optional<PanelPointer::Place> panel;  // where the view shows the operator's panel
 };
 
 // Thread-safe. The memory that it needs: for each view that is looked at a copy of the wall's

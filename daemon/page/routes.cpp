@@ -16,7 +16,8 @@ namespace merlin::page {
 namespace {
 
 // Commands with an argument that the page has controls for.
-constexpr std::string_view kControls[] = {"triangles", "rate", "align", "testcard", "move", "show"};
+constexpr std::string_view kControls[] = {"triangles", "rate", "align",           "testcard",
+                                          "move",      "show", "operator_pointer"};
 
 constexpr std::size_t kLongestView = 64;
 

@@ -43,11 +43,21 @@ async function request(path, options = {}) {
 
 export const getJson = async path => (await request(path)).json();
 
-// The next picture after number `after`: {blob, number}, or null if none came within a second.
+// The place of the operator's panel in a picture, as the header X-Picture-Panel has it.
+function panelOf(text) {
+  if (!text) return null;
+  const [x, y, width, height, to_frame_x, to_frame_y] = text.split(" ").map(Number);
+  return {x, y, width, height, to_frame_x, to_frame_y};
+}
+
+// The next picture after number `after`: {blob, number, size of its view [px], where the view shows the operator's
+// panel}, or null if none came within a second.
 export async function getPicture(view, width, after) {
   const response = await request(`/picture.jpg?view=${encodeURIComponent(view)}&width=${width}&after=${after}`);
   if (response.status === 204) return null;
-  return {blob: await response.blob(), number: response.headers.get("X-Picture-Number")};
+  const header = name => response.headers.get("X-Picture-" + name) || "";
+  return {blob: await response.blob(), number: header("Number"), size: header("Size").split(" ").map(Number),
+          panel: panelOf(header("Panel"))};
 }
 
 // The small picture of the content at this place of /api/contents.

@@ -39,6 +39,13 @@ export class FrameChart {
     this.frames = this.frames.concat(answer.frames).slice(-600);
   }
 
+  // Until there are newer ones.
+  clear() {
+    this.frames = [];
+    this.period_ms = 0;
+    this.draw();
+  }
+
   draw() {
     const {context, width} = prepared(this.canvas, this.height);
     const colour = colours(), height = this.height, base = height - 1;

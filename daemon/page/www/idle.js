@@ -50,15 +50,16 @@ export function scheduleText(next, now = new Date()) {
   return `Next by the schedule: ${next.on ? "on" : "off"}, ${when} at ${time}`;
 }
 
+// `wall`: null while no wall runs.
 export function showIdle(wall) {
-  byId("playlist-state").textContent = playlistText(wall);
+  byId("playlist-state").textContent = wall ? playlistText(wall) : "–";
   for (const button of document.querySelectorAll("[data-playlist]")) {
-    const on = wall.playlist !== "off";
+    const now = wall && (wall.playlist === "off" ? "off" : "on");
     if (button.dataset.playlist !== "next")
-      button.setAttribute("aria-pressed", String((button.dataset.playlist === "on") === on));
+      button.setAttribute("aria-pressed", String(button.dataset.playlist === now));
   }
-  byId("command-blank").setAttribute("aria-pressed", String(wall.shown === "blank"));
-  byId("command-freeze").setAttribute("aria-pressed", String(wall.shown === "frozen"));
+  byId("command-blank").setAttribute("aria-pressed", String(Boolean(wall) && wall.shown === "blank"));
+  byId("command-freeze").setAttribute("aria-pressed", String(Boolean(wall) && wall.shown === "frozen"));
 }
 
 // `item`: makes a line of a list.
@@ -68,7 +69,7 @@ export function showProjectors(status, item) {
     const [words, more, health] = projectorText(p);
     return item(health, name, words, more);
   }));
-  byId("projectors-none").hidden = all.length > 0;
+  byId("projectors-none").hidden = !status || all.length > 0;
   byId("projector-buttons").hidden = all.length === 0;
   const next = status && status.projector_schedule;
   byId("projectors-next").textContent = next ? scheduleText(next) : "";

@@ -1,11 +1,12 @@
 // The operator's page: shows what both roles report, and sends commands.
 
 import {Alignment} from "./align.js";
-import {command, getJson, getPicture, setToken, takeTokenFromAddress, token, tokenIsGood} from "./api.js";
+import {command, getJson, setToken, takeTokenFromAddress, token, tokenIsGood} from "./api.js";
 import {FrameChart, drawHistogram} from "./chart.js";
 import {Contents} from "./contents.js";
 import {showIdle, showProjectors} from "./idle.js";
 import {makePhone} from "./phone.js";
+import {Picture} from "./picture.js";
 import {failedServices} from "./services.js";
 
 const byId = id => document.getElementById(id);
@@ -16,9 +17,9 @@ const state = {
   status: null,       // /api/status
   online: true,
   refused: "",        // why reading was refused
-  view: "wall",
+  crowded: false,     // others ask so much that this page was not answered
   events: 0,          // number of the newest event
-  used: {},           // sliders that are being used, and until when they stay where they are
+  used: {},           // sliders that are being used, and until when they stay where they are [ms]
 };
 const chart = new FrameChart(byId("frames"), 150);
 
@@ -39,6 +40,8 @@ function showBanners() {
   if (!state.online) banners.push(["bad", "The page's server does not answer. This page tries again."]);
   else if (state.refused) banners.push(["bad", state.refused]);
   else {
+    if (state.crowded)
+      banners.push(["warn", "Others ask the page's server for too much, and it did not answer this page; what is shown may be old. This page tries again."]);
     if (roles.wall && !roles.wall.running)
       banners.push(["bad", "The role wall does not run: no merlind shows a wall. The page shows it again as soon as it runs."]);
     else if (roles.wall && roles.wall.status && roles.wall.age_s > 4)
@@ -68,7 +71,7 @@ function setOpen(open) {
   for (const control of document.querySelectorAll(".command")) control.disabled = !open;
   byId("screen").classList.toggle("open", open);
   byId("align-plane").classList.toggle("locked", !open);
-  byId("move-hint").textContent = open ? "Drag in the picture to turn the model." : "Unlock to move the model.";
+  picture.showHint();
 }
 
 async function checkToken() {
@@ -233,7 +236,8 @@ const range = detail => Math.max(detail.full_cost / leastCost(detail), 1.001);
 const costOf = (place, detail) => Math.round(leastCost(detail) * range(detail) ** (place / 1000));
 const placeOf = (cost, detail) => Math.round(1000 * Math.log(Math.max(cost / leastCost(detail), 1)) / Math.log(range(detail)));
 
-const isUsed = id => document.activeElement === byId(id) && Date.now() < (state.used[id] || 0);
+// Not by the keyboard's focus: not every browser gives it to a slider that is dragged.
+const isUsed = id => Date.now() < (state.used[id] || 0);
 
 function showDetail(wall) {
   const detail = wall.detail || {};
@@ -265,6 +269,7 @@ function showContents(wall) {
   byId("content-name").textContent = [now.name, now.slide, now.kind].filter(Boolean).join(" · ") +
       (now.refused ? " · refused: " + now.refused : "");
   contents.mark(now.name);
+  picture.showHint();
 }
 
 async function showContent(name) {
@@ -283,6 +288,17 @@ function showFrames(wall) {
   if (wall.work_histogram) drawHistogram(byId("work"), wall.work_histogram, 70);
 }
 
+// What was known of a wall that is gone would be taken for present.
+function showNoWall() {
+  for (const id of ["rate-value", "triangles-value"]) byId(id).textContent = "–";
+  for (const id of ["detail-facts", "content-name", "frames-legend", "frame-facts"]) byId(id).replaceChildren();
+  byId("triangles-auto").setAttribute("aria-pressed", "false");
+  contents.mark(null);
+  chart.clear();
+  drawHistogram(byId("work"), new Array(32).fill(0), 70);
+  picture.showHint();
+}
+
 function showStatus() {
   const wall = wallStatus();
   showBanners();
@@ -293,9 +309,9 @@ function showStatus() {
   byId("head-rate").textContent = wall ? number(wall.rate_held, 0) : "–";
   byId("head-late").textContent = wall ? number(wall.late_percent_1min, 1) : "–";
   if (byId("everything").open) byId("raw").textContent = JSON.stringify(state.status, null, 2);
-  if (!wall) return;
-  showDetail(wall);
   showIdle(wall);
+  if (!wall) return showNoWall();
+  showDetail(wall);
   showContents(wall);
   showFrames(wall);
 }
@@ -305,6 +321,7 @@ function showStatus() {
 // Whether the server answered; says in a banner if it did not.
 function failed(error) {
   state.online = error.status !== 0;
+  state.crowded = error.status === 429;
   state.refused = error.status === 401 ? "Reading needs the token at this address. Use the button Locked." :
       error.status >= 400 && error.status !== 429 && error.status !== 503 ? error.message : "";
   if (error.status === 401 && token()) setOpen(false);
@@ -316,6 +333,7 @@ async function readStatus() {
     state.status = await getJson("/api/status");
     state.online = true;
     state.refused = "";
+    state.crowded = false;
     showStatus();
     return true;
   } catch (error) {
@@ -325,6 +343,7 @@ async function readStatus() {
 }
 
 async function readFrames() {
+  if (!wallStatus()) return;
   const answer = await getJson("/api/frames?since=" + chart.next);
   chart.add(answer);
   chart.draw();
@@ -350,113 +369,16 @@ async function readEvents() {
   while (log.children.length > 200) log.lastChild.remove();
 }
 
-// ---- the picture ------------------------------------------------------------------------------
-
-let picture_seen = true, picture_url = "";
-new IntersectionObserver(entries => { picture_seen = entries.at(-1).isIntersecting; }).observe(byId("screen"));
-
-const kWidths = [320, 640, 960, 1280, 1920];
-const kAskAgain = 5000;  // ms until a size that the server refused is asked for again
-
-function pictureWidth() {
-  const wanted = byId("screen").clientWidth * Math.min(devicePixelRatio || 1, 2);
-  return kWidths.find(width => width >= wanted) || kWidths.at(-1);
-}
-
-// The next picture: in a smaller size while the server makes no more sizes of it, for others look
-// at too many. Fails with what the server says if it makes not even the smallest.
-const refused_until = {};  // by view and width
-async function nextPicture(view, after) {
-  const widths = kWidths.slice(0, kWidths.indexOf(pictureWidth()) + 1), least = widths[0];
-  for (const width of widths.reverse()) {
-    const size = view + " " + width;
-    if (width !== least && Date.now() < (refused_until[size] || 0)) continue;
-    try {
-      return await getPicture(view, width, after);
-    } catch (error) {
-      if (error.status !== 503 || width === least) throw error;
-      refused_until[size] = Date.now() + kAskAgain;
-    }
-  }
-}
-
-function showPictureFault(text) {
-  byId("picture-fault").textContent = text;
-  byId("picture-fault").hidden = !text;
-}
-
-async function showPictures() {
-  let after = 0;  // no two pictures have the same number, whatever their view and size
-  for (;;) {
-    if (document.hidden || !picture_seen || !state.online) {
-      await wait(300);
-      continue;
-    }
-    try {
-      const picture = await nextPicture(state.view, after);
-      showPictureFault("");
-      if (!picture) continue;
-      await drawPicture(picture.blob);
-      after = picture.number;
-    } catch (error) {
-      if (error.status === 503) showPictureFault(error.message);
-      await wait(1000);
-    }
-  }
-}
-
-async function drawPicture(blob) {
-  const url = URL.createObjectURL(blob), image = new Image();
-  image.src = url;
-  await image.decode();
-  byId("picture").src = url;
-  byId("screen").style.aspectRatio = `${image.naturalWidth} / ${image.naturalHeight}`;
-  if (picture_url) URL.revokeObjectURL(picture_url);
-  picture_url = url;
-}
-
-function makePicture() {
-  for (const button of byId("views").children) {
-    button.onclick = () => {
-      state.view = button.dataset.view;
-      for (const other of byId("views").children) other.setAttribute("aria-pressed", String(other === button));
-    };
-  }
-  for (const button of document.querySelectorAll("[data-move]"))
-    button.onclick = () => run("move", button.dataset.move);
-  let from = null, turn = [0, 0], sending = false;
-  const screen = byId("screen");
-  // Motion while a command is under way adds up to the next one, so that nothing piles up.
-  const send = async () => {
-    if (sending || (!turn[0] && !turn[1])) return;
-    sending = true;
-    const [x, y] = turn.splice(0, 2, 0, 0);
-    await run("move", `0 0 0 ${y.toFixed(2)} ${x.toFixed(2)} 0`);
-    sending = false;
-    send();
-  };
-  screen.addEventListener("pointerdown", event => {
-    if (!state.open || !event.isPrimary) return;
-    event.preventDefault();
-    screen.setPointerCapture(event.pointerId);
-    from = [event.clientX, event.clientY];
-  });
-  screen.addEventListener("pointermove", event => {
-    if (!from || !event.isPrimary) return;
-    const scale = 180 / screen.clientHeight;  // 180 degrees over the picture's height
-    turn = [turn[0] + (event.clientX - from[0]) * scale, turn[1] + (event.clientY - from[1]) * scale];
-    from = [event.clientX, event.clientY];
-    send();
-  });
-  for (const end of ["pointerup", "pointercancel"]) screen.addEventListener(end, () => { from = null; });
-}
-
 // ---- sliders ----------------------------------------------------------------------------------
 
+// A slider that is pressed or was used just now stays where the person put it.
 function makeSlider(id, name, argumentOf, textOf) {
   const slider = byId(id);
+  slider.addEventListener("pointerdown", () => { state.used[id] = Infinity; });
+  for (const end of ["pointerup", "pointercancel"])
+    slider.addEventListener(end, () => { state.used[id] = Date.now() + 1500; });
   slider.oninput = () => {
-    state.used[id] = Date.now() + 3000;
+    state.used[id] = Math.max(state.used[id] || 0, Date.now() + 3000);
     byId(id + "-value").textContent = textOf(Number(slider.value));
   };
   slider.onchange = async () => {
@@ -490,12 +412,13 @@ async function repeat(read, period) {
 
 const alignment = new Alignment(run);
 const contents = new Contents(byId("contents"), showContent);
+const picture = new Picture(run, {open: () => state.open, online: () => state.online,
+                                  kind: () => wallStatus() ? shownContent(wallStatus()).kind : ""});
 const shownDetail = () => wallStatus() && wallStatus().detail || {unit: "triangles", full_cost: kLeastArgument, least_cost: kLeastArgument};
 
 async function begin() {
   takeTokenFromAddress();
   makeTokenDialog();
-  makePicture();
   makePlacedButtons();
   makePhone(error => {
     if (error.status === 401) setOpen(false);
@@ -521,7 +444,7 @@ async function begin() {
     if (wallStatus()) contents.mark(shownContent(wallStatus()).name);
   }, 3000);
   repeat(() => state.open ? alignment.refresh() : null, 2000);
-  showPictures();
+  picture.show();
   addEventListener("resize", () => { chart.draw(); alignment.draw(); });
   addEventListener("hashchange", async () => {
     takeTokenFromAddress();
