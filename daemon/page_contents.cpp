@@ -21,7 +21,7 @@ const char* kindOf(const ContentEntry& entry) {
 
 Result<page::ReadPicture> readPicture(const ContentEntry& entry) {
   std::vector<std::string> skipped;
-  const auto content = wall::readContent(entry, {}, "", skipped);
+  const auto content = wall::readContent(entry, {}, {}, skipped);
   if (!content) return content.error();
   const auto& picture = *std::get<std::shared_ptr<const render::content::Picture>>(content->data);
   auto image = render::image::readOverview(picture.file);

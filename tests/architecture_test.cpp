@@ -261,7 +261,7 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"archive.h", {"daemon/cli/report"}},
     {"curses.h", {"daemon/cli/watch"}},
     {"archive_entry.h", {"daemon/cli/report"}},
-    {"zip.h", {"render/correct/io"}},
+    {"zip.h", {"render/correct/io", "render/import"}},
     {"pugixml.hpp", {"render/correct/io"}},
     {"xxhash.h", {"render/lod/io"}},
     {"rfb/rfb.h", {"daemon/rfb"}},

@@ -12,6 +12,7 @@
 #include "daemon/actions/pinch.h"
 #include "daemon/actions/settings.h"
 #include "daemon/base/commands.h"
+#include "drivers/port/held_ball.h"
 #include "tests/support/local_devices.h"
 #include "tests/support/recording_sink.h"
 
@@ -353,6 +354,47 @@ TEST_F(ActionsTest, WhatRepeatsDoesSoWhileItsInputIsHeld) {
   w.update(at(ball(0), 1200));
   w.adopt(5'000'000'000);
   EXPECT_EQ(read().all.begun[kNextMode], 0u);
+}
+
+// A gamepad sends nothing while a button is held.
+TEST_F(ActionsTest, WhatRepeatsOrWaitsIsInTimeWithADeviceThatIsSilent) {
+  Binding next{"ball.button.1", "next_mode"};
+  next.repeat_s = 0.1;
+  Binding later{"ball.button.1", "reset_view"};
+  later.after_s = 0.6;
+  test::RecordingSink samples;
+  test::RecordingHealth healths;
+  ActionSink sink(writer({next, later}, test::kBall),
+                  {nullptr, samples, healths, std::chrono::milliseconds(500)});
+  HeldBall held(sink);
+  Timestamp now{std::chrono::seconds(10)};
+  EXPECT_EQ(sink.due(), Timestamp::max());
+  EXPECT_EQ(held.wait(now), std::chrono::milliseconds(250));
+  (void)read();
+  held.sample().buttons = 1;
+  held.publish(now);
+  const auto beginsUntil = [&](Timestamp end, std::size_t action, Duration late) {
+    while (now + held.wait(now) <= end) {
+      now += held.wait(now) + late;
+      held.hold(now);
+    }
+    return read().all.begun[action];
+  };
+  const Timestamp pressed = now;
+  EXPECT_EQ(beginsUntil(pressed + std::chrono::milliseconds(599), kReset, {}), 0u);
+  EXPECT_EQ(beginsUntil(pressed + std::chrono::milliseconds(600), kReset, {}), 1u);
+  EXPECT_EQ(beginsUntil(pressed + std::chrono::milliseconds(2050), kNextMode,
+                        std::chrono::milliseconds(9)),
+            14u)
+      << "each tenth of a second, without the delays adding up";
+  now += std::chrono::seconds(5);
+  held.hold(now);
+  held.hold(now);
+  EXPECT_EQ(read().all.begun[kNextMode], 1u) << "no burst after a pause";
+  held.sample().buttons = 0;
+  held.publish(now);
+  EXPECT_EQ(sink.due(), Timestamp::max());
+  EXPECT_EQ(samples.ball.size(), 2u);
 }
 
 TEST_F(ActionsTest, AnAxisThatIsPushedIsAnInput) {

@@ -188,11 +188,13 @@ TEST_F(DeviceFeedTest, GivesTheActionsOfDevicesThatWork) {
   };
   begin("next_content");
   EXPECT_EQ(read().next_content, 0u) << "it began before the wall looked";
-  for (const char* name : {"next_content", "snapshot", "snapshot", "reset_view", "next_mode",
-                           "blank", "freeze", "freeze", "grab", "fly", "point_at"})
+  for (const char* name :
+       {"next_content", "previous_content", "previous_content", "snapshot", "snapshot",
+        "reset_view", "next_mode", "blank", "freeze", "freeze", "grab", "fly", "point_at"})
     begin(name);
   const WallInput input = read();
   EXPECT_EQ(input.next_content, 1u);
+  EXPECT_EQ(input.previous_content, 2u);
   EXPECT_EQ(input.snapshot, 2u);
   EXPECT_EQ(input.blank, 1u);
   EXPECT_EQ(input.freeze, 2u);

@@ -158,6 +158,33 @@ TEST(FlightRecorder, WhatItDumpsReplays) {
                            std::begin(bench.sink.glove[i].raw)));
 }
 
+TEST(FlightRecorder, AFaultThatRecursIsDumpedOnce) {
+  const test::TempDir dir;
+  const auto segment = std::make_unique<shm::DevicesSegment>();
+  FlightRecorder recorder(*segment, dir / "flight", "lab");
+  (void)recorder.ringOf(test::kBall, "ball", "spaceball", 9600);
+  std::int64_t now_ns = 1'000'000'000'000;
+  // The number of dumps of a device that works for this time and fails.
+  const auto dumpsOf = [&](Duration works, const char* reason) {
+    DeviceHealth health{};
+    health.state = HealthState::kOk;
+    health.since_ns = now_ns;
+    segment->health[test::kBall].publish(health);
+    EXPECT_TRUE(recorder.check().empty());
+    now_ns += works.count();
+    health.state = HealthState::kFailed;
+    health.since_ns = now_ns;
+    std::snprintf(health.reason, sizeof health.reason, "%s", reason);
+    segment->health[test::kBall].publish(health);
+    return recorder.check().size();
+  };
+  EXPECT_EQ(dumpsOf(milliseconds(300), "a length of 7"), 1u);
+  EXPECT_EQ(dumpsOf(milliseconds(300), "a length of 7"), 0u);
+  EXPECT_EQ(dumpsOf(milliseconds(300), "a length of 8"), 1u);
+  EXPECT_EQ(dumpsOf(milliseconds(4900), "a length of 8"), 0u);
+  EXPECT_EQ(dumpsOf(milliseconds(5000), "a length of 8"), 1u) << "it has worked meanwhile";
+}
+
 TEST(FlightRecorder, KeepsEightDumpsOfADevice) {
   const test::TempDir dir;
   const auto segment = std::make_unique<shm::DevicesSegment>();

@@ -79,6 +79,32 @@ TEST(ModelWatch, OffersTheNewestOfAPlaceAndSaysWhyOneIsRefused) {
   EXPECT_NE(events.front().find("is there again"), std::string::npos) << events.front();
 }
 
+// A folder is read for each slide; what is not shown of it is said once for as long as it is so.
+TEST(ModelWatch, SaysOnceWhatAFolderOfSlidesHasThatIsNotShown) {
+  ThreadWatch watch;
+  const SystemClock clock;
+  MissingContents missing({});
+  const auto make = [](std::size_t, const std::string& path) -> Result<ReadyModel> {
+    return Error{Errc::kIo, path};
+  };
+  ModelWatch models({{"/talk/a.tif", {}, "picture", "", "z.jpg is no pyramid"}}, make, missing,
+                    watch, clock);
+  const auto offer = [&](const std::string& path, const std::string& left_out) {
+    ReadyModel slide;
+    slide.path = path;
+    slide.is_slide = true;
+    slide.left_out = left_out;
+    models.offer(std::move(slide));
+    return test::told(models.takeEvents());
+  };
+  EXPECT_EQ(test::told(models.takeEvents()), test::Sentences{"fault: z.jpg is no pyramid"});
+  EXPECT_EQ(offer("/talk/b.tif", "z.jpg is no pyramid"), test::Sentences{});
+  EXPECT_EQ(offer("/other/a.tif", "z.jpg is no pyramid").size(), 1U) << "another folder";
+  EXPECT_EQ(offer("/talk/c.tif", "y.jpg, z.jpg are no pyramids").size(), 1U);
+  EXPECT_EQ(offer("/talk/a.tif", "").size(), 0U);
+  EXPECT_EQ(offer("/talk/b.tif", "z.jpg is no pyramid").size(), 1U) << "it is there again";
+}
+
 TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {
   const test::TempDir dir;
   const std::string folder = dir / "slides", file = dir / "late";

@@ -34,7 +34,7 @@ class OperatorFactsTest : public testing::Test {
   test::FakeClock clock_;
   std::unique_ptr<shm::WallSegment> wall_ = std::make_unique<shm::WallSegment>();
   MessageBoard board_;
-  OperatorFactsReader reader_{*wall_, "/merlin-test-no-such-devices", board_};
+  OperatorFactsReader reader_{*wall_, "/merlin-test-no-such-devices", false, board_};
 };
 
 TEST_F(OperatorFactsTest, AWallWithoutAFrameHasNoFacts) {
@@ -67,6 +67,29 @@ TEST_F(OperatorFactsTest, RateDetailContentModeAndPostureComeFromTheSlots) {
   EXPECT_EQ(facts.posture, "fist");
   EXPECT_EQ(facts.content, "talk");
   EXPECT_EQ(facts.slide, "03.tif");
+}
+
+// The governor's budget is that of the machine, not of the picture.
+TEST_F(OperatorFactsTest, OfASmallPictureTheBudgetIsAllOfItAndTheBallMovesThePicture) {
+  shm::WallStats stats{};
+  stats.cost = stats.full_cost = 2'400, stats.budget = 933'359;
+  std::strcpy(stats.mode, "fly");
+  wall_->stats.publish(stats);
+  shm::WallContent content{};
+  std::strcpy(content.kind, "picture");
+  wall_->content.publish(content);
+  EXPECT_EQ(read().budget, 2'400U);
+  EXPECT_EQ(read().mode, "moves the picture");
+  std::strcpy(content.kind, "panorama");
+  wall_->content.publish(content);
+  EXPECT_EQ(read().mode, "turns the view");
+}
+
+// The devices' role may not run; a wall that has no devices misses none.
+TEST_F(OperatorFactsTest, DevicesAreMissingOnlyWhereThereAreToBeSome) {
+  EXPECT_FALSE(read().devices_missing);
+  OperatorFactsReader expecting(*wall_, "/merlin-test-no-such-devices", true, board_);
+  EXPECT_TRUE(expecting.read(clock_.now()).devices_missing);
 }
 
 TEST_F(OperatorFactsTest, TheChartHasMovingFramesAndMarksTheLateOne) {

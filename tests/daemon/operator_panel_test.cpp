@@ -105,6 +105,14 @@ TEST_F(OperatorPanelTest, ShowsTheWallsStateAndPublishesItsPlace) {
   EXPECT_EQ(f.projectors, "warming");
 }
 
+TEST_F(OperatorPanelTest, ShowsNoMoreDetailThanThePictureHas) {
+  shm::WallStats stats{};
+  stats.budget = 933'359, stats.full_cost = 2'400;
+  wall_->stats.publish(stats);
+  frame();
+  EXPECT_EQ(panel_.view().facts.detail, 2'400U);
+}
+
 TEST_F(OperatorPanelTest, AClickAsksForACommandAndIsATouch) {
   frame();
   attendance_.toggleFreeze();

@@ -36,6 +36,7 @@ class Day : public testing::Test {
   using Act = std::function<void(Attendance&)>;
   std::map<int, Act> commands;
   std::function<bool(int)> pushed = [](int) { return false; };
+  std::function<std::uint32_t(int)> fingers = [](int) { return 0U; };  // on a touch surface
 
   // What happened, second by second: "HH:MM:SS WHAT".
   std::vector<std::string> run(const PlaylistSettings& playlist, int until = at(24, 0)) {
@@ -48,6 +49,7 @@ class Day : public testing::Test {
       WallInput input;
       input.scene.ball.emplace();
       input.scene.ball->rotation[1] = pushed(second) ? 0.5F : 0.0F;
+      input.scene.touch.fingers = fingers(second);
       const auto frame = attendance.update(input, Timestamp(seconds(100 + second)));
       const Seen now = seen(attendance, frame, input);
       for (const std::string& what : changes(before, now)) {
@@ -135,6 +137,14 @@ TEST_F(Day, WithVisitorsAnOperatorAndNights) {
 }
 
 TEST_F(Day, WithoutAPlaylistNothingHappens) { EXPECT_TRUE(run({}).empty()); }
+
+TEST_F(Day, AnObjectThatStandsOnATouchSurfaceKeepsNothingAway) {
+  fingers = [](int s) { return s >= 60 ? 1U : 0U; };
+  PlaylistSettings s = settings();
+  s.dim_after_s = 600;
+  EXPECT_EQ(run(s, at(1, 0)),
+            (std::vector<std::string>{"00:06:00 begins", "00:06:00 turns", "00:11:03 light 0.25"}));
+}
 
 TEST_F(Day, ThePictureIsDimmedWithoutAPlaylistToo) {
   PlaylistSettings s = settings();

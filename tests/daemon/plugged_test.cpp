@@ -197,5 +197,14 @@ TEST(LiveTable, ShowsWhatWorkingDevicesMeasureAndWhyOthersDoNot) {
   EXPECT_NE(text.find("buttons  1 12\n"), std::string::npos) << text;
 }
 
+TEST(LiveTable, ShowsWhatADeviceThatWorksComplainsOf) {
+  test::LocalDevices devices;
+  devices->health[test::kBall].publish(
+      health(HealthState::kOk, "pad, 8 axes", "it has no axis throttle"));
+  const std::string text = liveTable(devices.slots(), fromNanoseconds(1'100'000'000));
+  EXPECT_NE(text.find("20.0 Hz  pad, 8 axes; it has no axis throttle\n"), std::string::npos)
+      << text;
+}
+
 }  // namespace
 }  // namespace merlin::cli

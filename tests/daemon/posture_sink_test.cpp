@@ -99,6 +99,18 @@ TEST_F(PostureSinkTest, WithoutANetworkNoPostureIsSeen) {
 }
 
 // The newest of three stations, and the line's own counters.
+TEST(ContinuedCounts, PassOnWhatIsDue) {
+  test::RecordingSink samples;
+  test::RecordingHealth healths;
+  ContinuedCounts counts(samples, healths);
+  EXPECT_EQ(counts.due(), Timestamp::max());
+  const Timestamp due{std::chrono::seconds(7)};
+  samples.due_at = due;
+  EXPECT_EQ(counts.due(), due);
+  counts.tick(due);
+  EXPECT_EQ(samples.ticks, std::vector{due});
+}
+
 TEST(ContinuedCounts, GoOnWhereTheDeviceIsMadeAnew) {
   test::RecordingSink samples;
   test::RecordingHealth healths;

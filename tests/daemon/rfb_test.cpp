@@ -151,7 +151,8 @@ TEST(RfbCard, WritesInTheMiddleOfAnySize) {
   }
 }
 
-constexpr std::uint32_t kShift = 0xFFE1, kArrowRight = 0xFF53, kHomeKey = 0xFF50;
+constexpr std::uint32_t kShift = 0xFFE1, kArrowRight = 0xFF53, kHomeKey = 0xFF50,
+                        kPageUpKey = 0xFF55;
 
 TEST(RfbInput, ADragTurnsByHalfATurnOverThePicturesHeight) {
   InputMap map;
@@ -196,6 +197,10 @@ TEST(RfbInput, KeysAreCommandsAndDoNotRepeatWhileHeld) {
   EXPECT_EQ(map.take(), (Request{"next_content"}));
   EXPECT_EQ(map.take(), (Request{"reset_view"}));
   EXPECT_FALSE(map.take());
+  for (const std::uint32_t key : {kPageUpKey, std::uint32_t{'p'}}) {
+    map.key(key, true);
+    EXPECT_EQ(map.take(), (Request{"previous_content"}));
+  }
   for (int i = 0; i < 3; ++i) map.key(kArrowRight, true);  // arrows do
   map.key('+', true);
   EXPECT_EQ(map.take(), (Request{"move", "0.0000 0.0000 0.1000 0.000 15.000 0.000"}));

@@ -67,7 +67,7 @@ class Folder : public testing::Test {
   }
   std::string whyUnread(const ContentEntry& entry) const {
     std::vector<std::string> skipped;
-    const auto read = readContent(entry, {}, "", skipped);
+    const auto read = readContent(entry, {}, {}, skipped);
     return read ? "" : read.error().what;
   }
   void expectFault(const std::string& name, const std::string& part) const {

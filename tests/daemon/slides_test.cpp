@@ -17,15 +17,24 @@ class Slides : public testing::Test {
   }
   void damage(const std::string& name) const { test::writeText(dir_ / (name + ".tif"), "damaged"); }
 
-  // "b" or "c, the last"; or the error.
-  std::string next(const std::string& after) {
+  Result<WallContent> read(const std::string& from, bool back = false) {
     skipped_.clear();
     const ContentEntry entry{"", "talk", dir_.path(), ContentKind::kSlides, {}};
-    const auto read =
-        readContent(entry, {}, after.empty() ? "" : dir_ / (after + ".tif"), skipped_);
-    if (!read) return read.error().what;
-    return std::filesystem::path(read->file).stem().string() +
-           (read->is_last_slide ? ", the last" : "");
+    return readContent(entry, {}, {from.empty() ? "" : dir_ / (from + ".tif"), back}, skipped_);
+  }
+  // "b" or "c, the last"; or the error.
+  std::string next(const std::string& after) {
+    const auto slide = read(after);
+    if (!slide) return slide.error().what;
+    return std::filesystem::path(slide->file).stem().string() +
+           (slide->is_last_slide ? ", the last" : "");
+  }
+  // "b" or "a, the first".
+  std::string previous(const std::string& before) {
+    const auto slide = read(before, true);
+    if (!slide) return slide.error().what;
+    return std::filesystem::path(slide->file).stem().string() +
+           (slide->is_first_slide ? ", the first" : "");
   }
 
   test::TempDir dir_;
@@ -57,6 +66,42 @@ TEST_F(Slides, TheLastOneThatCanBeShownIsTheLast) {
   ASSERT_EQ(skipped_.size(), 3U) << "the others do not come up any more";
   EXPECT_NE(skipped_[0].find("aa.tif: is not a TIFF file"), std::string::npos) << skipped_[0];
   EXPECT_EQ(next("b"), "a") << "from the beginning";
+}
+
+TEST_F(Slides, GoBackInTheSameOrder) {
+  for (const char* const name : {"c", "a", "b"}) put(name);
+  EXPECT_EQ(previous("c"), "b");
+  EXPECT_EQ(previous("b"), "a, the first");
+  EXPECT_EQ(previous("a"), "c") << "from the end";
+  EXPECT_TRUE(read("", false)->is_first_slide);
+  EXPECT_TRUE(read("b", false)->is_last_slide);
+  EXPECT_FALSE(read("c", true)->is_last_slide);
+  put("bb");
+  EXPECT_EQ(previous("c"), "bb") << "one that is put between is noticed";
+}
+
+TEST_F(Slides, TheFirstOneThatCanBeShownIsTheFirst) {
+  for (const char* const name : {"c", "d"}) put(name);
+  for (const char* const name : {"a", "b", "cc"}) damage(name);
+  EXPECT_EQ(previous("d"), "c, the first");
+  EXPECT_EQ(skipped_.size(), 3U) << "cc on the way, and those before it";
+  EXPECT_EQ(previous("c"), "d");
+}
+
+TEST_F(Slides, OrdinaryPicturesAmongThemAreNamed) {
+  put("a");
+  EXPECT_EQ(read("")->left_out, "");
+  test::writeText(dir_ / "z.jpg", "");
+  test::writeText(dir_ / ".thumb.jpg", "");
+  test::writeText(dir_ / "notes.txt", "");
+  EXPECT_EQ(read("")->left_out, dir_.path() +
+                                    ": z.jpg is no pyramid, so it is not shown: merlin "
+                                    "image import z.jpg -o z.tif makes one");
+  for (const char* const name : {"p.PNG", "q.jpeg", "r.webp"}) test::writeText(dir_ / name, "");
+  EXPECT_EQ(read("")->left_out,
+            dir_.path() +
+                ": p.PNG, q.jpeg, r.webp and 1 more are no pyramids, so they are not "
+                "shown: merlin image import p.PNG -o p.tif makes one");
 }
 
 TEST_F(Slides, AFolderWithoutAnyIsAnErrorThatSaysWhy) {

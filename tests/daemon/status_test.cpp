@@ -326,6 +326,42 @@ TEST_F(DocumentsTest, EventsAreToldOnce) {
   EXPECT_TRUE(events.take(kNow).empty());
 }
 
+TEST_F(DocumentsTest, AFaultThatRecursIsToldOnceUntilItChangesOrStaysAway) {
+  HealthEvents events(devices_.slots());
+  Timestamp now = kNow;
+  const auto enter = [&](HealthState state, const char* reason) {
+    DeviceHealth health = healthy("pad");
+    health.state = state;
+    health.since_ns = health.updated_ns = toNanoseconds(now);
+    std::snprintf(health.reason, sizeof health.reason, "%s", reason);
+    devices_->health[test::kBall].publish(health);
+    auto told = test::told(events.take(now));
+    now += milliseconds(1500);
+    return told;
+  };
+  const auto fails = [&](const char* reason) { return enter(HealthState::kFailed, reason); };
+  const auto works = [&] { return enter(HealthState::kOk, ""); };
+  const test::Sentences none, ok = {"ball: ok (pad)"};
+  EXPECT_EQ(works(), ok);
+  EXPECT_EQ(fails("a length of 7"), test::Sentences{"fault: ball: failed (a length of 7)"});
+  EXPECT_EQ(works(), ok);
+  EXPECT_EQ(fails("a length of 7"), test::Sentences{"fault: ball: failed (a length of 7)"})
+      << "the last that was said is how it is";
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(works(), none);
+    EXPECT_EQ(fails("a length of 7"), none);
+  }
+  EXPECT_EQ(works(), none);
+  EXPECT_EQ(fails("a length of 8"), test::Sentences{"fault: ball: failed (a length of 8)"});
+  DeviceHealth stays = healthy("pad");
+  stays.since_ns = toNanoseconds(now - seconds(5));
+  stays.updated_ns = toNanoseconds(now);
+  devices_->health[test::kBall].publish(stays);
+  EXPECT_EQ(test::told(events.take(now)), ok);
+  EXPECT_EQ(fails("a length of 8"), test::Sentences{"fault: ball: failed (a length of 8)"});
+  EXPECT_EQ(works(), ok) << "a fault after a while is another one";
+}
+
 // Uses real sockets in a temporary folder.
 class ServerTest : public testing::Test {
  protected:

@@ -10,6 +10,7 @@
 
 #include "config/loader.h"
 #include "daemon/net/connection_server.h"
+#include "drivers/vrpn/identity.h"
 #include "tests/support/eventually.h"
 #include "tests/support/vrpn_messages.h"
 #include "tests/support/vrpn_speaker.h"
@@ -165,6 +166,22 @@ TEST(VrpnServers, HostsAreNamedWithAndWithoutAPort) {
   EXPECT_EQ(vrpnPort("[::1]"), "tcp://[::1]:3883");
   for (const char* bad : {"", "*", "a b", "lab:port", "lab:0", "300.1.1.1", "tcp://", "a:b:1x"})
     EXPECT_FALSE(vrpnPort(bad)) << bad;
+}
+
+// By the identity that its driver told.
+TEST(VrpnServers, WhatARunningMerlindReadsIsKnown) {
+  const auto tracker = vrpnDeviceOf("eyes", kLab, vrpn::trackerIdentity("Wand0", "07.38"));
+  ASSERT_TRUE(tracker);
+  EXPECT_EQ(tracker->name + " " + tracker->line.driver + " " + tracker->line.port,
+            "eyes vrpn " + std::string(kLab));
+  EXPECT_EQ(tracker->own.vrpn.device, "Wand0");
+  const auto pad = vrpnDeviceOf("pad", kLab, vrpn::padIdentity("a at server version b", "07.38"));
+  ASSERT_TRUE(pad);
+  EXPECT_EQ(pad->line.driver, "vrpn_pad");
+  EXPECT_EQ(pad->own.vrpn_pad.device, "a at server version b");
+  EXPECT_FALSE(vrpnDeviceOf("glove", kLab, "CyberGlove, 22 sensors"))
+      << "a terminal server gets no word of VRPN";
+  EXPECT_FALSE(vrpnDeviceOf("eyes", kLab, "")) << "not opened yet";
 }
 
 TEST(VrpnServers, EachServerIsAskedOnce) {

@@ -192,6 +192,80 @@ TEST_F(WallAttendanceTest, ThePlaylistBeginsWithTheInitialViewOfAContentOfItsLis
   }
 }
 
+// `merlin show FILE` on a wall of two contents: the file is behind them.
+TEST_F(WallAttendanceTest, WhatAPersonHasShownIsTheFirstOfThePlaylistForAsLongAsEach) {
+  contents_.push_back({&detail_, &painter_});
+  listed_ = 2;
+  setPlaylist(2, 3, 0);
+  frames(7, [&](std::size_t frame) {
+    if (frame == 30) loop_->show(2);  // it begins 2 seconds later, with frame 91
+    if (frame == 89) {
+      EXPECT_EQ(interaction().playlist, shm::WallInteraction::kPlaylistWaiting);
+    }
+    if (frame == 178) {
+      EXPECT_EQ(interaction().content, 2u);
+      EXPECT_EQ(interaction().playlist, shm::WallInteraction::kPlaylistRunning);
+    }
+    if (frame == 185) {
+      EXPECT_EQ(interaction().content, 1u) << "the list goes on";
+    }
+  });
+}
+
+TEST_F(WallAttendanceTest, AContentThatIsNotInThePlaylistIsShownFirstIfAPersonChoseIt) {
+  setPlaylist(1, 2, 0);
+  playlist_places_ = {0};
+  const std::function<void()> choices[] = {
+      [&] { loop_->show(1); },
+      [&] { loop_->request(WallLoop::kNextContent); },
+      [&] { loop_->request(WallLoop::kPreviousContent); },
+      [&] { feed_.actions.next_content = 1; },
+      [&] { feed_.actions.previous_content = 1; },
+  };
+  for (const auto& choose : choices) {
+    feed_.begins.clear();
+    stop_ = std::stop_source();
+    frames(4, [&](std::size_t frame) {
+      if (frame == 10) choose();
+      if (frame == 95) {
+        EXPECT_EQ(interaction().content, 1u);
+        EXPECT_EQ(interaction().playlist, shm::WallInteraction::kPlaylistRunning);
+      }
+    });
+    EXPECT_EQ(interaction().content, 0u) << "for its time, and then no more";
+  }
+}
+
+// A model that took long to read comes while the playlist runs already.
+TEST_F(WallAttendanceTest, WhatComesLateIsShownAsLongAsWhatComesAtOnce) {
+  class Late final : public ContentSource {
+   public:
+    explicit Late(ShownContent content) : content_(content) {}
+    std::optional<Replacement> take(bool, const Eigen::Isometry3f&) override {
+      if (!std::exchange(due, false)) return std::nullopt;
+      return Replacement{2, content_, true, 7, {}, false};
+    }
+    bool due = false;
+
+   private:
+    ShownContent content_;
+  } late({&detail_, &painter_});
+  contents_.push_back({&detail_, &painter_});
+  listed_ = 2;
+  replacements_ = &late;
+  setPlaylist(1, 2, 0);
+  frames(7, [&](std::size_t frame) {
+    late.due = frame == 85;  // just before the next one's turn, after 3 seconds
+    if (frame == 87 || frame == 172) {
+      EXPECT_EQ(interaction().content, 2u) << frame;
+    }
+    if (frame == 87) {
+      EXPECT_EQ(interaction().playlist, shm::WallInteraction::kPlaylistWaiting);
+    }
+  });
+  EXPECT_NE(interaction().content, 2u);
+}
+
 TEST_F(WallAttendanceTest, APlaylistOfOneContentTurnsItOnWithoutAJump) {
   setPlaylist(1, 1, 10);
   playlist_places_ = {0};

@@ -119,6 +119,24 @@ TEST_F(WallContentsTest, ACommandDoesTheSame) {
   EXPECT_EQ(interaction().content, 1u);
 }
 
+// Behind the two contents of the list there is a file.
+TEST_F(WallContentsTest, ThePreviousOneIsTheOneThatTheNextOneCameFrom) {
+  contents_.push_back({&detail_, &dear_});
+  contents_.push_back({&detail_, &dear_});
+  contents_[2].missing = true;
+  listed_ = 3;
+  std::vector<std::uint32_t> shown;
+  run(7, [&](Timestamp) {
+    const auto frame = feed_.begins.size();
+    feed_.actions.next_content = frame == 30 ? 1 : 0;
+    feed_.actions.previous_content = frame == 60 || frame == 90 || frame == 150 ? 1 : 0;
+    if (frame == 120) loop_->show(3);
+    if (frame % 30 == 29 && shown.size() < 6) shown.push_back(interaction().content);
+  });
+  EXPECT_EQ(shown, (std::vector<std::uint32_t>{0, 1, 0, 1, 3, 1}))
+      << "in a circle without the one that is missing; before the file comes what was shown before";
+}
+
 // Has one other content for one place, when it is told to.
 class OneReplacement final : public ContentSource {
  public:
@@ -190,6 +208,21 @@ TEST_F(WallContentsTest, AStillWallWaitsForWhatIsBeingLoadedAndDrawsAgainWhenItH
   EXPECT_TRUE(stats().full_detail);
 }
 
+// A tile that could not be read at first is there after all.
+TEST_F(WallContentsTest, WhatComesAfterFullDetailIsDrawnToo) {
+  using render::content::Pending;
+  feed_.pushed = false;
+  int begun = 0;
+  run(6, [&](Timestamp) {
+    if (feed_.begins.size() != 100) return;
+    begun = painter_.refined;
+    EXPECT_TRUE(stats().full_detail);
+    painter_.left_out = Pending::kArrived;
+  });
+  EXPECT_EQ(painter_.refined, begun + 1);
+  EXPECT_TRUE(stats().full_detail);
+}
+
 // The second content has two parts; the next one comes when it is told to.
 class Slides final : public ContentSource {
  public:
@@ -200,9 +233,10 @@ class Slides final : public ContentSource {
     return Replacement{1, content_, true, 7, {}, false};
   }
   bool nextWithin(std::size_t place) override { return place == 1 && parts-- > 0; }
+  bool previousWithin(std::size_t place) override { return place == 1 && parts_before-- > 0; }
   void prepare(std::size_t place) override { prepared.push_back(place); }
 
-  int parts = 1;
+  int parts = 1, parts_before = 1;
   bool due = false, gone = false;
   std::vector<std::size_t> prepared;
 
@@ -225,6 +259,37 @@ TEST_F(WallContentsTest, SlidesComeOneAfterAnotherBeforeTheNextContent) {
   EXPECT_EQ(slides.parts, -1) << "asked for the last time after the second slide";
   ASSERT_GE(slides.prepared.size(), 2u);
   EXPECT_EQ(slides.prepared.back(), 0u);
+}
+
+TEST_F(WallContentsTest, BackwardsAllSlidesComeBeforeThePreviousContent) {
+  contents_.push_back({&detail_, &painter_});
+  Slides slides({&detail_, &dear_});
+  replacements_ = &slides;
+  first_content_ = 1;
+  run(4, [&](Timestamp) {
+    const auto frame = feed_.begins.size();
+    feed_.actions.previous_content = frame == 30 || frame == 60 ? 1 : 0;
+    if (frame == 31) slides.due = true;
+    if (frame == 59) {
+      EXPECT_EQ(interaction().content, 1u) << "the slide before";
+    }
+  });
+  EXPECT_EQ(interaction().content, 0u);
+  EXPECT_EQ(slides.parts_before, -1);
+  EXPECT_EQ(slides.parts, 1) << "nobody went forwards";
+}
+
+TEST_F(WallContentsTest, WhereNoSlideBeforeCanBeShownThePreviousContentFollows) {
+  contents_.push_back({&detail_, &painter_});
+  Slides slides({&detail_, &dear_});
+  replacements_ = &slides;
+  first_content_ = 1;
+  run(2, [&](Timestamp) {
+    const auto frame = feed_.begins.size();
+    feed_.actions.previous_content = frame == 30 ? 1 : 0;
+    if (frame == 31) slides.gone = true;
+  });
+  EXPECT_EQ(interaction().content, 0u);
 }
 
 TEST_F(WallContentsTest, WhereNoFurtherSlideCanBeShownTheNextContentFollows) {

@@ -235,14 +235,42 @@ TEST_F(WallPaceTest, TellsEachStepOfEachFrame) {
       end = f.steps[i].begin_ns + f.steps[i].length_ns;
     }
     EXPECT_LE(f.begin_ns + end, f.end_ns);
-    if (!f.moving || f.count == 3) continue;  // or there was no time for a frame
+    EXPECT_EQ(f.late, f.moving && f.end_ns > f.deadline_ns ? 1u : 0u);
+    if (!f.moving || f.count <= 3) continue;  // or there was no time for a frame
     ASSERT_EQ(f.count, 7u);
     for (int i = 0; i < 7; ++i) EXPECT_EQ(f.steps[i].kind, moving[i]);
-    EXPECT_EQ(f.late, f.end_ns > f.deadline_ns ? 1u : 0u);
   }
   EXPECT_TRUE(std::any_of(frames.begin(), frames.end(), [](const shm::FrameTrace& f) {
     return f.moving == 0 && f.count >= 3 && f.steps[2].kind == StepKind::kRefine;
   }));
+}
+
+// Frames that take several periods, and those after them for which there is no time: the charts
+// show as many late ones as the statistics count.
+TEST_F(WallPaceTest, TellsEachDeadlineThatWasMissed) {
+  calibrated_ = true;
+  run(4, [&](Timestamp) {
+    const auto tenths = since() / milliseconds(100);
+    const bool begins = since() % milliseconds(100) < kPeriod;
+    painter_.slow = begins && tenths % 10 == 5 ? 2 + static_cast<int>(tenths / 10) : 1;
+  });
+  const auto frames = all(*trace_);
+  std::uint64_t late = 0, run_over = 0, left_out = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const shm::FrameTrace& f = frames[i];
+    EXPECT_EQ(f.period, i);
+    EXPECT_EQ(f.late, f.end_ns > f.deadline_ns ? 1U : 0U);
+    late += f.late;
+    left_out += f.count == 3 ? 1 : 0;
+    if (f.count > 0) continue;
+    ++run_over;
+    EXPECT_EQ(f.begin_ns, frames[i - 1].deadline_ns);
+    EXPECT_TRUE(f.moving && f.late);
+  }
+  EXPECT_GE(run_over, 2U);
+  EXPECT_GE(left_out, 1U);
+  EXPECT_EQ(late, stats().late);
+  EXPECT_EQ(frames.size(), stats().deadlines);
 }
 
 }  // namespace

@@ -107,6 +107,16 @@ TEST(WatchView, AServiceThatHasFailedIsShownWithItsReason) {
   EXPECT_EQ(styleOf(grid, "unknown key"), CellStyle::kPlain);
 }
 
+TEST(WatchView, ARoleThatWasKilledIsTheFirstRow) {
+  WatchedState s = state();
+  s.status["lost_roles"]["devices"] = {{"silent_s", 12.0},
+                                       {"reason", "does not run; it ended 12 s ago"}};
+  const CellGrid grid = layOut(s, {26, 80}, false);
+  EXPECT_EQ(grid.line(1), "devices   does not run; it ended 12 s ago");
+  EXPECT_EQ(styleOf(grid, "does not run"), CellStyle::kBad);
+  EXPECT_TRUE(grid.line(2).starts_with("rate "));
+}
+
 TEST(WatchView, WhileNoDaemonAnswersTheLastStateIsDim) {
   WatchedState s = state();
   s.absent = "no merlind runs as \"merlin\"";

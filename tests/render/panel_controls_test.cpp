@@ -75,27 +75,41 @@ TEST(PanelControls, ModelAndPictureShowTheNextContentOfThatKind) {
   EXPECT_EQ(requestOf(C::kPicture, someFacts(), models), std::nullopt);
 }
 
-TEST(PanelControls, ContentsGoRoundInBothDirections) {
-  PanelFacts f = someFacts();
-  EXPECT_EQ(request(C::kPrevious, f), (Request{"show", "dome"}));
-  EXPECT_EQ(request(C::kNext, f), (Request{"next_content"}));
-  f.content = "a file that is not in the configuration";
-  EXPECT_EQ(request(C::kPrevious, f), (Request{"show", "dome"}));
+TEST(PanelControls, StepThroughContentsAndSlidesUnlessThereIsNoOther) {
+  const std::optional<Request> next = Request{"next_content"},
+                               previous = Request{"previous_content"};
+  EXPECT_EQ(request(C::kPrevious), previous);
+  EXPECT_EQ(request(C::kNext), next);
   PanelOptions one = someOptions();
   one.contents = {{"scan", true}};
-  EXPECT_EQ(requestOf(C::kPrevious, someFacts(), one), std::nullopt);
-  EXPECT_EQ(requestOf(C::kNext, someFacts(), one), std::nullopt);
+  PanelFacts f = someFacts();
+  EXPECT_EQ(requestOf(C::kPrevious, f, one), std::nullopt);
+  EXPECT_EQ(requestOf(C::kNext, f, one), std::nullopt);
+  f.content = "a file that is not in the configuration";
+  EXPECT_EQ(requestOf(C::kPrevious, f, one), previous);
+  EXPECT_EQ(requestOf(C::kNext, f, one), next);
   PanelFacts missing = someFacts();
   missing.missing = {"dome", "mug"};
-  EXPECT_EQ(request(C::kPrevious, missing), (Request{"show", "map"})) << "dome is missing";
+  EXPECT_EQ(request(C::kPrevious, missing), previous);
   missing.missing = {"map", "dome", "mug"};
   EXPECT_EQ(request(C::kPrevious, missing), std::nullopt);
+  EXPECT_EQ(request(C::kNext, missing), std::nullopt);
   EXPECT_EQ(request(C::kPicture, missing), std::nullopt);
   missing.missing = {"map"};
   EXPECT_EQ(request(C::kPicture, missing), (Request{"show", "dome"}));
   PanelFacts slides = someFacts();
   slides.slide = "03.tif";
-  EXPECT_EQ(requestOf(C::kNext, slides, one), (Request{"next_content"}));
+  EXPECT_EQ(requestOf(C::kNext, slides, one), next);
+  EXPECT_EQ(requestOf(C::kPrevious, slides, one), previous);
+}
+
+TEST(PanelControls, TheModeOfTheBallIsThatOfAModel) {
+  PanelFacts f = someFacts();
+  EXPECT_EQ(request(C::kMode, f), (Request{"next_mode"}));
+  for (const auto kind : {ShownKind::kPicture, ShownKind::kPanorama}) {
+    f.kind = kind;
+    EXPECT_EQ(request(C::kMode, f), std::nullopt) << "it would change nothing";
+  }
 }
 
 TEST(PanelControls, ShowTheStateThatTheyChange) {

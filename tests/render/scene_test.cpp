@@ -67,6 +67,20 @@ TEST(SceneStep, IsAppliedOnceWhateverTheFrameTakes) {
   }
 }
 
+// So a drag in a window, a VNC client or the page moves a picture, too.
+TEST(SceneStep, ThatWouldTurnAPlaneMovesItAsAFingerDoes) {
+  ScenePlay play({.model_radius_m = 2});
+  play.scene.setNavigation(content::Navigation::kPlane);
+  play.rest();
+  play.input.step = {{0, 0.5F, 0}, Vector3f(-18, 36, 90) * test::kRadian};
+  EXPECT_TRUE(play.update(10).moving);
+  expectAt(play, kStart + Vector3f(0.6F, 0.8F, 0));
+  play.scene.reset();
+  play.input.touch = {.fingers = 1, .right = 0.2F, .up = 0.1F};
+  play.update(10);
+  expectAt(play, kStart + Vector3f(0.6F, 0.3F, 0));
+}
+
 TEST(SceneStep, MovesTheViewerInModeFly) {
   ScenePlay play;
   play.input.next_mode = 1;

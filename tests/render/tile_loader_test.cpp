@@ -2,6 +2,8 @@
 // memory, and says what cannot be read.
 #include "render/content/picture/tile_loader.h"
 
+#include <atomic>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/eventually.h"
@@ -25,6 +27,37 @@ std::vector<TilePlace> allOf(const Picture& picture) {
   return places;
 }
 
+// Stands still until a test moves it; read by the loader's thread.
+class SteppedClock final : public Clock {
+ public:
+  Timestamp now() const noexcept override { return Timestamp(Duration(now_ns_.load())); }
+  bool sleepUntil(Timestamp, const std::stop_token&) noexcept override { return false; }
+  void advance(Duration by) { now_ns_ += by.count(); }
+
+ private:
+  std::atomic<std::int64_t> now_ns_{1'000'000'000};
+};
+
+// A file of which level 0 cannot be read for a while.
+class FlakyAccess final : public image::RandomAccess {
+ public:
+  // `fails`: whether it cannot be read now; `tries`: how often that was tried.
+  FlakyAccess(std::string bytes, const std::atomic<bool>& fails, std::atomic<int>& tries)
+      : whole_(std::move(bytes)), fails_(fails), tries_(tries) {}
+  std::uint64_t size() const noexcept override { return whole_.size(); }
+  Result<Ok> read(std::uint64_t offset, std::span<std::uint8_t> to) const override {
+    const bool of_level_0 = offset >= 16 && offset < 2000;
+    if (of_level_0) ++tries_;
+    if (of_level_0 && fails_) return Error{Errc::kIo, "the server is away"};
+    return whole_.read(offset, to);
+  }
+
+ private:
+  test::MemoryAccess whole_;
+  const std::atomic<bool>& fails_;
+  std::atomic<int>& tries_;
+};
+
 class TileLoaderTest : public testing::Test {
  protected:
   LoadedTile next() {
@@ -33,7 +66,8 @@ class TileLoaderTest : public testing::Test {
     return tile.value_or(LoadedTile{});
   }
   ThreadWatch watch_;
-  TileLoader loader_{watch_};
+  SteppedClock clock_;
+  TileLoader loader_{watch_, clock_};
 };
 
 TEST_F(TileLoaderTest, LoadsTheMostUrgentFirst) {
@@ -60,7 +94,7 @@ TEST_F(TileLoaderTest, HoldsNoMoreThanItsMemory) {
   EXPECT_FALSE(loader_.hasLoaded());
 }
 
-TEST_F(TileLoaderTest, SaysOnceForAPictureWhatCannotBeReadAndTriesItNoMore) {
+TEST_F(TileLoaderTest, SaysOnceForAPictureWhatCannotBeReadAndDoesNotTryItAtOnceAgain) {
   std::string bytes = test::pyramidBytes();
   // The deflate streams of level 0, which begin at byte 16, become noise; the coarsest stays.
   const auto whole = pictureOf(bytes);
@@ -73,6 +107,25 @@ TEST_F(TileLoaderTest, SaysOnceForAPictureWhatCannotBeReadAndTriesItNoMore) {
   const auto faults = loader_.takeFaults();
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_NE(faults[0].find("test.tif: level 0, tile 0 of row 0"), std::string::npos) << faults[0];
+}
+
+TEST_F(TileLoaderTest, TriesATileThatCannotBeReadAgainAfterTenSeconds) {
+  std::atomic<bool> fails = true;
+  std::atomic<int> tries = 0;
+  auto file = image::PyramidFile::read(
+      std::make_unique<FlakyAccess>(test::pyramidBytes(), fails, tries), "test.tif");
+  const std::shared_ptr<const Picture> picture = *makePicture(*std::move(file), ShowAs::kPlane);
+  loader_.ask(picture, std::vector<TilePlace>{{0, 0, 0}});
+  EXPECT_TRUE(next().pixels.empty());
+  EXPECT_FALSE(loader_.isLoading()) << "the wall need not wait for it";
+  const int tried = tries;
+  clock_.advance(TileLoader::kTryAgain);
+  ASSERT_TRUE(test::eventually([&] { return tries > tried && !loader_.isLoading(); }));
+  EXPECT_FALSE(loader_.hasLoaded()) << "the wall was told of it once";
+  fails = false;
+  clock_.advance(TileLoader::kTryAgain);
+  EXPECT_EQ(next().pixels.size(), image::kTileBytes) << "nobody had to ask for it again";
+  EXPECT_EQ(loader_.takeFaults().size(), 1U);
 }
 
 }  // namespace

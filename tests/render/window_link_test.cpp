@@ -64,6 +64,8 @@ TEST(WindowCommands, AKeyIsACommandAndWithCtrlOneOfTheAlignment) {
   for (const char* key : {"Home", "M", "F5", "U", "T"}) commands.press({key});
   EXPECT_EQ(commands.take(), (Strings{"reset_view", "next_mode", "next_testcard"}));
   EXPECT_EQ(commands.take(), Strings{});
+  for (const char* key : {"PageUp", "P", "PageDown"}) commands.press({key});
+  EXPECT_EQ(commands.take(), (Strings{"previous_content", "previous_content", "next_content"}));
   for (const char* key : {"Left", "H", "Tab", "R", "M"})
     commands.press({.name = key, .ctrl = true});
   EXPECT_EQ(commands.take(),

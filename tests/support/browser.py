@@ -89,18 +89,46 @@ class Driver:
         self.do("POST", "/actions", {"actions": [{"type": "key", "id": "k", "actions": [
             {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
 
+    def _pointer(self, selector, kind, place, steps, name="p", up=True):
+        """A pointer that is pressed at a place from an element's middle and moved in steps."""
+        moves = [{"type": "pointerMove", "duration": 20, "origin": "pointer", "x": x, "y": y} for x, y in steps]
+        return {"type": "pointer", "id": name, "parameters": {"pointerType": kind},
+                "actions": [{"type": "pointerMove", "duration": 0, "origin": {ELEMENT: self.find(selector)},
+                             "x": place[0], "y": place[1]},
+                            {"type": "pointerDown", "button": 0}] + moves +
+                           ([{"type": "pointerUp", "button": 0}] if up else [])}
+
+    def release(self):
+        """Lets go what hold() presses."""
+        self.do("DELETE", "/actions")
+
+    def _act(self, *sources):
+        self.do("POST", "/actions", {"actions": list(sources)})
+        self.release()
+
     def drag(self, selector, x, y, kind="mouse"):
         """Presses the pointer on an element, moves it by x and y pixels in steps, releases it."""
-        origin = {ELEMENT: self.find(selector)}
         steps = 5
-        moves = [{"type": "pointerMove", "duration": 20, "origin": "pointer", "x": x // steps,
-                  "y": y // steps} for _ in range(steps)]
-        self.do("POST", "/actions", {"actions": [{
-            "type": "pointer", "id": "p", "parameters": {"pointerType": kind},
-            "actions": [{"type": "pointerMove", "duration": 0, "origin": origin, "x": 0, "y": 0},
-                        {"type": "pointerDown", "button": 0}] + moves +
-                       [{"type": "pointerUp", "button": 0}]}]})
-        self.do("DELETE", "/actions")
+        self._act(self._pointer(selector, kind, (0, 0), [(x // steps, y // steps)] * steps))
+
+    def tap(self, selector, x, y, kind="mouse"):
+        """Clicks at a place from an element's middle."""
+        self._act(self._pointer(selector, kind, (x, y), []))
+
+    def hold(self, selector, kind="mouse"):
+        """Presses the pointer on an element, until release()."""
+        self.do("POST", "/actions", {"actions": [self._pointer(selector, kind, (0, 0), [], up=False)]})
+
+    def pinch(self, selector, near, far):
+        """Moves two fingers apart, from so many pixels beside an element's middle to so many."""
+        steps = 5
+        self._act(*(self._pointer(selector, "touch", (sign * near, 0), [(sign * (far - near) // steps, 0)] * steps, name)
+                    for name, sign in (("left", -1), ("right", 1))))
+
+    def wheel(self, selector, down):
+        """Turns the wheel over an element."""
+        self._act({"type": "wheel", "id": "w", "actions": [{
+            "type": "scroll", "origin": {ELEMENT: self.find(selector)}, "x": 0, "y": 0, "deltaX": 0, "deltaY": down}]})
 
     def screenshot(self, path, whole=False):
         if whole:

@@ -106,7 +106,8 @@ class FakeFeed final : public InputFeed {
     begins.push_back(now);
     if (on_begin) on_begin(now);
     WallInput input = actions;
-    actions.next_content = actions.snapshot = actions.blank = actions.freeze = 0;
+    actions.next_content = actions.previous_content = actions.snapshot = 0;
+    actions.blank = actions.freeze = 0;
     actions.align = {};
     input.scene.ball.emplace();
     input.scene.ball->rotation[1] = pushed ? 0.5F : 0.0F;

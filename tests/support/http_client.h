@@ -59,6 +59,42 @@ inline HttpAnswer parseAnswer(const std::string& text) {
   return answer;
 }
 
+// A connection that asks again and again, as browsers do.
+class KeptConnection {
+ public:
+  explicit KeptConnection(int port) : fd_(connectToPage(port)) {}
+
+  // The status of the answer; 0: the connection is gone.
+  int get(const std::string& path) {
+    sendText(fd_, fmt::format("GET {} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", path));
+    std::size_t head = 0;
+    while ((head = received_.find("\r\n\r\n")) == std::string::npos) {
+      if (!receive()) return 0;
+    }
+    const HttpAnswer answer = parseAnswer(received_.substr(0, head));
+    const std::string key = "Content-Length: ";
+    const std::size_t at = answer.head.find(key);
+    std::size_t length = 0;
+    if (at != std::string::npos) length = std::stoul(answer.head.substr(at + key.size()));
+    while (received_.size() < head + 4 + length) {
+      if (!receive()) return 0;
+    }
+    received_.erase(0, head + 4 + length);
+    return answer.status;
+  }
+
+ private:
+  bool receive() {
+    char buffer[8192];
+    const ssize_t n = ::recv(fd_.get(), buffer, sizeof buffer, 0);
+    if (n > 0) received_.append(buffer, static_cast<std::size_t>(n));
+    return n > 0;
+  }
+
+  UniqueFd fd_;
+  std::string received_;
+};
+
 inline HttpAnswer askPage(int port, const std::string& request) {
   const UniqueFd fd = connectToPage(port);
   if (!fd.valid()) return {};

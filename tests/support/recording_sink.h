@@ -13,12 +13,19 @@ struct RecordingSink final : SampleSink {
   void publish(const BallSample& s) noexcept override { ball.push_back(s); }
   void publish(const TouchSample& s) noexcept override { touch.push_back(s); }
   void describe(const DeviceKeys& k) noexcept override { keys = k; }
+  Timestamp due() const noexcept override { return due_at; }
+  void tick(Timestamp now) noexcept override {
+    ticks.push_back(now);
+    due_at = Timestamp::max();
+  }
 
   std::vector<GloveSample> glove;
   std::vector<TrackerSample> tracker;
   std::vector<BallSample> ball;
   std::vector<TouchSample> touch;
-  DeviceKeys keys;  // of the device that was opened last
+  DeviceKeys keys;                      // of the device that was opened last
+  Timestamp due_at = Timestamp::max();  // to be set by the test
+  std::vector<Timestamp> ticks;
 };
 
 struct RecordingHealth final : HealthSink {

@@ -197,6 +197,27 @@ TEST_F(BadInput, BindingsToKeysThatTheKernelDoesNotKnow) {
   expectOutcome(run({kMerlind, "--check-config", dir_ / "c.json"}), 2, said);
 }
 
+TEST_F(BadInput, ButtonsOfInputDevicesThatTheKernelDoesNotKnow) {
+  writeText(dir_ / "c.json",
+            R"({"devices": [{"name": "pad", "driver": "evdev", "evdev": {"buttons": [
+      "pagedown", "tl2",
+      "sout",
+      "btn_east",
+      "kp_plus",
+      "zzzzzzzz"]}}]})");
+  const std::string unknown = ", and the kernel knows no key of that name; ";
+  const std::vector<std::string> said = {
+      "c.json:3: /devices/0/evdev/buttons/2 is \"sout\"" + unknown + "did you mean \"south\"?",
+      "c.json:4: /devices/0/evdev/buttons/3 is \"btn_east\"" + unknown + "did you mean \"east\"?",
+      "c.json:5: /devices/0/evdev/buttons/4 is \"kp_plus\"" + unknown + "did you mean \"kpplus\"?",
+      "c.json:6: /devices/0/evdev/buttons/5 is \"zzzzzzzz\"" + unknown +
+          "`merlin devices` lists those of what is plugged in"};
+  const Outcome o = run({kMerlind, "--check-config", dir_ / "c.json"});
+  expectOutcome(o, 2, said);
+  EXPECT_EQ(o.output.find("pagedown"), std::string::npos) << o.output;
+  EXPECT_EQ(o.output.find("tl2"), std::string::npos) << o.output;
+}
+
 TEST_F(BadInput, AFullStandardOutputIsAFailure) {
   for (const char* command : {"mesh info config/models/ankylosaurus.ply", "--help"}) {
     const Outcome o =

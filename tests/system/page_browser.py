@@ -1,18 +1,23 @@
-"""A person at the operator's page, in a headless Chromium: python3 page_browser.py URL TOKEN STATUS FOLDER SIZE
+"""A person at the operator's page, in a headless Chromium:
+python3 page_browser.py URL TOKEN STATUS FOLDER SIZE MODE_BUTTON WALL_PID
 
 URL: of the page; TOKEN: its token; STATUS: a command that prints `merlin status --json` of the same
-daemon; FOLDER: where the screenshots go; SIZE: desktop or phone. Fails with a sentence.
+daemon; FOLDER: where the screenshots go; SIZE: desktop or phone; MODE_BUTTON: "X Y", a pixel of the
+frame on the button of the operator's panel that switches the mode; WALL_PID: the daemon's process,
+which is ended at last. Fails with a sentence.
 """
 import json
 import os
+import signal
 import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import browser  # noqa: E402
 
-URL, TOKEN, STATUS, FOLDER, SIZE = sys.argv[1:]
+URL, TOKEN, STATUS, FOLDER, SIZE, MODE_BUTTON, WALL_PID = sys.argv[1:]
 PHONE = SIZE == "phone"
+POINTER = "touch" if PHONE else "mouse"
 # What a page may say in its console without being wrong: requests that were refused on purpose.
 EXPECTED = ("401 (Unauthorized)",)
 
@@ -79,13 +84,13 @@ def commands(driver):
     driver.click("#command-next_mode")
     driver.until("and back", lambda: status()["mode"] == mode)
     driver.run("""const slider = document.getElementById('rate');
-        slider.focus(); slider.value = 14; slider.dispatchEvent(new Event('input'));
+        slider.value = 14; slider.dispatchEvent(new Event('input'));
         slider.dispatchEvent(new Event('change'));""")
     driver.until("the slider sets the rate", lambda: status()["rate_asked"] == 14)
     driver.click("#rate-auto")
     driver.until("auto returns to the configured rate", lambda: status()["rate_asked"] == 10)
     driver.run("""const slider = document.getElementById('triangles');
-        slider.focus(); slider.value = 700; slider.dispatchEvent(new Event('input'));
+        slider.value = 700; slider.dispatchEvent(new Event('input'));
         slider.dispatchEvent(new Event('change'));""")
     driver.until("the slider holds the triangles", lambda: status()["detail"]["held_cost"] > 0)
     driver.click("#triangles-auto")
@@ -100,7 +105,7 @@ def commands(driver):
     driver.until("the page shows its unit", lambda: driver.run(
         "return document.getElementById('cost-name').textContent") == "Kilotexels")
     driver.run("""const slider = document.getElementById('triangles');
-        slider.focus(); slider.value = 0; slider.dispatchEvent(new Event('input'));
+        slider.value = 0; slider.dispatchEvent(new Event('input'));
         slider.dispatchEvent(new Event('change'));""")
 
     def coarsest():
@@ -221,15 +226,108 @@ def labels(driver):
     assert not PHONE or not small, "too small for a thumb: %s" % small
 
 
-def moves(driver):
+def slides(driver):
+    """Not every browser gives a slider that is dragged the keyboard's focus."""
+    driver.run("""document.activeElement.blur();
+        const slider = document.getElementById('rate');
+        slider.dispatchEvent(new PointerEvent('pointerdown'));
+        slider.value = 17; slider.dispatchEvent(new Event('input'));
+        window.read = 0;
+        window.fetch = async (url, options) => {
+            const answer = await window.served(url, options);
+            window.read += url === '/api/status';
+            return answer;
+        };""")
+    driver.until("the state was read three times", lambda: driver.run("return window.read") >= 3)
+    assert driver.run("return document.getElementById('rate').value") == "17", "the slider sprang back"
+    driver.run("""window.fetch = window.served;
+        const slider = document.getElementById('rate');
+        slider.dispatchEvent(new PointerEvent('pointerup')); slider.dispatchEvent(new Event('change'));""")
+    driver.until("it sets the rate when it is let go", lambda: status()["rate_asked"] == 17)
+    driver.click("#rate-auto")
+    driver.until("auto returns to the configured rate", lambda: status()["rate_asked"] == 10)
+
+
+def crowded(driver):
+    """Others flood the page's server."""
+    banners = "return document.getElementById('banners').textContent"
+    driver.run("""window.fetch = (url, options) => url === '/api/status' ?
+        Promise.resolve(new Response(JSON.stringify({error: 'too many'}), {status: 429})) : window.served(url, options);""")
+    driver.until("the page says that it gets no answers", lambda: "Others ask the page's server for too much" in driver.run(banners))
+    driver.run("window.fetch = window.served")
+    driver.until("until it gets them again", lambda: "Others ask" not in driver.run(banners))
+
+
+def stands(driver):
+    """The picture in which nothing moves any more."""
     driver.click("#command-reset_view")
     driver.until("the wall stands still", lambda: status()["full_detail"])
-    driver.until("the picture is shown", lambda: pixels(driver) is not None)
-    before = pixels(driver)
+    seen = []
+
+    def same():
+        seen.append(pixels(driver))
+        return len(seen) > 20 and seen[-1] is not None and all(s == seen[-1] for s in seen[-20:])
+    driver.until("so does the page's picture", same)
     driver.run("document.getElementById('screen').scrollIntoView({block: 'center'})")
-    driver.drag("#screen", 60, 20, "touch" if PHONE else "mouse")
-    driver.until("dragging turns the model in the picture",
-                 lambda: difference(pixels(driver) or before, before) > 2)
+    return seen[-1]
+
+
+def moves(driver):
+    hint = "return document.getElementById('move-hint').textContent"
+    for name, does in (("model", "turn the model"), ("meadow", "move the picture")):
+        driver.click("#contents [data-name=%s]" % name)
+        driver.until("the page says what a drag does", lambda: does in driver.run(hint))
+        before = stands(driver)
+        driver.drag("#screen", 100, 20, POINTER)
+        driver.until("dragging does: " + does, lambda: difference(pixels(driver) or before, before) > 1)
+        before = stands(driver)
+        driver.pinch("#screen", 20, 60) if PHONE else driver.wheel("#screen", -300)
+        driver.until("two fingers, or the wheel, zoom", lambda: difference(pixels(driver) or before, before) > 1)
+    driver.run("""window.moved = 0;
+        window.fetch = (url, options) => {
+            window.moved += url === '/api/command' && options.body.includes('"move"');
+            return window.served(url, options);
+        };""")
+    driver.hold("[data-notch='-1']", POINTER)
+    driver.until("a button that is held goes on", lambda: driver.run("return window.moved") >= 3)
+    driver.release()
+    driver.run("window.fetch = window.served")
+    driver.click("#contents [data-name=model]")
+    driver.until("the model is shown", lambda: content() == 0)
+
+
+def operator_panel(driver):
+    """The buttons of the operator's panel, where the page shows them."""
+    mode, side = status()["mode"], "return [picture.naturalWidth, picture.naturalHeight]"
+    driver.click("[data-view=operator]")
+    driver.until("the operator's tile is shown", lambda: (lambda w, h: 3 * w == 4 * h)(*driver.run(side)))
+    x, y = map(int, MODE_BUTTON.split())
+    right, down = driver.run("""const [x, y] = arguments, screen = document.getElementById('screen');
+        screen.scrollIntoView({block: 'center'});
+        return fetch('/picture.jpg?view=operator&width=320').then(answer => {
+            const [, , , , to_x, to_y] = answer.headers.get('X-Picture-Panel').split(' ').map(Number);
+            const [width, height] = answer.headers.get('X-Picture-Size').split(' ').map(Number);
+            return [((x - to_x) / width - .5) * screen.clientWidth, ((y - to_y) / height - .5) * screen.clientHeight];
+        });""", x, y)
+    for wanted in ("fly" if mode == "object" else "object", mode):
+        driver.tap("#screen", round(right), round(down), POINTER)
+        driver.until("its button switches the mode to " + wanted, lambda: status()["mode"] == wanted)
+    driver.click("[data-view=wall]")
+    driver.until("the wall is shown again", lambda: (lambda w, h: w == 4 * h)(*driver.run(side)))
+
+
+def down(driver):
+    """Nothing of a wall that is gone is shown as present."""
+    text = "return document.getElementById(arguments[0]).textContent"
+    os.kill(int(WALL_PID), signal.SIGTERM)
+    driver.until("the page says that the wall is gone", lambda: "The role wall does not run" in driver.run(text, "banners"))
+    for what in ("head-rate", "playlist-state", "rate-value", "triangles-value"):
+        assert driver.run(text, what) == "–", what + ": " + driver.run(text, what)
+    for what in ("detail-facts", "frame-facts", "frames-legend", "content-name", "outputs"):
+        assert driver.run(text, what) == "", what + ": " + driver.run(text, what)
+    pressed = driver.run("""return [...document.querySelectorAll('main [aria-pressed=true]')]
+        .filter(e => !e.dataset.view && !e.closest('#align-card')).map(e => e.textContent)""")
+    assert pressed == [], "still marked: %s" % pressed
 
 
 def aligns(driver):
@@ -240,7 +338,7 @@ def aligns(driver):
 
     def settled():
         return driver.run("return document.getElementById('align-plane').ariaBusy") == "false"
-    driver.drag("circle[data-corner=top_right]", -20, 15, "touch" if PHONE else "mouse")
+    driver.drag("circle[data-corner=top_right]", -20, 15, POINTER)
     driver.until("a corner is dragged", lambda: "top right moved by -" in driver.run(state))
     driver.until("the wall has moved it", settled)
     while "0 to undo" not in driver.run(state):  # two steps, where a busy machine let the drag rest on its way
@@ -279,13 +377,17 @@ def main():
         idle(driver)
         phone(driver)
         labels(driver)
+        slides(driver)
+        crowded(driver)
         moves(driver)
+        operator_panel(driver)
         aligns(driver)
         driver.run("scrollTo(0, 0)")
         driver.screenshot(os.path.join(FOLDER, "page-%s.png" % SIZE))
         driver.screenshot(os.path.join(FOLDER, "page-%s-whole.png" % SIZE), whole=True)
         wrong = [m for m in driver.messages() if not any(e in m for e in EXPECTED)]
         assert not wrong, "the browser's console: %s" % wrong
+        down(driver)
     finally:
         driver.close()
     print("page_browser: done (%s)" % SIZE)

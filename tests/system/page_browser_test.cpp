@@ -6,11 +6,20 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/sanitizer.h"
+#include "render/panel/panel_layout.h"
 #include "tests/support/page_process.h"
 #include "tests/support/pyramids.h"
 
 namespace merlin::test {
 namespace {
+
+// A pixel of the frame: the operator's tile is the lower right one of the default wall.
+std::string modeButton() {
+  const auto layout = *render::panel::layOutPanel(640, 480, 13, {});
+  const render::text::Rect r = layout.find(render::panel::ControlId::kMode)->at;
+  return fmt::format("{} {}", 640 + layout.at.x + r.x + r.width / 2,
+                     480 + layout.at.y + r.y + r.height / 2);
+}
 
 class Browser : public testing::TestWithParam<const char*> {
  protected:
@@ -32,7 +41,8 @@ TEST_P(Browser, ShowsTheWallAndSendsWhatAPersonDoes) {
   options.also = {
       {"page", {{"port", port}}},
       {"wall",
-       {{"contents", {{{"model", model}, {"name", "again"}}, {{"picture", meadow}}}},
+       {{"operator", {{"panel", true}}},
+        {"contents", {{{"model", model}, {"name", "again"}}, {{"picture", meadow}}}},
         {"outputs",
          {{{"kind", "shared_memory"}}, {{"kind", "png"}, {"path", dir_ / "out.png"}}}}}}};
   Merlind wall(dir_, model, "browser", options);
@@ -41,10 +51,11 @@ TEST_P(Browser, ShowsTheWallAndSendsWhatAPersonDoes) {
   ASSERT_TRUE(page.ready()) << page.process().output();
   ASSERT_TRUE(eventually([&] { return page.runs("wall") && page.runs("devices"); }));
 
-  const Outcome seen = run({"python3", "-B", kSource + "/tests/system/page_browser.py",
-                            fmt::format("http://127.0.0.1:{}/", port), page.token(),
-                            fmt::format("{} status --json --instance {}", kMerlin, wall.instance()),
-                            dir_.path(), GetParam()});
+  const Outcome seen =
+      run({"python3", "-B", kSource + "/tests/system/page_browser.py",
+           fmt::format("http://127.0.0.1:{}/", port), page.token(),
+           fmt::format("{} status --json --instance {}", kMerlin, wall.instance()), dir_.path(),
+           GetParam(), modeButton(), std::to_string(wall.process().pid())});
   EXPECT_EQ(seen.status, 0) << seen.output << page.process().output();
   EXPECT_EQ(page.process().kill(SIGTERM), 0) << page.process().output();
 }

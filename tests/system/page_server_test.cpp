@@ -13,6 +13,7 @@
 
 #include "daemon/base/sanitizer.h"
 #include "render/image/image_file.h"
+#include "tests/support/http_flood.h"
 #include "tests/support/page_process.h"
 #include "tests/support/pyramids.h"
 
@@ -301,6 +302,21 @@ TEST_F(PageAlone, AtANetworksAddressReadingNeedsTheTokenToo) {
   }
 }
 
+TEST_F(PageAlone, WhatAProxyPassesOnNeedsTheTokenForReadingToo) {
+  PageProcess page(dir_, config("page.json", Json::object()), instance_, port_);
+  ASSERT_TRUE(page.ready()) << page.process().output();
+  EXPECT_EQ(page.get("/api/status").status, 200);
+  for (const char* header : {"X-Forwarded-For: 10.0.0.9", "x-forwarded-host: wall.lab.example",
+                             "X-Real-IP: 10.0.0.9", "Forwarded: for=10.0.0.9", "Via: 1.1 proxy",
+                             "X-Forwarded-Proto: https", "Via: 1.1 a\r\nVia: 1.1 b"}) {
+    const std::string passed_on = std::string(header) + "\r\n";
+    EXPECT_EQ(page.get("/api/status", passed_on).status, 401) << header;
+    EXPECT_EQ(page.get("/", passed_on).status, 200) << header;
+    const std::string token = "Authorization: Bearer " + page.token() + "\r\n";
+    EXPECT_EQ(page.get("/api/status", passed_on + token).status, 200) << header;
+  }
+}
+
 TEST_F(PageAlone, ListsContentsAndReadsTheirPicturesFromTheirFiles) {
   const std::string good = dir_ / "meadow.tif", bad = dir_ / "bad.tif", slides = dir_ / "talk";
   writeText(good, pyramidBytes({.width = 800, .height = 200, .description = "MERLIN panorama"}));
@@ -392,13 +408,23 @@ constexpr std::size_t kMostMemory_kb = 1'000'000;
 constexpr std::size_t kMostMemory_kb = 100'000;
 #endif
 
-// While clients of all sorts misbehave, one that behaves is answered, and the wall goes on.
+// While two clients ask without a pause, and others of all sorts misbehave, one that behaves is
+// answered, and the wall goes on.
 TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
   start();
   ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
   const pid_t pid = page_->process().pid();
   ASSERT_EQ(page_->send("align", "list").status, 200);  // from now on all threads run
   const std::size_t threads_before = threads(pid);
+  HttpFlood flood(port_, 2);
+  // Ten requests within a second.
+  const auto modest = [&](const char* when) {
+    const std::uint64_t refused_before = flood.refused();
+    EXPECT_TRUE(eventually([&] { return flood.refused() > refused_before + 500; })) << when;
+    KeptConnection client(port_);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(client.get("/api/status"), 200) << when << ": " << i;
+  };
+  for (int i = 0; i < 3; ++i) modest("two clients flood");
   std::vector<UniqueFd> hostile;
   const auto join = [&](const std::string& bytes) {
     hostile.push_back(connectToPage(port_));
@@ -460,6 +486,8 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
   EXPECT_TRUE(tells("connections were refused or closed")) << events();
   hostile.clear();
   good("they left");
+  modest("two clients still flood");
+  flood.stop();
   EXPECT_TRUE(wall_->status().is_object());
   EXPECT_EQ(page_->process().kill(SIGTERM), 0) << page_->process().output();
 }

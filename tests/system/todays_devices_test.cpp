@@ -353,6 +353,19 @@ TEST(TodaysDevices, AVrpnServersDevicesAreListedWithTheEntryThatMakesThemDevices
   }));
   EXPECT_TRUE(entryFor(listed, "Tracker0", "vrpn").is_null()) << "it is configured now";
   EXPECT_FALSE(entryFor(listed, "Ball0", "vrpn_pad").is_null());
+  // The running one says what it reads, and which servers are asked.
+  nlohmann::json read_by;
+  EXPECT_TRUE(eventually([&] {
+    const auto all = nlohmann::json::parse(
+        run({kMerlin, "devices", "--json", "--instance", client.instance()}).output, nullptr,
+        false);
+    for (const auto& asked : all["vrpn_servers"]) {
+      for (const auto& device : asked["devices"]) {
+        if (device["name"] == "Tracker0") read_by = device["read_by"];
+      }
+    }
+    return read_by == nlohmann::json::array({entry["name"]});
+  })) << read_by;
 }
 
 TEST(TodaysDevices, MerlindIsNotOfferedWhatItServesItself) {

@@ -66,6 +66,20 @@ TEST_F(Watch, SurvivesTheDaemonsRestart) {
   EXPECT_EQ(watch.wait(), 0);
 }
 
+TEST_F(Watch, SaysThatARoleWasKilled) {
+  Merlind devices(dir_, model_, "half", MerlindOptions{.role = "devices", .emulate = true});
+  ASSERT_TRUE(devices.ready()) << devices.process().output();
+  {
+    Merlind wall(dir_, model_, "half", MerlindOptions{.role = "wall"});
+    ASSERT_TRUE(wall.ready()) << wall.process().output();
+    wall.process().kill(SIGKILL);
+    PtyProcess watch({kMerlin, "watch", "--instance", devices.instance()}, 40, 100);
+    EXPECT_TRUE(watch.showsEventually("wall      does not run; it ended "))
+        << watch.screen().text();
+    EXPECT_TRUE(watch.screen().shows("ball")) << "the devices have their rows";
+  }
+}
+
 TEST_F(Watch, LinesStayWhereTheyAreAskedForOrTheTerminalCannotPlaceText) {
   start();
   // A document comes once a second, and a busy machine is late.

@@ -103,6 +103,7 @@ void StatusPoller::publish(WatchedState& state) const {
     addEvents(role.events, events);
     if (!role.fault.empty()) fault = role.fault;
   }
+  if (!all.empty() && !daemon_.isRemote()) addLostRoles(daemon_.instance, all);
   state.frame_times.add(frameTime(all));
   state.absent = all.empty() ? fault : "";
   if (all.empty()) return;  // the last state stays

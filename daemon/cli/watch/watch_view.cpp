@@ -146,6 +146,15 @@ std::vector<Row> table(const Json& s, const char* key, const char* heading, Make
   return rows;
 }
 
+// A row for each role that has ended without a word, above all others.
+std::vector<Row> lostRows(const Json& s) {
+  std::vector<Row> rows;
+  for (const auto& [role, lost] : object(s, "lost_roles").items())
+    if (lost.is_object())
+      rows.push_back({{fmt::format("{:9} {}", role, text(lost, "reason")), CellStyle::kBad}});
+  return rows;
+}
+
 std::string hertz(std::optional<double> rate) {
   return rate ? fmt::format("{:.1f} Hz", *rate) : "-";
 }
@@ -256,8 +265,10 @@ int chartRows(int left, const std::vector<WatchedEvent>& events, bool has_wall) 
 CellGrid layOut(const WatchedState& state, const ScreenSize& size, bool blocks) {
   Page page{CellGrid(size.rows, size.columns)};
   addTitle(page, state);
-  std::vector<Row> rows = wallRows(state.status);
-  const bool has_wall = !rows.empty();
+  std::vector<Row> rows = lostRows(state.status);
+  const auto wall = wallRows(state.status);
+  const bool has_wall = !wall.empty();
+  rows.insert(rows.end(), wall.begin(), wall.end());
   for (const auto& more :
        {table(state.status, "devices", "devices", deviceRow),
         table(state.status, "outputs", "outputs", outputRow), serviceRows(state.status)})
