@@ -6,16 +6,14 @@
 #include <memory>
 #include <vector>
 
+#include "render/import/vips_image.h"
+
 namespace merlin::render::import {
 namespace {
 
 constexpr int kRows = 64;  // read at a time
 constexpr std::int64_t kMostSampled = 1'000'000;
 
-struct Unref {
-  void operator()(void* object) const { g_object_unref(object); }
-};
-using Image = std::unique_ptr<VipsImage, Unref>;
 using Region = std::unique_ptr<VipsRegion, Unref>;
 
 int bandsShown(const VipsImage* image) { return vips_image_get_bands(image) >= 3 ? 3 : 1; }
@@ -30,13 +28,12 @@ const float* pixelAt(const VipsRegion* region, std::int64_t column, std::int64_t
 void sample(VipsRegion* region, const VipsRect& rows, std::int64_t step,
             std::vector<float>& values) {
   const VipsImage* const image = region->im;
-  const auto bands = static_cast<std::size_t>(vips_image_get_bands(image));
   const auto shown = static_cast<std::size_t>(bandsShown(image));
   const std::int64_t width = rows.width, first = rows.top * width;
   const std::int64_t end = first + width * rows.height;
   for (std::int64_t pixel = (first + step - 1) / step * step; pixel < end; pixel += step) {
     const float* const at = pixelAt(region, pixel % width, pixel / width - rows.top);
-    for (std::size_t band = 0; band < std::min(bands, shown); ++band)
+    for (std::size_t band = 0; band < shown; ++band)
       if (std::isfinite(at[band])) values.push_back(at[band]);
   }
 }
@@ -51,25 +48,6 @@ ValueRange middleOf(std::vector<float>& values) {
   const double most = *high;
   return {least, most > least ? most : least + 1};
 }
-
-// One step of libvips after another; keeps what the earlier ones made.
-class Steps {
- public:
-  explicit Steps(VipsImage* from) : now_(from) {}
-  template <typename Step>
-  bool then(const Step& step) {
-    VipsImage* made = nullptr;
-    if (step(now_, &made) != 0) return false;
-    kept_.emplace_back(made);
-    now_ = made;
-    return true;
-  }
-  VipsImage* now() const { return now_; }
-
- private:
-  VipsImage* now_;
-  std::vector<Image> kept_;
-};
 
 }  // namespace
 
@@ -97,12 +75,10 @@ bool isGrey16(const VipsImage* image) noexcept {
 }
 
 std::optional<ValueRange> rangeOf(VipsImage* image, const std::function<void(double)>& on_share) {
-  Steps steps(image);
-  if (!steps.then([](VipsImage* from, VipsImage** to) {
-        return vips_cast(from, to, VIPS_FORMAT_FLOAT, nullptr);
-      }))
-    return std::nullopt;
-  const Region region(vips_region_new(steps.now()));
+  VipsImage* cast = nullptr;
+  if (vips_cast(image, &cast, VIPS_FORMAT_FLOAT, nullptr) != 0) return std::nullopt;
+  const Image floats(cast);
+  const Region region(vips_region_new(floats.get()));
   const int width = vips_image_get_width(image), height = vips_image_get_height(image);
   const std::int64_t pixels = std::int64_t{width} * height;
   std::vector<float> values;
@@ -118,40 +94,40 @@ std::optional<ValueRange> rangeOf(VipsImage* image, const std::function<void(dou
 
 int stretch(VipsImage* image, const ValueRange& range, VipsImage** made) {
   const double scale = 255 / (range.high - range.low);
-  Steps steps(image);
-  const bool cast = steps.then([&](VipsImage* from, VipsImage** to) {
-    return vips_extract_band(from, to, 0, "n", bandsShown(image), nullptr);
-  }) && steps.then([](VipsImage* from, VipsImage** to) {
-    return vips_cast(from, to, VIPS_FORMAT_FLOAT, nullptr);
-  });
+  const int bands = bandsShown(image);
+  g_object_ref(image);
+  Image shades(image);
+  const bool cast = applyStep(shades,
+                              [&](VipsImage* from, VipsImage** to) {
+                                return vips_extract_band(from, to, 0, "n", bands, nullptr);
+                              }) &&
+                    applyStep(shades, [](VipsImage* from, VipsImage** to) {
+                      return vips_cast(from, to, VIPS_FORMAT_FLOAT, nullptr);
+                    });
   if (!cast) return -1;
-  Steps numbers(steps.now()), shades(steps.now());
-  const bool both = numbers.then([](VipsImage* from,
-                                    VipsImage** to) {  // what is no number is not itself
-    return vips_relational(from, from, to, VIPS_OPERATION_RELATIONAL_EQUAL, nullptr);
-  }) && shades.then([&](VipsImage* from, VipsImage** to) {
-    return vips_linear1(from, to, scale, 0.5 - range.low * scale, "uchar", TRUE, nullptr);
-  });
-  if (!both) return -1;
-  const double black = 0;
-  Image none;
-  {
-    VipsImage* constant = nullptr;
-    if (vips_linear(shades.now(), &constant, &black, &black, 1, "uchar", TRUE, nullptr) != 0)
-      return -1;
-    none.reset(constant);
-  }
-  const bool joined = shades.then([&](VipsImage* from, VipsImage** to) {
-    return vips_ifthenelse(numbers.now(), from, none.get(), to, nullptr);
-  }) && shades.then([&](VipsImage* from, VipsImage** to) {
-    return vips_copy(from, to, "interpretation",
-                     bandsShown(image) == 3 ? VIPS_INTERPRETATION_sRGB : VIPS_INTERPRETATION_B_W,
-                     nullptr);
-  });
-  if (!joined) return -1;
-  *made = shades.now();
-  g_object_ref(*made);
-  vips_image_remove(*made, VIPS_META_ICC_NAME);
+  g_object_ref(shades.get());
+  Image numbers(shades.get());  // 255 where there is a number, which is itself, else 0
+  const bool shaded =
+      applyStep(numbers,
+                [](VipsImage* from, VipsImage** to) {
+                  return vips_relational(from, from, to, VIPS_OPERATION_RELATIONAL_EQUAL, nullptr);
+                }) &&
+      applyStep(shades,
+                [&](VipsImage* from, VipsImage** to) {
+                  return vips_linear1(from, to, scale, 0.5 - range.low * scale, "uchar", TRUE,
+                                      nullptr);
+                }) &&
+      applyStep(shades,
+                [&](VipsImage* from, VipsImage** to) {
+                  return vips_boolean(from, numbers.get(), to, VIPS_OPERATION_BOOLEAN_AND, nullptr);
+                }) &&
+      applyStep(shades, [&](VipsImage* from, VipsImage** to) {
+        return vips_copy(from, to, "interpretation",
+                         bands == 3 ? VIPS_INTERPRETATION_sRGB : VIPS_INTERPRETATION_B_W, nullptr);
+      });
+  if (!shaded) return -1;
+  vips_image_remove(shades.get(), VIPS_META_ICC_NAME);
+  *made = shades.release();
   return 0;
 }
 

@@ -18,8 +18,8 @@ struct ValueRange {
 // without a sign and high-dynamic-range colours.
 bool isMeasured(const VipsImage* image) noexcept;
 
-// Of how many bits at most 16-bit grey is taken for measured: cameras of heat and depth store 12
-// and 14 bits of 16, which would be nearly black.
+// Grey of 16 bits that ends below this is taken for measured: cameras of heat and depth store 12 or
+// 14 bits of 16, which would be nearly black.
 inline constexpr double kMostOfDarkGrey = 16384;
 bool isGrey16(const VipsImage* image) noexcept;
 

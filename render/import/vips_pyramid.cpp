@@ -1,7 +1,6 @@
 #include "render/import/vips_pyramid.h"
 
 #include <algorithm>
-#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -11,16 +10,12 @@
 #include "daemon/base/files.h"
 #include "render/image/pyramid_file.h"
 #include "render/import/value_range.h"
+#include "render/import/vips_image.h"
 
 namespace merlin::render::import {
 namespace {
 
 using namespace std::string_view_literals;
-
-struct Unref {
-  void operator()(VipsImage* image) const { g_object_unref(image); }
-};
-using Image = std::unique_ptr<VipsImage, Unref>;
 
 // What libvips reported, on one line; empty if it reported nothing.
 std::string reported() {
@@ -57,16 +52,6 @@ Error broken(const std::string& in) {
   return {Errc::kMalformed, fmt::format("{}: cannot be read as a picture: {}", in, why)};
 }
 
-// A step of the way: replaces the image by what `step` makes of it. `step` returns what functions
-// of libvips return: 0 for success.
-template <typename Step>
-bool applyStep(Image& image, const Step& step) {
-  VipsImage* made = nullptr;
-  if (step(image.get(), &made) != 0) return false;
-  image.reset(made);
-  return true;
-}
-
 // Rows are read once, from top to bottom; a picture that must be turned is needed as a whole.
 Result<Image> open(const std::string& in) {
   for (const VipsAccess access : {VIPS_ACCESS_SEQUENTIAL, VIPS_ACCESS_RANDOM}) {
@@ -87,13 +72,20 @@ std::string textOf(const ValueRange& range) {
   return fmt::format("values from {:.6g} (black) to {:.6g} (white)", range.low, range.high);
 }
 
+constexpr double kFinding = 0.5;  // part of the work that finding a picture's range is
+
+// Whether the picture's range has to be found before it can be imported.
+bool isReadTwice(const VipsImage* image, const PyramidOptions& options) {
+  return !options.range && (isMeasured(image) || isGrey16(image));
+}
+
 // The range that makes shades of the picture's values; nothing if they are colours as they are.
 // Reads the picture, which has to be opened again then.
 std::optional<ValueRange> rangeFor(VipsImage* image, const PyramidOptions& options,
                                    const PictureReports& reports) {
   if (options.range) return ValueRange{(*options.range)[0], (*options.range)[1]};
-  if (!isMeasured(image) && !isGrey16(image)) return std::nullopt;
-  const auto found = rangeOf(image, [&](double share) { reports.progress(share / 2, 0); });
+  if (!isReadTwice(image, options)) return std::nullopt;
+  const auto found = rangeOf(image, [&](double share) { reports.progress(kFinding * share, 0); });
   if (!found && vips_error_buffer()[0] != '\0') return std::nullopt;  // told when it is read again
   vips_error_clear();
   const bool dark = !isMeasured(image) && (!found || found->high >= kMostOfDarkGrey);
@@ -106,20 +98,26 @@ std::optional<ValueRange> rangeFor(VipsImage* image, const PyramidOptions& optio
   return range;
 }
 
+struct Opened {
+  Image image;
+  double done = 0;  // part of the work that finding the range was
+};
+
 // Opens the picture, its values as shades where they are no colours.
-Result<Image> openShaded(const std::string& in, const PyramidOptions& options,
-                         const PictureReports& reports) {
+Result<Opened> openShaded(const std::string& in, const PyramidOptions& options,
+                          const PictureReports& reports) {
   auto image = open(in);
-  if (!image) return image;
+  if (!image) return image.error();
   const ImportedPicture size{vips_image_get_width(image->get()),
                              vips_image_get_height(image->get())};
   if (const auto may = reports.size(size); !may) return may.error();
-  const bool looked = isMeasured(image->get()) || isGrey16(image->get());
+  const bool twice = isReadTwice(image->get(), options);
   const auto range = rangeFor(image->get(), options, reports);
-  if (looked) image = open(in);  // from the top again
+  if (twice) image = open(in);  // from the top again
+  if (!image) return image.error();
   const auto shades = [&](VipsImage* from, VipsImage** to) { return stretch(from, *range, to); };
-  if (image && range && !applyStep(*image, shades)) return broken(in);
-  return image;
+  if (range && !applyStep(*image, shades)) return broken(in);
+  return Opened{*std::move(image), twice ? kFinding : 0};
 }
 
 bool toSrgb(Image& image) {
@@ -197,12 +195,15 @@ Result<ImportedPicture> importPicture(const std::string& in, const std::string& 
                                       const PictureReports& reports) {
   auto opened = openShaded(in, options, reports);
   if (!opened) return opened.error();
-  Image image = *std::move(opened);
+  Image image = std::move(opened->image);
+  const OnProgress on_progress = [&, done = opened->done](double share, std::int64_t pixels) {
+    reports.progress(done + (1 - done) * share, pixels);
+  };
   const ImportedPicture size{vips_image_get_width(image.get()), vips_image_get_height(image.get())};
   if (!toSrgb(image) || !mark(image, options.panorama)) return broken(in);
   vips_image_set_progress(image.get(), TRUE);
   g_signal_connect(image.get(), "eval", G_CALLBACK(&evaluated),
-                   const_cast<OnProgress*>(&reports.progress));
+                   const_cast<OnProgress*>(&on_progress));
   if (save(image.get(), out, options) == 0) return size;
   const std::string why = reported();
   const bool written = why.find("write") == std::string::npos &&
