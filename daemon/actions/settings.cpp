@@ -120,7 +120,7 @@ class BindingsBefore {
       const bool same_time = all_[k].with == b.with && all_[k].after_s == b.after_s;
       if ((same_time || isHeldAction(b.action)) && meets(k, b.input, all_[k].input)) return k;
     }
-    // The chord may name its inputs in the other order, or be a longer hold of an input alone.
+    // A chord before it has its input as the second one.
     for (const std::size_t k : by_with_[keyOf(b.input, b)])
       if (areTogether(all_[k], b) && meets(k, b.input, all_[k].with)) return k;
     if (b.with.empty()) return std::nullopt;

@@ -5,19 +5,38 @@
 
 #include "render/correct/io/mpcdi.h"
 #include "render/correct/output_correction.h"
+#include "render/frame/tile_arrangement.h"
 
 namespace merlin::wall {
 
-Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
-                                    const render::out::PictureSize& size,
-                                    render::correct::SignalParts parts, ThreadTeam& team,
-                                    render::correct::CorrectionPass& pass) {
-  const render::correct::CorrectionSettings& settings = output.correction;
+namespace {
+
+// Of an output whose tiles are all mounted alike.
+state::SeenAxes seenAxes(const std::vector<render::out::PlacedTile>& tiles) {
+  if (tiles.empty()) return {};
+  const render::frame::TileAxes axes = render::frame::axesOf(tiles.front());
+  const auto step = [](const render::frame::TileAxes::Step& s) {
+    return state::Offset{static_cast<double>(s.x), static_cast<double>(s.y)};
+  };
+  return {step(axes.column), step(axes.row)};
+}
+
+}  // namespace
+
+AlignedOutput alignedOutput(const render::out::OutputSettings& output,
+                            const render::out::PictureSize& size,
+                            render::correct::SignalParts parts, ThreadTeam& team,
+                            render::correct::CorrectionPass& pass, std::string& unreadable) {
+  render::correct::CorrectionSettings settings = output.correction;
   std::shared_ptr<render::correct::MeasuredCorrection> measured;  // used by `make` and its copies
   if (!settings.mpcdi.empty()) {
-    auto read = render::correct::readMeasured(settings.mpcdi, settings.mpcdi_region);
-    if (!read) return read.error();
-    measured = std::make_shared<render::correct::MeasuredCorrection>(*std::move(read));
+    if (auto read = render::correct::readMeasured(settings.mpcdi, settings.mpcdi_region)) {
+      measured = std::make_shared<render::correct::MeasuredCorrection>(*std::move(read));
+    } else {
+      unreadable = read.error().what;
+      settings.mpcdi.clear();
+      settings.mpcdi_region.clear();
+    }
   }
   const auto make = [size, parts, measured, &team,
                      &pass](const render::correct::CorrectionSettings& wanted) {
@@ -27,7 +46,9 @@ Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
         std::make_unique<render::correct::OutputCorrection>(std::move(map),
                                                             Threads(threadsOr(0), team), &pass));
   };
-  return AlignedOutput{output.shownName(), size.width, size.height, settings, make};
+  AlignedOutput made{output.shownName(), size.width, size.height, settings, make};
+  made.axes = seenAxes(output.tiles);
+  return made;
 }
 
 }  // namespace merlin::wall

@@ -1,7 +1,8 @@
 // Makes an output of the configuration one that the Aligner can align.
 #pragma once
 
-#include "daemon/base/result.h"
+#include <string>
+
 #include "daemon/base/thread_team.h"
 #include "daemon/wall/aligner.h"
 #include "render/correct/gpu/shader_pass.h"
@@ -11,10 +12,12 @@ namespace merlin::wall {
 
 // Returns an output that can be aligned; its `make` builds corrections, which are applied on the
 // wall's thread, by `pass` or by the threads of `team`. Both must outlive it. `parts`: the pictures
-// in its signal, of `size` together. Errors: those of readMeasured().
-Result<AlignedOutput> alignedOutput(const render::out::OutputSettings& output,
-                                    const render::out::PictureSize& size,
-                                    render::correct::SignalParts parts, ThreadTeam& team,
-                                    render::correct::CorrectionPass& pass);
+// in its signal, of `size` together. A measured file that cannot be read makes one output look
+// wrong, which is better than a dark wall: `unreadable` receives why, and the rest of the
+// correction counts.
+AlignedOutput alignedOutput(const render::out::OutputSettings& output,
+                            const render::out::PictureSize& size,
+                            render::correct::SignalParts parts, ThreadTeam& team,
+                            render::correct::CorrectionPass& pass, std::string& unreadable);
 
 }  // namespace merlin::wall

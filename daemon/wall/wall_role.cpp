@@ -62,21 +62,6 @@ std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
   return panels;
 }
 
-render::out::OutputSettings withoutMeasured(render::out::OutputSettings output) {
-  output.correction.mpcdi.clear();
-  output.correction.mpcdi_region.clear();
-  return output;
-}
-
-// Of an output whose tiles are all mounted alike.
-state::SeenAxes seenAxes(const render::out::PlacedTile& placed) {
-  const render::frame::TileAxes axes = render::frame::axesOf(placed);
-  const auto step = [](const render::frame::TileAxes::Step& s) {
-    return state::Offset{static_cast<double>(s.x), static_cast<double>(s.y)};
-  };
-  return {step(axes.column), step(axes.row)};
-}
-
 Error notShownYet() { return {Errc::kBusy, "the wall has not shown its first frame yet"}; }
 
 }  // namespace
@@ -101,7 +86,7 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& configured,
                                               *std::move(scene), *std::move(segment), keeper,
                                               kept_files, watch, clock));
   if (const auto made = role->makeOutputs(generation); !made) return made.error();
-  if (const auto made = role->makeCorrections(); !made) return made.error();
+  role->makeCorrections();
   role->makeSignals(generation);
   if (const auto made = role->shown_folder_.make(); !made)
     role->model_watch_.report(faultEvent(made.error().what));
@@ -170,7 +155,7 @@ void WallRole::makeChecks() {
 }
 
 // Outputs of kind shared_memory receive the frame without correction; all others can be aligned.
-Result<Ok> WallRole::makeCorrections() {
+void WallRole::makeCorrections() {
   std::vector<AlignedOutput> aligned;
   std::vector<std::string> refused;
   for (std::size_t i = 0; i < settings_.wall.outputs.size(); ++i) {
@@ -181,43 +166,35 @@ Result<Ok> WallRole::makeCorrections() {
       continue;
     }
     const auto parts = render::stereo::signalParts(output, settings_.wall.tiles);
-    const auto make = [&](const render::out::OutputSettings& shown) {
-      return alignedOutput(shown, *render::out::pictureSize(output, settings_.wall.tiles),
-                           parts.value_or(render::correct::SignalParts{}), team_, shader_pass_);
-    };
-    auto made = make(output);
-    if (!made && !output.correction.mpcdi.empty()) {
+    std::string unreadable;
+    AlignedOutput made = alignedOutput(
+        output, *render::out::pictureSize(output, settings_.wall.tiles),
+        parts.value_or(render::correct::SignalParts{}), team_, shader_pass_, unreadable);
+    if (!unreadable.empty())
       model_watch_.report(faultEvent(
           fmt::format("output {} is shown without its measured warp and blend: {}; mend the file "
                       "and restart the wall",
-                      output.shownName(), made.error().what)));
-      made = make(withoutMeasured(output));
-    }
-    if (!made)
-      return Error{made.error().code,
-                   fmt::format("/wall/outputs/{}/correction: {}", i, made.error().what)};
+                      output.shownName(), unreadable)));
     std::vector<std::unique_ptr<render::frame::Correction>> links;
     if (!output.tiles.empty())
       links.push_back(std::make_unique<render::frame::TileArrangement>(plan_, output.tiles));
     auto correction = std::make_unique<render::frame::ReplaceableCorrection>();
-    made->correction = correction.get();
-    if (!output.tiles.empty()) made->axes = seenAxes(output.tiles.front());
-    for (std::size_t corner = 0; corner < made->marks.size(); ++corner)
-      made->marks[corner] = render::testcard::cornerOf(plan_, output, corner);
+    made.correction = correction.get();
+    for (std::size_t corner = 0; corner < made.marks.size(); ++corner)
+      made.marks[corner] = render::testcard::cornerOf(plan_, output, corner);
     links.push_back(std::move(correction));
     if (!parts) {
-      made->fixed =
+      made.fixed =
           "its pictures of both eyes are not the halves of its signal; let it show one tile, or "
           "use stereo mode two_outputs or anaglyph";
     }
-    aligned.push_back(*std::move(made));
+    aligned.push_back(std::move(made));
     corrections_.push_back(
         links.size() == 1 ? std::move(links.front())
                           : std::make_unique<render::frame::CorrectionChain>(std::move(links)));
   }
   aligner_ =
       std::make_unique<Aligner>(std::move(aligned), std::move(refused), cards_, keeper_, watch_);
-  return Ok{};
 }
 
 void WallRole::makeSignals(std::uint64_t generation) {

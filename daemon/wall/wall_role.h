@@ -144,7 +144,7 @@ class WallRole {
            KeptFiles& kept_files, ThreadWatch& watch, Clock& clock);
   Result<Ok> makeOutputs(std::uint64_t generation);
   void makeChecks();
-  Result<Ok> makeCorrections();
+  void makeCorrections();
   void makeSignals(std::uint64_t generation);
   std::uint32_t firstNumber() const noexcept;
   Result<Ok> showEntry(const ContentEntry& entry, std::uint32_t request);

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "render/room/geometry.h"
+#include "render/tiles/plane_parts.h"
 
 namespace merlin::render::room {
 namespace {
@@ -68,23 +69,19 @@ double common(double low1, double length1, double low2, double length2) {
   return std::min(low1 + length1, low2 + length2) - std::max(low1, low2);
 }
 
-std::optional<TileOverlap> overlapOf(const tiles::TileSettings& a, const tiles::TileSettings& b) {
+std::optional<TileOverlap> overlapOf(const tiles::Tile& a, const tiles::PlanePart& first,
+                                     const tiles::Tile& b, const tiles::PlanePart& second) {
   constexpr double kLeast_m = 0.001;
-  const Screen first = screenOf(a), second = screenOf(b);
-  const Eigen::Vector3d right = first.across.normalized(), up = first.up.normalized();
-  const Eigen::Vector3d between = second.corner - first.corner;
-  const bool alike = right.dot(second.across.normalized()) > 1 - 1e-9 &&
-                     up.dot(second.up.normalized()) > 1 - 1e-9 &&
-                     std::abs(first.normal().dot(between)) < kLeast_m;
-  const double x = right.dot(between), y = up.dot(between);
-  const double width = common(0, first.across.norm(), x, second.across.norm());
-  const double height = common(0, first.up.norm(), y, second.up.norm());
-  if (!alike || width < kLeast_m || height < kLeast_m) return std::nullopt;
-  const auto shares = [&](const Screen& s) {
-    return std::array{width / s.across.norm(), height / s.up.norm()};
+  const double width = common(first.left, first.width, second.left, second.width);
+  const double height = common(first.top, first.height, second.top, second.height);
+  if (first.plane != second.plane || width < kLeast_m || height < kLeast_m) return std::nullopt;
+  const auto pixels = [&](const tiles::Tile& tile, const tiles::PlanePart& part) {
+    return std::array{static_cast<int>(std::lround(width / part.width * tile.width)),
+                      static_cast<int>(std::lround(height / part.height * tile.height))};
   };
-  return x >= 0 ? TileOverlap{a.name, b.name, width, height, shares(first), shares(second)}
-                : TileOverlap{b.name, a.name, width, height, shares(second), shares(first)};
+  if (second.left >= first.left)
+    return TileOverlap{a.name, b.name, width, height, pixels(a, first), pixels(b, second)};
+  return TileOverlap{b.name, a.name, width, height, pixels(b, second), pixels(a, first)};
 }
 
 }  // namespace
@@ -97,13 +94,14 @@ std::vector<TileFigures> tileTable(const tiles::TilesSettings& settings,
   return table;
 }
 
-std::vector<TileOverlap> tileOverlaps(const tiles::TilesSettings& settings) {
+std::vector<TileOverlap> tileOverlaps(const tiles::TilePlan& plan) {
+  const auto parts = tiles::planeParts(plan);
   std::vector<TileOverlap> overlaps;
-  for (std::size_t i = 0; i < settings.tiles.size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      const tiles::TileSettings &a = settings.tiles[k], &b = settings.tiles[i];
-      if (!a.hasScreen() || !b.hasScreen() || a.eye != b.eye) continue;
-      if (const auto overlap = overlapOf(a, b)) overlaps.push_back(*overlap);
+      const tiles::Tile &a = plan.tiles[k], &b = plan.tiles[i];
+      if (!parts[k] || !parts[i] || a.eye != b.eye) continue;
+      if (const auto overlap = overlapOf(a, *parts[k], b, *parts[i])) overlaps.push_back(*overlap);
     }
   }
   return overlaps;

@@ -43,13 +43,13 @@ std::vector<TileFigures> tileTable(const tiles::TilesSettings& settings,
 struct TileOverlap {
   std::string left, right;           // names of the tiles
   double width_m = 0, height_m = 0;  // of the common part
-  // The common part's width and height as shares of the tile's.
-  std::array<double, 2> of_left{}, of_right{};
+  // The common part in pixels of each, across and down.
+  std::array<int, 2> left_px{}, right_px{};
 };
 
-// Overlaps between tiles of the same eye whose screens are in one plane and have the same
-// orientation, if at least a millimetre wide and high.
-std::vector<TileOverlap> tileOverlaps(const tiles::TilesSettings& settings);
+// Overlaps between tiles of the same eye on one plane (planeParts() of render/tiles), if at least a
+// millimetre wide and high.
+std::vector<TileOverlap> tileOverlaps(const tiles::TilePlan& plan);
 
 // Corners of a tile's picture in eye coordinates [m], counter-clockwise from the lower left: those
 // of its screen; without a screen, those at `distance_m` along its direction.

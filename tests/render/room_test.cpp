@@ -145,7 +145,7 @@ TEST(Room, ProjectorsMayOverlap) {
   EXPECT_LT((directionOf(wall.tile("left"), 1, 1) - seam).norm(), 1e-6);
   // In the right tile, the same point is 0.4 m of 1.2 m from the left edge.
   EXPECT_LT((directionOf(wall.tile("right"), 2 * 0.4F / 1.2F - 1, 1) - seam).norm(), 1e-6);
-  const auto overlaps = room::tileOverlaps(wall.settings);
+  const auto overlaps = room::tileOverlaps(wall.plan);
   ASSERT_EQ(overlaps.size(), 1u);
   EXPECT_EQ(overlaps[0].left, "left");
   EXPECT_EQ(overlaps[0].right, "right");
@@ -156,13 +156,13 @@ TEST(Room, ProjectorsMayOverlap) {
 TEST(Room, PanelsThatTouchDoNotOverlap) {
   for (const room::RoomPreset name :
        {room::RoomPreset::kFlat, room::RoomPreset::kSix, room::RoomPreset::kHexagon})
-    EXPECT_TRUE(room::tileOverlaps(wallOf(presetRoom(name)).settings).empty()) << nameOf(name);
+    EXPECT_TRUE(room::tileOverlaps(wallOf(presetRoom(name)).plan).empty()) << nameOf(name);
 }
 
 TEST(Room, APanelBehindAnotherDoesNotOverlapIt) {
   room::RoomSettings room;
   room.panels = {{"near", 1, 1, 0, {-0.5, -0.5, -1}}, {"far", 1, 1, 0, {-0.5, -0.5, -1.5}}};
-  EXPECT_TRUE(room::tileOverlaps(wallOf(room).settings).empty());
+  EXPECT_TRUE(room::tileOverlaps(wallOf(room).plan).empty());
 }
 
 // Each direction around the viewer, at eye height, is in exactly one tile.
@@ -326,7 +326,7 @@ TEST(RoomPresets, ProjectorsOfAFlatRowOverlapOnOneScreen) {
     EXPECT_NEAR(wall.tiles[i].screen_m[0], -2.4 + 1.4 * static_cast<double>(i), 1e-9);
     EXPECT_NEAR(wall.tiles[i].screen_m[3], -0.4 + 1.4 * static_cast<double>(i), 1e-9);
   }
-  const auto overlaps = room::tileOverlaps(wall);
+  const auto overlaps = room::tileOverlaps(*tiles::planTiles(wall));
   ASSERT_EQ(overlaps.size(), 2u);
   EXPECT_EQ(overlaps[0].left, "panel_1");
   EXPECT_EQ(overlaps[0].right, "panel_2");
@@ -347,7 +347,7 @@ TEST(RoomPresets, SixProjectorsOverlapBothWays) {
   EXPECT_NEAR(part[1] + part[3], 2.4, 1e-9) << "and to its upper one";
   EXPECT_NEAR(part[2], 1.8, 1e-9);
   EXPECT_NEAR(part[3], 1.35, 1e-9);
-  EXPECT_EQ(room::tileOverlaps(*room::roomTiles(room, {})).size(), 7u + 4u)
+  EXPECT_EQ(room::tileOverlaps(*tiles::planTiles(*room::roomTiles(room, {}))).size(), 7u + 4u)
       << "side by side, above, across";
 }
 

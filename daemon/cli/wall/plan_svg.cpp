@@ -310,14 +310,6 @@ Cells cellsOf(const render::room::TileFigures& f) {
 
 }  // namespace
 
-std::array<int, 2> pixelsOf(const WallPlan& wall, const std::string& tile,
-                            const std::array<double, 2>& share) {
-  const auto t = std::ranges::find(wall.plan.tiles, tile, &render::tiles::Tile::name);
-  if (t == wall.plan.tiles.end()) return {};
-  return {static_cast<int>(std::lround(share[0] * t->width)),
-          static_cast<int>(std::lround(share[1] * t->height))};
-}
-
 std::vector<std::string> tableLines(const WallPlan& wall) {
   std::vector<std::string> lines = {
       lineOf({"tile", "kind", "pixels", "in frame", "view [deg]", "direction [deg]", "picture [m]",
@@ -326,12 +318,11 @@ std::vector<std::string> tableLines(const WallPlan& wall) {
     lines.push_back(lineOf(cellsOf(f)));
   lines.push_back(
       fmt::format("The frame has {} x {} pixels.", wall.plan.frame_width, wall.plan.frame_height));
-  for (const render::room::TileOverlap& o : render::room::tileOverlaps(wall.tiles)) {
-    const auto left = pixelsOf(wall, o.left, o.of_left),
-               right = pixelsOf(wall, o.right, o.of_right);
-    lines.push_back(fmt::format(
-        "{} and {} overlap by {:.3f} x {:.3f} m: {} x {} pixels of {}, {} x {} of {}.", o.left,
-        o.right, o.width_m, o.height_m, left[0], left[1], o.left, right[0], right[1], o.right));
+  for (const render::room::TileOverlap& o : render::room::tileOverlaps(wall.plan)) {
+    lines.push_back(
+        fmt::format("{} and {} overlap by {:.3f} x {:.3f} m: {} x {} pixels of {}, {} x {} of {}.",
+                    o.left, o.right, o.width_m, o.height_m, o.left_px[0], o.left_px[1], o.left,
+                    o.right_px[0], o.right_px[1], o.right));
   }
   return lines;
 }

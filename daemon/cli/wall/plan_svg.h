@@ -1,7 +1,6 @@
 // The wall from above as SVG, with the table of its tiles.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -18,10 +17,6 @@ struct WallPlan {
   render::tiles::TilePlan plan;  // of `tiles`
   double wall_distance_m = 2;    // from the eye at which tiles without a screen are drawn
 };
-
-// A tile's pixels, across and down, of a share of its picture.
-std::array<int, 2> pixelsOf(const WallPlan& wall, const std::string& tile,
-                            const std::array<double, 2>& share);
 
 // The table as lines of text: a heading, a line for each tile, then its overlaps.
 std::vector<std::string> tableLines(const WallPlan& wall);

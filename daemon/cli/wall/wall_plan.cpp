@@ -95,13 +95,13 @@ Json tableJson(const WallPlan& wall) {
     json["tiles"].push_back(std::move(tile));
   }
   json["overlaps"] = Json::array();
-  for (const render::room::TileOverlap& o : render::room::tileOverlaps(wall.tiles)) {
+  for (const render::room::TileOverlap& o : render::room::tileOverlaps(wall.plan)) {
     json["overlaps"].push_back({{"left", o.left},
                                 {"right", o.right},
                                 {"width_m", o.width_m},
                                 {"height_m", o.height_m},
-                                {"left_px", pixelsOf(wall, o.left, o.of_left)},
-                                {"right_px", pixelsOf(wall, o.right, o.of_right)}});
+                                {"left_px", o.left_px},
+                                {"right_px", o.right_px}});
   }
   return json;
 }
