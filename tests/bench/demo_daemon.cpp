@@ -1,8 +1,11 @@
 #include "tests/bench/demo_daemon.h"
 
 #include <filesystem>
+#include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "tests/bench/figures.h"
 

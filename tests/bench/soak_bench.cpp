@@ -2,6 +2,7 @@
 // in minutes: memory, descriptors, late frames, and whether every event is explained. The same seed
 // is the same day. In real time, on the real programs: ./dev soak.
 #include <filesystem>
+#include <sstream>
 #include <thread>
 
 #include <CLI/CLI.hpp>

@@ -5,14 +5,17 @@
 // neither hang nor believe what it finds. Exits 1 where one of the two happened.
 #include <atomic>
 #include <cstring>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/base/random.h"

@@ -1,4 +1,6 @@
 // Alarms: for which events a program is started, and how often; a program with a limited time.
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 

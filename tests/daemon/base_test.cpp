@@ -3,10 +3,13 @@
 #include <csignal>
 #include <filesystem>
 #include <thread>
+#include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/child_work.h"

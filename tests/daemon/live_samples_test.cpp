@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
 #include "daemon/shm/fields.h"

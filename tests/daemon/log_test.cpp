@@ -2,6 +2,7 @@
 #include "daemon/base/log.h"
 
 #include <array>
+#include <cstdlib>
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,6 +1,7 @@
 // When the wall reads a model file that is replaced while it runs.
 #include "daemon/wall/model_watch.h"
 
+#include <filesystem>
 #include <utility>
 
 #include <gtest/gtest.h>

@@ -1,11 +1,13 @@
 // The limits of a server's connections: places, time, bytes and turns, tested with a protocol of
 // lines.
 #include <fstream>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include "daemon/net/connection_server.h"
 #include "tests/support/eventually.h"

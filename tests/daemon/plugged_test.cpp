@@ -2,6 +2,7 @@
 #include "daemon/cli/devices/plugged.h"
 
 #include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

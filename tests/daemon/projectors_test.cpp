@@ -2,6 +2,8 @@
 // cool-down and a projector that is gone for a while; and what commands and status say.
 #include "daemon/devices/projectors.h"
 
+#include <vector>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

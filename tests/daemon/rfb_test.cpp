@@ -1,8 +1,10 @@
 // merlin-rfb without its library: what of a frame is shown, what input means, the settings.
 #include <algorithm>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/base/commands.h"
 #include "daemon/rfb/card.h"

@@ -2,9 +2,12 @@
 // over a real, encrypted socket.
 #include "daemon/status/sample_link.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/status/documents.h"
 #include "daemon/status/server.h"

@@ -1,5 +1,6 @@
 // Readers that know only the table of fields: the C and the Python reader that are shipped, run as
 // programs against a live writer.
+#include <sstream>
 #include <thread>
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <grp.h>

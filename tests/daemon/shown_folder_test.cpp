@@ -2,6 +2,7 @@
 #include "daemon/wall/shown_folder.h"
 
 #include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

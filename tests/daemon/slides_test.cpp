@@ -1,5 +1,6 @@
 // Which slide of a folder comes next, and which one is the last, while the folder changes.
 #include <filesystem>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,10 @@
 // The daemon's state: steps and offsets, the file's text, and what happens to files that are
 // damaged, newer, or cannot be written.
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/state/state_folder.h"
 #include "daemon/state/state_keeper.h"

@@ -2,6 +2,7 @@
 #include "daemon/wall/turns.h"
 
 #include <algorithm>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,7 @@
 // The wall follows the viewer's tracked head: while it moves, frames are drawn in time; while it
 // rests, the picture becomes finer.
+#include <gtest/gtest.h>
+
 #include "render/stereo/eye_tiles.h"
 #include "tests/support/fake_wall.h"
 #include "tests/support/told.h"

@@ -1,5 +1,7 @@
 // PJLink without a network: the protocol and hostile answers, a projector's state, the schedule.
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "drivers/pjlink/digest.h"

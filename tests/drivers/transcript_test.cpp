@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include "daemon/base/unique_fd.h"
 #include "drivers/io/cpu_latency.h"

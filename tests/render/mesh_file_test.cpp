@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,12 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "daemon/base/files.h"
 #include "render/correct/io/archive.h"

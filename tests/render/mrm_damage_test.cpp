@@ -1,6 +1,7 @@
 // .mrm files that are truncated, damaged, of a later version, or malicious are refused; the message
 // names the file and the section.
 #include <functional>
+#include <vector>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "render/reduce/reduce.h"
 #include "tests/render/mrm_files.h"

@@ -8,6 +8,7 @@
 #include <png.h>
 #include <sys/stat.h>
 #include <turbojpeg.h>
+#include <unistd.h>
 
 #include "render/image/image_file.h"
 #include "render/mesh/coincident.h"

@@ -1,6 +1,7 @@
 // OFF, OM and STL files, read by OpenMesh: what is accepted and what is refused.
 #include <array>
 #include <string>
+#include <vector>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <thread>
 #include <tuple>
 #include <utility>

@@ -1,5 +1,6 @@
 // The sample content, the sample output and the sample reader fulfil the contracts of their ports.
 #include <sstream>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,9 @@
 #include <csignal>
 #include <filesystem>
 #include <mutex>
+#include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

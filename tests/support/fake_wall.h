@@ -2,7 +2,6 @@
 // told what to say, and the loop between them.
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,7 +12,6 @@
 #include "daemon/wall/wall_loop.h"
 #include "render/content/model_content.h"
 #include "tests/support/fake_clock.h"
-#include "tests/support/wavy_sheet.h"
 
 namespace merlin::wall {
 
@@ -23,10 +21,7 @@ using std::chrono::milliseconds;
 
 inline const Duration kPeriod = fromSeconds(1.0 / 30);
 
-inline const Dendrogram& model() {
-  static const Dendrogram made = test::wavySheet();
-  return made;
-}
+const Dendrogram& model();
 
 // 4 ms a frame and `per_triangle` each; full detail costs `slices` of 3 ms, any other step as many
 // as it takes.
@@ -35,43 +30,14 @@ class FakePainter final : public render::frame::FramePainter {
   FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
       : clock_(clock), per_triangle_(per_triangle), slices_(slices) {}
 
-  render::frame::DrawTimes draw(const Request& request) override {
-    const Duration fixed = milliseconds(4) / (divisor * divisor);
-    const Duration drawing = costOf(request.step) * slow;
-    const Timestamp began = clock_.now();
-    clock_.advance(drawing);
-    const Timestamp read = clock_.now();
-    std::fill(pixels_.begin(), pixels_.end(), kMoving);
-    clock_.advance(fixed);
-    drawn.push_back(clock_.now());
-    steps_drawn.push_back(request.step);
-    using Kind = render::frame::FrameStep::Kind;
-    steps_ = {{Kind::kChoose, 0, began, began},
-              {Kind::kDraw, 0, began, read},
-              {Kind::kReadBack, 0, read, clock_.now()}};
-    return {drawing, fixed, gives_way};
-  }
+  render::frame::DrawTimes draw(const Request& request) override;
   void setSizeDivisor(int now) override { divisor = now; }
   bool sees(const Eigen::Isometry3f& T_eye_model) const override {
     return T_eye_model.translation().norm() < furthest_seen_m;
   }
   std::span<const render::frame::FrameStep> steps() const noexcept override { return steps_; }
-  void beginRefining(const Eigen::Isometry3f&, std::size_t step) override {
-    refined += step == 0 ? 1 : 0;
-    if (left_out == render::content::Pending::kArrived)
-      left_out = render::content::Pending::kNothing;
-    left_ = step == 0 ? slices_ : static_cast<int>(costOf(step) / milliseconds(3)) + 1;
-  }
-  bool refine(Timestamp until) override {
-    steps_.clear();
-    while (clock_.now() + milliseconds(3) < until) {
-      clock_.advance(milliseconds(3));
-      if (--left_ > 0) continue;
-      std::fill(pixels_.begin(), pixels_.end(), kRefined);
-      return true;
-    }
-    return false;
-  }
+  void beginRefining(const Eigen::Isometry3f&, std::size_t step) override;
+  bool refine(Timestamp until) override;
   std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 
   static constexpr std::uint8_t kMoving = 0, kRefined = 90;
@@ -90,9 +56,7 @@ class FakePainter final : public render::frame::FramePainter {
   std::vector<std::size_t> steps_drawn;
 
  private:
-  Duration costOf(std::size_t level) const {
-    return per_triangle_ * static_cast<std::int64_t>(model().trianglesAt(level));
-  }
+  Duration costOf(std::size_t level) const;
   test::FakeClock& clock_;
   Duration per_triangle_;
   int slices_, left_ = 0;
@@ -102,18 +66,7 @@ class FakePainter final : public render::frame::FramePainter {
 // Pushes the ball while `pushed`; asks the loop to stop after `until`.
 class FakeFeed final : public InputFeed {
  public:
-  WallInput read(Timestamp now) override {
-    begins.push_back(now);
-    if (on_begin) on_begin(now);
-    WallInput input = actions;
-    actions.next_content = actions.previous_content = actions.snapshot = 0;
-    actions.blank = actions.freeze = 0;
-    actions.align = {};
-    input.scene.ball.emplace();
-    input.scene.ball->rotation[1] = pushed ? 0.5F : 0.0F;
-    input.scene.hand = hand;
-    return input;
-  }
+  WallInput read(Timestamp now) override;
   Duration age() const noexcept override { return milliseconds(7); }
 
   bool pushed = true;
@@ -133,11 +86,7 @@ class RecordingOutput final : public render::out::Output {
   RecordingOutput(RecordedFrames& recorded, const Clock& clock)
       : recorded_(recorded), clock_(clock) {}
   Result<std::optional<Timestamp>> present(const render::out::Signal& signal,
-                                           const render::out::FrameInfo& info) override {
-    recorded_.frames.push_back(info);
-    recorded_.firsts.push_back(signal.pixels.empty() ? std::uint8_t{0} : signal.pixels[0]);
-    return std::optional(clock_.now());
-  }
+                                           const render::out::FrameInfo& info) override;
 
  private:
   RecordedFrames& recorded_;
@@ -147,55 +96,14 @@ class RecordingOutput final : public render::out::Output {
 class FakeWall : public testing::Test {
  protected:
   explicit FakeWall(Duration per_triangle = microseconds(10), int slices = 40,
-                    const render::governor::GovernorSettings& settings = {})
-      : painter_(clock_, per_triangle, slices), governor_(settings) {}
+                    const render::governor::GovernorSettings& settings = {});
+  ~FakeWall() override;
 
   // Runs for `seconds` of virtual time.
-  void run(double seconds, const std::function<void(Timestamp)>& on_begin = {}) {
-    const Timestamp end = clock_.now() + fromSeconds(seconds);
-    feed_.on_begin = [&, end](Timestamp now) {
-      if (on_begin) on_begin(now);
-      if (now >= end) stop_.request_stop();
-    };
-    WallLoop loop(parts());
-    loop_ = &loop;
-    if (calibrated_) loop.calibrate();
-    loop.run(stop_.get_token(), [&] { ++first_frames_; });
-  }
-  WallParts parts() {
-    std::vector<render::frame::Overlay*> overlays = {&curtain_};
-    if (marker_) overlays.insert(overlays.begin(), marker_);
-    delivery_ = std::make_unique<render::frame::Delivery>(plan_, outputs_, std::move(overlays),
-                                                          std::move(corrections_));
-    attendance_ = std::make_unique<Attendance>(playlist_);
-    return {
-        .contents = contents_,
-        .scene = scene_,
-        .governor = governor_,
-        .feed = feed_,
-        .delivery = *delivery_,
-        .slots = {*stats_, trace_.get(), interaction_.get(), output_stats_.get(), content_.get()},
-        .clock = clock_,
-        .frame_clock = frame_clock_,
-        .attendance = *attendance_,
-        .curtain = &curtain_,
-        .marker = marker_,
-        .fade_frames = fade_frames_,
-        .return_after_s = return_after_s_,
-        .replacements = replacements_,
-        .viewer = viewer_,
-        .on_snapshot = on_snapshot_,
-        .on_align = on_align_,
-        .first_content = first_content_,
-        .listed = listed_,
-        .playlist = playlist_places_};
-  }
+  void run(double seconds, const std::function<void(Timestamp)>& on_begin = {});
+  WallParts parts();
   shm::WallStats stats() const { return *stats_->read(); }
-  render::out::OutputSet recordingOutputs() {
-    std::vector<render::out::NamedOutput> outputs;
-    outputs.push_back({"recorder", "fake", std::make_unique<RecordingOutput>(frames_, clock_)});
-    return render::out::OutputSet(std::move(outputs));
-  }
+  render::out::OutputSet recordingOutputs();
 
   test::FakeClock clock_;
   render::out::TimerFrameClock frame_clock_{clock_};

@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <string>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pty.h>
 #include <sys/wait.h>
 #include <termios.h>
+#include <unistd.h>
 
 #include "render/image/image_file.h"
 #include "tests/system/merlind.h"

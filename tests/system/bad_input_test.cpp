@@ -1,4 +1,7 @@
 // User errors: each gives one clear message and the right exit status, and leaves nothing behind.
+#include <filesystem>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "daemon/base/sanitizer.h"

@@ -1,9 +1,13 @@
 // Whatever merlind refuses to start with, --check-config refuses with the same messages.
+#include <filesystem>
+#include <sstream>
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/base/sanitizer.h"
 #include "tests/system/merlind.h"

@@ -2,6 +2,7 @@
 // mesh_cli_test.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

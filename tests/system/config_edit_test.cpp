@@ -1,9 +1,11 @@
 // merlin config edit with editors that are scripts: what is saved, what is not, and who owns it.
 #include <filesystem>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/system/merlind.h"
 

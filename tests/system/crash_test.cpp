@@ -1,6 +1,7 @@
 // What a merlind that was killed leaves for whoever looks for the fault.
 #include <filesystem>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
 #include "drivers/io/transcript.h"

@@ -1,8 +1,10 @@
 // Every kind of alarm that the documents describe, raised for real once: a fault at a real merlind,
 // of which a real merlind --role alarms tells a program that is for that kind alone.
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Gestures in time at a real merlind: the records of a Fastrak that a synthetic person wears are
 // replayed as its line, beside an emulated glove.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "daemon/base/commands.h"

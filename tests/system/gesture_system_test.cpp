@@ -1,4 +1,6 @@
 // merlin gesture, run as a person runs it: takes of an emulated hand, and of synthetic people.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

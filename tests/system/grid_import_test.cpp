@@ -2,6 +2,7 @@
 // what GDAL reads. All files are synthetic; their bytes are written here.
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 

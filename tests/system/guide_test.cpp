@@ -1,4 +1,5 @@
 // The guide "From boxes to wall": its commands exist, its pieces of configuration are valid.
+#include <filesystem>
 #include <regex>
 #include <sstream>
 #include <string>

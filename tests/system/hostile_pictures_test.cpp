@@ -6,8 +6,10 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/net/connection_server.h"
 #include "tests/support/pyramids.h"

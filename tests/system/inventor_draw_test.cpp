@@ -11,6 +11,7 @@
 #include <Inventor/nodes/SoPerspectiveCamera.h>
 #include <Inventor/sensors/SoNodeSensor.h>
 #include <Inventor/sensors/SoSensorManager.h>
+#include <gtest/gtest.h>
 
 #include "tests/support/eventually.h"
 #include "tests/system/inventor.h"

@@ -14,6 +14,7 @@
 #include <Inventor/details/SoFaceDetail.h>
 #include <Inventor/nodes/SoShape.h>
 #include <Inventor/sensors/SoNodeSensor.h>
+#include <gtest/gtest.h>
 
 namespace merlin::test {
 namespace {

@@ -2,12 +2,12 @@
 // own.
 #pragma once
 
-#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/shm/segment.h"
@@ -30,109 +30,39 @@ struct MerlindOptions {
 };
 
 // An entry of the configuration's list of devices. `own`: the settings of its driver.
-inline nlohmann::json deviceEntry(const std::string& name, const std::string& driver,
-                                  const std::string& port = {},
-                                  const nlohmann::json& own = nullptr) {
-  nlohmann::json entry = {{"name", name}, {"driver", driver}};
-  if (!port.empty()) entry["port"] = port;
-  if (!own.is_null()) entry[driver] = own;
-  return entry;
-}
+nlohmann::json deviceEntry(const std::string& name, const std::string& driver,
+                           const std::string& port = {}, const nlohmann::json& own = nullptr);
 
 // A configuration's list with this one device.
-inline nlohmann::json onlyDevice(const nlohmann::json& entry) {
-  return {{"devices", nlohmann::json::array({entry})}};
-}
+nlohmann::json onlyDevice(const nlohmann::json& entry);
 
 class Merlind {
  public:
   Merlind(const TempDir& dir, const std::string& model, const std::string& name,
-          MerlindOptions options = {})
-      : instance_(privateName(name)), config_(dir / (name + ".json")) {
-    nlohmann::json config = {
-        {"instance", instance_},
-        {"run_directory", dir.path()},
-        {"state_file", dir / (name + ".state.json")},
-        {"postures", {{"file", kSource + "/config/postures.json"}}},
-        {"script", options.script},
-        {"wall", {{"model", model}, {"rate", {{"rate_hz", options.rate_hz}}}}}};
-    config.merge_patch(options.also);
-    writeText(config_, config.dump(2));
-    std::vector<std::string> arguments = {kMerlind, "--config", config_, "--role", options.role};
-    if (options.emulate) arguments.emplace_back("--emulate");
-    if (options.last_good) arguments.emplace_back("--last-good");
-    process_ = std::make_unique<Process>(std::move(arguments), options.environment);
-  }
+          MerlindOptions options = {});
 
   Process& process() { return *process_; }
   const std::string& instance() const { return instance_; }
   const std::string& config() const { return config_; }
   bool ready() { return process_->saysEventually("ready"); }
 
-  const shm::DeviceSlots* devices() {
-    if (!devices_) {
-      auto opened = shm::DevicesReader::open(shm::segmentName(instance_, "devices"));
-      if (!opened) return nullptr;
-      devices_.emplace(*std::move(opened));
-    }
-    return &**devices_;
-  }
-  shm::WallStats wall() {
-    const auto opened =
-        shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance_, "wall"));
-    return opened ? (*opened)->stats.read().value_or(shm::WallStats{}) : shm::WallStats{};
-  }
+  // Nothing before its shared memory is there.
+  const shm::DeviceSlots* devices();
+  shm::WallStats wall();
   // The last health of the device with this name; nothing before the first.
-  std::optional<DeviceHealth> health(const std::string& device) {
-    const auto* const slots = devices();
-    for (std::size_t i = 0; slots && i < slots->health.size(); ++i) {
-      if (slots->health[i].device == device) return slots->health[i].slot->read();
-    }
-    return std::nullopt;
-  }
+  std::optional<DeviceHealth> health(const std::string& device);
   // After a start of its own the daemon has other shared memory.
   void openAgain() { devices_.reset(); }
-  bool healthIs(const std::string& device, HealthState state) {
-    return eventually([&] {
-      const auto now = health(device);
-      return now && now->state == state;
-    });
-  }
+  bool healthIs(const std::string& device, HealthState state);
   // The actions that the inputs of the device with this name have begun; nothing before the first.
-  std::optional<shm::ActionState> actions(const std::string& device) {
-    const auto* const slots = devices();
-    for (std::size_t i = 0; slots && i < slots->actions.size(); ++i) {
-      if (slots->actions[i].source == device) return slots->actions[i].slot->read();
-    }
-    return std::nullopt;
-  }
-  nlohmann::json status() {
-    const Outcome asked = run({kMerlin, "status", "--json", "--instance", instance_});
-    return nlohmann::json::parse(asked.output, nullptr, false);
-  }
+  std::optional<shm::ActionState> actions(const std::string& device);
+  nlohmann::json status();
 
   // Ids of its child processes whose command line contains `word`.
-  std::vector<pid_t> children(const std::string& word) const {
-    std::vector<pid_t> found;
-    for (const auto& thread :
-         std::filesystem::directory_iterator(fmt::format("/proc/{}/task", process_->pid()))) {
-      std::istringstream pids(readText(thread.path() / "children"));
-      for (pid_t child = 0; pids >> child;) {
-        if (readText(fmt::format("/proc/{}/cmdline", child)).find(word) != std::string::npos)
-          found.push_back(child);
-      }
-    }
-    return found;
-  }
+  std::vector<pid_t> children(const std::string& word) const;
 
   // Paths of this instance's objects in /dev/shm.
-  std::vector<std::string> leftInSharedMemory() const {
-    std::vector<std::string> left;
-    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
-      if (entry.path().filename().string().starts_with(instance_)) left.push_back(entry.path());
-    }
-    return left;
-  }
+  std::vector<std::string> leftInSharedMemory() const;
 
  private:
   std::string instance_, config_;

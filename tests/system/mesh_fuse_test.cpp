@@ -1,6 +1,7 @@
 // `merlin mesh fuse` on scans that `merlin mesh scan` takes: the model comes back, and what is
 // refused is said.
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // `merlin mesh import` on small synthetic files: what it makes, what it says, and what it refuses.
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,6 @@
 // merlin mesh info: what is in files of every kind.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

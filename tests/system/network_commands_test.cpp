@@ -1,8 +1,13 @@
 // Status and commands over a network: a real merlind, asked by merlin as from another machine.
+#include <filesystem>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <zmq.hpp>
 
 #include "daemon/net/connection_server.h"

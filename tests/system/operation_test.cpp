@@ -3,9 +3,11 @@
 #include <string>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "daemon/base/commands.h"
 #include "daemon/status/client.h"

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "daemon/base/sanitizer.h"

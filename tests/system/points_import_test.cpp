@@ -1,5 +1,6 @@
 // `merlin mesh import` of point clouds: a surface by Open3D in the sandbox of merlin-import.
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

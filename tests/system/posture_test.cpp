@@ -1,5 +1,7 @@
 // merlin posture collect and merlin calibrate glove, run as a person runs them, on an emulated
 // glove and on a recording of one.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include "nn/io/data_set_file.h"

@@ -2,6 +2,8 @@
 // schedule, warm-up, a wrong password, a projector that vanishes, and restarts.
 #include <memory>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "daemon/status/client.h"

@@ -1,5 +1,8 @@
 // merlin record, replay, flight and calibrate, run as a person runs them.
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "drivers/io/pty_master.h"
 #include "drivers/io/transcript.h"

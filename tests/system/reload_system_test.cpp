@@ -1,9 +1,14 @@
 // merlin reload and SIGHUP with the real programs: what changed is swapped and nothing else, or
 // everything stays as it was.
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <random>
 #include <set>
+#include <sstream>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 

@@ -1,6 +1,11 @@
 // Two machines: one daemon reads the devices, and another draws a wall from its samples, sent
 // encrypted over TCP. Both real programs run on this machine.
+#include <filesystem>
+
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/system/merlind.h"
 

@@ -1,6 +1,7 @@
 // merlin report: the file that is sent to somebody who is to help, of a wall that runs and of one
 // that does not.
 #include <algorithm>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,15 +1,20 @@
 // Servers for other programs in a real merlind: a server that cannot start does not stop the wall
 // from running; a client cannot exhaust merlind's memory or keep it from stopping.
 #include <chrono>
+#include <filesystem>
 #include <sstream>
 #include <thread>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "daemon/base/sanitizer.h"
 #include "daemon/net/connection_server.h"

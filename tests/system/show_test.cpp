@@ -2,6 +2,8 @@
 // left of one that was stopped, and that merlind opens no path that a client names.
 #include <filesystem>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "daemon/base/sanitizer.h"

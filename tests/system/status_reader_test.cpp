@@ -1,5 +1,7 @@
 // Runs read_status.py, the shipped example of a ZeroMQ client, as a process against a real daemon
 // on emulated devices.
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"

@@ -1,8 +1,11 @@
 // The wall survives damaged input: a model file overwritten while shown, and a model that a wrong
 // tracker record moved out of sight.
+#include <filesystem>
 #include <fstream>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "drivers/emulate/emulator.h"
 #include "drivers/io/pty_master.h"

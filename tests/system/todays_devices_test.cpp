@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <utility>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
+#include <unistd.h>
 
 #include "daemon/base/commands.h"
 #include "daemon/net/connection_server.h"

@@ -3,9 +3,11 @@
 // oscsend; recorded and replayed. That the kernel's own devices give such records is seen in the
 // virtual machine (tests/vm).
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include "daemon/base/commands.h"
 #include "daemon/base/unique_fd.h"

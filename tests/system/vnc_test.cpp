@@ -1,6 +1,7 @@
 // merlin-rfb with real VNC clients: what they see, what they may do, and what hostile ones reach.
 #include <charconv>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,6 @@
 // merlin wall plan: the drawing, the table, a preset as panels, and rooms that are refused.
 #include <algorithm>
+#include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>

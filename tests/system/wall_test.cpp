@@ -1,10 +1,14 @@
 // The whole of it: real merlind, real emulators on ptys, real ZeroMQ, real EGL.
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include "tests/support/picture_files.h"
 #include "tests/system/merlind.h"
