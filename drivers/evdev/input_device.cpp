@@ -69,6 +69,15 @@ std::vector<std::string> InputDevice::keyNames() const {
   return names;
 }
 
+std::vector<AxisReading> InputDevice::readings() const {
+  std::vector<AxisReading> all;
+  for (std::string& name : axisNames()) {
+    const int code = *axisNumber(name);
+    all.push_back({std::move(name), centred(code)});
+  }
+  return all;
+}
+
 void InputDevice::describe(const EvdevRecord& r) {
   Axis* const at = axis(r.code);
   const auto key = std::ranges::lower_bound(keys_, r.code, {}, &Key::code);

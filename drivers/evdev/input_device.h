@@ -10,6 +10,7 @@
 #include "daemon/base/clock.h"
 #include "drivers/evdev/axis_names.h"
 #include "drivers/evdev/settings.h"
+#include "drivers/port/axis_source.h"
 #include "drivers/port/evdev_line.h"
 #include "drivers/port/samples.h"
 
@@ -42,6 +43,8 @@ class InputDevice {
   // settings cannot name is left out.
   std::vector<std::string> axisNames() const;
   std::vector<std::string> keyNames() const;
+  // Where each axis of axisNames() stands. Allocates; for calibration.
+  std::vector<AxisReading> readings() const;
   // What choose() chose.
   const AxisSources& sources() const noexcept { return sources_; }
   // "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east" for a person.

@@ -21,6 +21,12 @@ struct AxisSource {
   bool operator==(const AxisSource&) const = default;
 };
 
+// Where an axis of an input device stands.
+struct AxisReading {
+  std::string name;      // as in an AxisSource's text
+  float deflection = 0;  // -1..1, from one end to the other
+};
+
 // For x, y, z and the rotations about them.
 using AxisSources = std::array<AxisSource, 6>;
 

@@ -1,7 +1,10 @@
 #include "drivers/port/tracker_placement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,6 +33,28 @@ float handedness(const std::array<int, 3>& axes) {
   return cross[0] * z[0] + cross[1] * z[1] + cross[2] * z[2];
 }
 
+constexpr double kMostOff_deg = 20;
+
+// The axis that is sent along which the way from `origin` to `to` goes: 1 to 3, negative if against
+// it.
+Result<int> nearestAxis(const std::array<double, 3>& origin, const std::array<double, 3>& to,
+                        const char* name) {
+  std::array<double, 3> way{};
+  for (std::size_t i = 0; i < 3; ++i) way[i] = to[i] - origin[i];
+  const auto longest = std::ranges::max_element(way, {}, [](double v) { return std::abs(v); });
+  const double length = std::hypot(way[0], way[1], way[2]);
+  const double off_deg =
+      std::acos(std::min(std::abs(*longest) / length, 1.0)) * 180 / std::numbers::pi;
+  const int axis = static_cast<int>(longest - way.begin()) + 1;
+  if (off_deg <= kMostOff_deg) return *longest < 0 ? -axis : axis;
+  return Error{
+      Errc::kMalformed,
+      fmt::format("the {} axis lies {:.0f} degrees off the nearest axis that is sent ({} are "
+                  "allowed): hold the station more exactly, or turn the frame where the "
+                  "tracker is served",
+                  name, off_deg, kMostOff_deg)};
+}
+
 }  // namespace
 
 void place(const TrackerPlacement& placement, TrackerSample& sample) noexcept {
@@ -42,6 +67,29 @@ void place(const TrackerPlacement& placement, TrackerSample& sample) noexcept {
     p[i] = position[i] + static_cast<float>(placement.origin_m[i]);
     q[i + 1] = hand * axis[i];
   }
+}
+
+Result<TrackerPlacement> placementOf(const std::array<double, 3>& origin,
+                                     const std::array<double, 3>& on_x,
+                                     const std::array<double, 3>& on_y) {
+  TrackerPlacement solved;
+  const std::pair<const char*, const std::array<double, 3>*> ways[] = {{"x", &on_x}, {"y", &on_y}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto axis = nearestAxis(origin, *ways[i].second, ways[i].first);
+    if (!axis) return axis.error();
+    solved.axes[i] = *axis;
+  }
+  if (std::abs(solved.axes[0]) == std::abs(solved.axes[1]))
+    return Error{Errc::kMalformed,
+                 fmt::format("the x axis and the y axis both lie along the axis {} that is sent",
+                             std::abs(solved.axes[0]))};
+  solved.axes[2] = 6 - std::abs(solved.axes[0]) - std::abs(solved.axes[1]);
+  if (handedness(solved.axes) < 0) solved.axes[2] = -solved.axes[2];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double at = origin[static_cast<std::size_t>(std::abs(solved.axes[i]) - 1)];
+    solved.origin_m[i] = solved.axes[i] < 0 ? at : -at;
+  }
+  return solved;
 }
 
 void checkPlacement(const TrackerPlacement& placement, const std::string& pointer,

@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "daemon/base/result.h"
 #include "daemon/base/setting_fault.h"
 #include "drivers/port/samples.h"
 
@@ -22,6 +23,13 @@ struct TrackerPlacement {
 // Turns and moves the sample's pose. Axes may also mirror the frame: rotations then turn the other
 // way about their mirrored axis. REQUIRES: checkPlacement() finds nothing.
 void place(const TrackerPlacement& placement, TrackerSample& sample) noexcept;
+
+// The placement whose origin is `origin`, whose x axis goes through `on_x` and whose y axis lies on
+// the side of `on_y`: places as they are sent [m]. Errors: kMalformed (an axis lies more than 20
+// degrees off those that are sent, both lie along one).
+Result<TrackerPlacement> placementOf(const std::array<double, 3>& origin,
+                                     const std::array<double, 3>& on_x,
+                                     const std::array<double, 3>& on_y);
 
 // Adds a fault if the axes are not each of x, y and z once. `pointer`: of the driver's settings.
 void checkPlacement(const TrackerPlacement& placement, const std::string& pointer,

@@ -31,6 +31,9 @@ class VrpnPad final : public Device, private Listener {
   }
   const char* complaint() const noexcept override { return complaint_; }
 
+  // The state of its buttons and channels.
+  const PadInput& input() const noexcept { return input_; }
+
  private:
   bool take(std::size_t type, std::string_view payload, Timestamp first_byte) noexcept override;
   bool takePayload(std::size_t type, std::string_view payload) noexcept;

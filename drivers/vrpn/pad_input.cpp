@@ -1,6 +1,7 @@
 #include "drivers/vrpn/pad_input.h"
 
 #include <algorithm>
+#include <string>
 
 #include "drivers/port/axes.h"
 #include "drivers/vrpn/numbers.h"
@@ -39,6 +40,13 @@ float PadInput::deflection(const AxisSource& source) const noexcept {
   const float pushed = deflection(source.axis);
   if (source.minus < 0) return source.reversed ? -pushed : pushed;
   return std::clamp(pushed - deflection(source.minus), -1.0F, 1.0F);
+}
+
+std::vector<AxisReading> PadInput::readings() const {
+  std::vector<AxisReading> all;
+  for (std::size_t channel = 0; channel < channels_.count; ++channel)
+    all.push_back({std::to_string(channel), deflection(static_cast<int>(channel))});
+  return all;
 }
 
 void PadInput::fill(BallSample& sample) const noexcept {

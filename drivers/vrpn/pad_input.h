@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bitset>
+#include <vector>
 
 #include "drivers/port/axis_source.h"
 #include "drivers/port/samples.h"
@@ -21,6 +22,9 @@ class PadInput {
   void take(const VrpnButtons& buttons) noexcept { down_ = buttons.down; }
   void take(const VrpnChannels& channels) noexcept { channels_ = channels; }
   void rest() noexcept;  // nothing is pressed or pushed
+
+  // Where each channel that the device has sent stands. Allocates; for calibration.
+  std::vector<AxisReading> readings() const;
 
   // Writes the present state into `sample`: axes, buttons and raw values (fillAxes() of
   // drivers/port/axes.h). A channel that the device has not sent is at rest.

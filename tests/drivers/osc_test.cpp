@@ -122,6 +122,29 @@ TEST(TrackerPlacement, TurnsPlacesAndRotationsAlikeAlsoIfItMirrors) {
             "is 1, -1, 3; needed is each of 1, 2 and 3 once, with or without a minus");
 }
 
+// A person holds the station at the origin and on two axes: what is placed then lies there.
+TEST(TrackerPlacement, FollowsFromThreePlaces) {
+  const auto solved = placementOf({1, 2, 3}, {1.02, 2, 3.5}, {0.4, 1.95, 3});
+  ASSERT_TRUE(solved) << solved.error().what;
+  EXPECT_EQ(solved->axes, (std::array{3, -1, -2}));
+  const auto placed = [&](std::array<float, 3> at) {
+    TrackerSample sample{};
+    std::ranges::copy(at, sample.position_m);
+    place(*solved, sample);
+    return std::array{sample.position_m[0], sample.position_m[1], sample.position_m[2]};
+  };
+  EXPECT_EQ(placed({1, 2, 3}), (std::array<float, 3>{0, 0, 0}));
+  EXPECT_EQ(placed({1, 2, 3.5F}), (std::array<float, 3>{0.5F, 0, 0}));
+  EXPECT_EQ(placed({0, 2, 3}), (std::array<float, 3>{0, 1, 0}));
+  EXPECT_EQ(placed({1, 1, 3}), (std::array<float, 3>{0, 0, 1})) << "right-handed";
+  EXPECT_EQ(
+      placementOf({0, 0, 0}, {1, 0.5, 0}, {0, 1, 0}).error().what,
+      "the x axis lies 27 degrees off the nearest axis that is sent (20 are allowed): hold the "
+      "station more exactly, or turn the frame where the tracker is served");
+  EXPECT_EQ(placementOf({0, 0, 0}, {1, 0, 0}, {-1, 0.1, 0}).error().what,
+            "the x axis and the y axis both lie along the axis 1 that is sent");
+}
+
 TEST_F(OscTest, TheRealPartMayComeFirst) {
   OscSettings settings;
   settings.quaternion = OscSettings::Quaternion::kWxyz;

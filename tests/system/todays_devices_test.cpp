@@ -242,7 +242,8 @@ TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
                                   "1", "0", "0", "0", "-o", client.config()});
   EXPECT_EQ(calibrated.status, 2) << calibrated.output;
   EXPECT_NE(calibrated.output.find("/devices/0/driver, that of \"tracker\", is \"vrpn\""),
-            std::string::npos);
+            std::string::npos)
+      << calibrated.output;
   const auto counter = client.devices()->tracker()->stations[1]->newest()->counter;
   server->process().kill(SIGKILL);
   EXPECT_TRUE(client.healthIs("tracker", HealthState::kAbsent));

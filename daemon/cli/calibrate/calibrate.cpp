@@ -67,6 +67,8 @@ void addCalibrate(Command app, Run& run) {
   addCalibrateImport(calibrate, run);
   addCalibrateTracker(calibrate, run);
   addCalibrateBall(calibrate, run);
+  addCalibratePad(calibrate, run);
+  addCalibrateTouch(calibrate, run);
 }
 
 }  // namespace merlin::cli

@@ -9,5 +9,7 @@ void addCalibrateGlove(Command calibrate, Run& run);
 void addCalibrateImport(Command calibrate, Run& run);
 void addCalibrateTracker(Command calibrate, Run& run);
 void addCalibrateBall(Command calibrate, Run& run);
+void addCalibratePad(Command calibrate, Run& run);
+void addCalibrateTouch(Command calibrate, Run& run);
 
 }  // namespace merlin::cli

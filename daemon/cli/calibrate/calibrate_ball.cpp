@@ -37,16 +37,14 @@ bool isSpaceMouse(const CalibratedDevice& ball) { return ball.driver == "spacena
 // The file's ball. Errors: kInvalidArgument (its driver has no such settings), those of
 // findDevice().
 Result<CalibratedDevice> findBall(const BallOptions& o) {
-  auto ball = findDevice(o.output, SampleKind::kBall, o.device);
+  constexpr const char* kDrivers[] = {"spaceball", "spacenav"};
+  auto ball = findDevice(o.output, SampleKind::kBall, o.device, kDrivers);
   if (!ball || ball->driver == "spaceball" || isSpaceMouse(*ball)) return ball;
+  const bool is_pad = ball->driver == "evdev" || ball->driver == "vrpn_pad";
   const std::string instead =
-      ball->driver == "evdev"
-          ? fmt::format(
-                "edit axes, buttons, dead_zone and curve in {}/evdev instead; `merlin "
-                "devices` lists its axes and keys, and `merlin devices --watch` shows "
-                "what they do",
-                ball->pointer)
-          : "name another ball with --device";
+      is_pad ? fmt::format("run `merlin calibrate pad --device {} -o {}` instead", ball->name,
+                           o.output)
+             : "name another ball with --device";
   return Error{Errc::kInvalidArgument,
                fmt::format("{}: {}/driver, that of \"{}\", is \"{}\", which has no axis map and "
                            "full scales to calibrate: {}",

@@ -13,7 +13,6 @@
 #include "drivers/cyberglove/device.h"
 #include "drivers/cyberglove/guided_calibration.h"
 #include "drivers/hand/hand.h"
-#include "drivers/io/open_stream.h"
 
 namespace merlin::cli {
 namespace {
@@ -75,17 +74,13 @@ std::string GuidedGlove::spans() const {
 }
 
 int calibrateGlove(const GloveOptions& o) {
-  const auto address = parsePort(o.port);
-  if (!address) return fail(address.error());
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
   const auto device = findDevice(o.output, SampleKind::kGlove, o.device);
   if (!device) return fail(device.error());
-  const auto settings = settingsOf(*device, o.port, o.baud);
-  if (!settings) return fail(settings.error());
-  auto line = io::openPort(*address, settings->line.baud);
+  const auto line = openOwnLine(*device, o.port, o.baud);
   if (!line) return fail(line.error());
   const SystemClock clock;
-  GuidedGlove guided(settings->own.cyberglove, **line, clock);
+  GuidedGlove guided(line->settings.own.cyberglove, *line->stream, clock);
   const auto identity = guided.open();
   if (!identity) return fail(identity.error());
   printOut("{}: {}\n", device->name, *identity);

@@ -11,6 +11,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/calibrate/calibrate.h"
 #include "daemon/cli/calibrate/calibrated_device.h"
+#include "daemon/cli/calibrate/guided_placement.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/live_samples.h"
@@ -47,15 +48,17 @@ std::string keyOf(const char* form, int station) {
 }
 constexpr const char *kAlignmentKey = "alignment{}_cm", *kBoresightKey = "boresight{}_wxyz";
 
-// The file's tracker. Errors: kInvalidArgument (it has another driver, which has none of these
+bool isFastrak(const CalibratedDevice& tracker) { return tracker.driver == "fastrak"; }
+
+// The file's tracker. Errors: kInvalidArgument (it has another driver, which has none of the given
 // settings), those of findDevice().
-Result<CalibratedDevice> findFastrak(const TrackerOptions& o) {
+Result<CalibratedDevice> findTracker(const TrackerOptions& o) {
   auto tracker = findDevice(o.output, SampleKind::kTracker, o.device);
-  if (!tracker || tracker->driver == "fastrak") return tracker;
+  if (!tracker || isFastrak(*tracker) || (!o.hasOptions() && o.has("alignment"))) return tracker;
   return Error{Errc::kInvalidArgument,
                fmt::format("{}: {}/driver, that of \"{}\", is \"{}\", but alignment, boresight and "
-                           "hemisphere are a Fastrak's: set the frame where the tracker is "
-                           "served, or name a Fastrak with --device",
+                           "hemisphere are a Fastrak's: name a Fastrak with --device, or leave the "
+                           "options out to have the axes and the origin of this tracker measured",
                            o.output, tracker->pointer, tracker->name, tracker->driver)};
 }
 
@@ -188,6 +191,10 @@ Result<Ok> checkKept(const TrackerOptions& o, const CalibratedDevice& tracker,
 
 int guideTracker(const TrackerOptions& o, const CalibratedDevice& tracker) {
   if (const auto writable = checkWritable(o.output); !writable) return fail(writable.error());
+  if (!isFastrak(tracker)) {
+    const auto placed = guidePlacement(tracker, o.station, o.timing);
+    return placed ? kExitDone : fail(placed.error());
+  }
   auto samples = LiveSamples<TrackerSample>::open(
       o.instance, fmt::format("{}{}", tracker.name, o.station), tracker.name);
   if (!samples) return fail(samples.error());
@@ -217,8 +224,11 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   const auto o = std::make_shared<TrackerOptions>();
   Command command = calibrate.subcommand(
       "tracker",
-      "Set the alignment and boresight of a station: either tells you at which places to hold the "
-      "station, while a running merlind measures them, or writes the given values.\nExample: "
+      "Set the alignment and boresight of a Fastrak's station: either tells you at which places to "
+      "hold the station, while a running merlind measures them, or writes the given values. Of a "
+      "tracker of a VRPN server or by OSC: tells you the places, measures them on the tracker's "
+      "own "
+      "line, and sets its axes and origin_m.\nExample: "
       "merlin calibrate tracker "
       "--station 1 "
       "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
@@ -253,7 +263,7 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   command.option("-o,--output", o->output, "The configuration file to write into").required();
   command.callback([o, &run] {
     run = [o] {
-      const auto tracker = findFastrak(*o);
+      const auto tracker = findTracker(*o);
       if (!tracker) return fail(tracker.error());
       return o->hasOptions() ? setFromOptions(*o, *tracker) : guideTracker(*o, *tracker);
     };

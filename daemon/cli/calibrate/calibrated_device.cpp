@@ -1,11 +1,14 @@
 #include "daemon/cli/calibrate/calibrated_device.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "config/loader.h"
 #include "daemon/base/files.h"
+#include "daemon/cli/print.h"
+#include "drivers/io/open_stream.h"
 #include "drivers/registry.h"
 
 namespace merlin::cli {
@@ -70,6 +73,17 @@ std::string namesOf(const Json& list, SampleKind kind) {
                        : fmt::format("its {}s: {}", kindName(kind), fmt::join(names, ", "));
 }
 
+// The first of this kind with one of these drivers; nothing if there is none.
+std::optional<std::size_t> firstOf(const Json& list, SampleKind kind, DriverNames drivers) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (kindOf(list[i]) == kind &&
+        std::ranges::find(drivers, textOf(list[i], "driver"),
+                          [](const char* name) { return std::string(name); }) != drivers.end())
+      return i;
+  }
+  return std::nullopt;
+}
+
 // Index in the list. Errors: kInvalidArgument.
 Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKind kind,
                             const std::string& name) {
@@ -94,9 +108,13 @@ Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKin
 
 Result<CalibratedDevice> deviceAt(const Json& list, std::size_t index, const std::string& path) {
   const Json& entry = list[index];
-  CalibratedDevice device{path,           fmt::format("/devices/{}", index),
-                          nameOf(entry),  textOf(entry, "driver"),
-                          Json::object(), entry.value("baud", Json(0))};
+  CalibratedDevice device{path,
+                          fmt::format("/devices/{}", index),
+                          nameOf(entry),
+                          textOf(entry, "driver"),
+                          Json::object(),
+                          entry.value("baud", Json(0)),
+                          textOf(entry, "port")};
   const auto own = entry.find(device.driver);
   if (own == entry.end()) return device;
   if (!own->is_object())
@@ -109,10 +127,12 @@ Result<CalibratedDevice> deviceAt(const Json& list, std::size_t index, const std
 }  // namespace
 
 Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
-                                    const std::string& name) {
+                                    const std::string& name, DriverNames drivers) {
   const auto config = readConfiguration(file);
   if (!config) return config.error();
   const Json& list = config->at("devices");
+  const auto first = name.empty() ? firstOf(list, kind, drivers) : std::nullopt;
+  if (first) return deviceAt(list, *first, file);
   const auto index = indexOf(list, file, kind, name);
   if (!index) return index.error();
   return deviceAt(list, *index, file);
@@ -140,6 +160,22 @@ Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::str
   return loaded.settings.devices.list.at(0);
 }
 
+Result<OwnLine> openOwnLine(const CalibratedDevice& device, const std::string& port, int baud) {
+  const std::string& at = port.empty() ? device.port : port;
+  if (at.empty())
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: {} (\"{}\") has no port: give one on the command line; `merlin "
+                             "devices` lists what is plugged in",
+                             device.file, device.pointer, device.name)};
+  const auto address = parsePort(at);
+  if (!address) return address.error();
+  auto settings = settingsOf(device, at, baud);
+  if (!settings) return settings.error();
+  auto stream = io::openPort(*address, settings->line.baud);
+  if (!stream) return stream.error();
+  return OwnLine{*std::move(settings), *std::move(stream)};
+}
+
 Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind, const Json& values) {
   auto config = readConfiguration(device.file);
   if (!config) return config.error();
@@ -158,6 +194,17 @@ Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind, const J
   if (own.is_null()) own = Json::object();
   own.update(values);
   return writeFile(device.file, config->dump(2) + "\n");
+}
+
+Result<Ok> saveChecked(const CalibratedDevice& device, SampleKind kind, const Json& values) {
+  CalibratedDevice changed = device;
+  changed.own.update(values);
+  if (const auto allowed = settingsOf(changed, device.port, 0); !allowed) return allowed.error();
+  const auto saved = saveSettings(device, kind, values);
+  if (saved)
+    printOut("{}: {}, {}; `merlin reload` or a restart of merlind takes it\n", device.file,
+             device.name, values.dump());
+  return saved;
 }
 
 void addDeviceOption(Command command, std::string& name, const char* kind) {

@@ -2,6 +2,8 @@
 // into its entry.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include "config/settings.h"
 #include "daemon/base/result.h"
 #include "daemon/cli/arguments.h"
+#include "drivers/port/byte_stream.h"
 #include "drivers/port/samples.h"
 
 namespace merlin::cli {
@@ -21,19 +24,33 @@ struct CalibratedDevice {
   std::string name, driver;    // those in effect: an entry without a name has its kind's
   nlohmann::ordered_json own;  // the entry's settings of its driver: an object, which may be empty
   nlohmann::ordered_json baud = 0;  // the entry's speed of the line; 0: the driver's usual one
+  std::string port = {};            // the entry's; empty: it has none
 };
 
-// Finds the device named `name`, or the first device of this kind if `name` is empty. A file that
-// does not exist or has no /devices has merlind's default devices: glove, tracker and ball. Errors:
-// kMalformed (the file is no configuration, or one of an earlier form), kInvalidArgument (there is
-// no such device, or it is of another kind), kIo.
+using DriverNames = std::span<const char* const>;
+
+// Finds the device named `name`; if `name` is empty, the first device of this kind with one of
+// `drivers`, or the first of this kind if none has one of them. A file that does not exist or has
+// no /devices has merlind's default devices: glove, tracker and ball. Errors: kMalformed (the file
+// is no configuration, or one of an earlier form), kInvalidArgument (there is no such device, or it
+// is of another kind), kIo.
 Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
-                                    const std::string& name);
+                                    const std::string& name, DriverNames drivers = {});
 
 // The device as merlind would open it at `port`: with the entry's settings of its driver, and its
 // speed unless `baud` is another one than 0. Errors: kInvalidArgument (one of them is not allowed).
 Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::string& port,
                                   int baud);
+
+// A device's own line, which the calibration has opened: no merlind may have it meanwhile.
+struct OwnLine {
+  DeviceSettings settings;
+  std::unique_ptr<ByteStream> stream;
+};
+
+// Opens it at `port`, or at the entry's port if that is empty. Errors: those of settingsOf() and
+// io::openPort(); kInvalidArgument (neither names a port).
+Result<OwnLine> openOwnLine(const CalibratedDevice& device, const std::string& port, int baud);
 
 // Copies the members of `values` into the device's settings of its driver, and keeps all else in
 // the file and the order; creates the file if it does not exist. Errors: those of findDevice() and
@@ -41,6 +58,11 @@ Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::str
 // there). After an error the old file is unchanged.
 Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind,
                         const nlohmann::ordered_json& values);
+
+// The same, once the loader has allowed the values; prints what was written. Errors also: those of
+// settingsOf().
+Result<Ok> saveChecked(const CalibratedDevice& device, SampleKind kind,
+                       const nlohmann::ordered_json& values);
 
 // Adds the option --device for the name of a device. `kind`: "glove".
 void addDeviceOption(Command command, std::string& name, const char* kind);

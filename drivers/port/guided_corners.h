@@ -1,0 +1,42 @@
+// Determines how a touch surface is mounted from the corners that a person touches on request.
+// Pure.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "daemon/base/result.h"
+#include "drivers/port/guided_step.h"
+#include "drivers/port/samples.h"
+#include "drivers/port/touch_frames.h"
+
+namespace merlin {
+
+// The top left corner, the top right one, the bottom left one.
+std::span<const GuidedStep> cornerSteps();
+
+// A place on the surface: shares of the device's own axes.
+using SurfacePlace = std::array<float, 2>;
+
+class GuidedCorners {
+ public:
+  void begin(std::size_t step);  // starts or restarts a step; later samples belong to it
+  // A sample in the device's own axes: of settings whose orientation is the default one.
+  void add(const TouchSample& sample);
+
+  // Ends the current step with the mean place of the finger. Errors, all kMalformed: no finger or
+  // several touched; the corner lies where an earlier one does, or not beside or below the first.
+  Result<SurfacePlace> end();
+
+  // REQUIRES: each step has ended without an error.
+  TouchOrientation solve() const;
+
+ private:
+  std::size_t step_ = 0, samples_ = 0;
+  bool several_ = false;
+  SurfacePlace sum_{};
+  std::array<SurfacePlace, 3> corners_{};
+};
+
+}  // namespace merlin

@@ -1,0 +1,65 @@
+// Determines which axes of an input device are a ball's, and its dead zone, from what a person
+// moves on request. Pure.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "daemon/base/result.h"
+#include "drivers/port/axis_source.h"
+#include "drivers/port/guided_step.h"
+
+namespace merlin {
+
+// First rest, then a push along x, y, z and a turn about each.
+std::span<const GuidedStep> padSteps();
+
+// What answered a step. At rest: the axis that moved the most by itself, and by how much.
+struct PadAnswer {
+  std::string source = "none";  // the text of an AxisSource
+  float deflection = 0;         // change from rest
+};
+
+// What is written into the settings.
+struct PadAxes {
+  std::vector<std::string> axes;  // six texts of AxisSources
+  double dead_zone = 0;           // share of the full deflection
+};
+
+class GuidedPad {
+ public:
+  void begin(std::size_t step);  // starts or restarts a step; later readings belong to it
+  void add(std::span<const AxisReading> readings);
+
+  // Ends the current step. A step in which nothing moves is answered by "none": few devices have
+  // six axes. An axis that rests at its end is a trigger, and makes a pair with the other one.
+  // Errors, all kMalformed: something moved in the step "rest"; an axis moved too little; two axes
+  // answer alike; the axis has answered an earlier step; a trigger is the only one, or one of more
+  // than two.
+  Result<PadAnswer> end();
+
+  // Nothing if no step was answered by an axis. REQUIRES: each step has ended without an error.
+  std::optional<PadAxes> solve() const;
+
+ private:
+  struct Axis {
+    float low = 0, high = 0;  // at rest
+    float strongest = 0;      // signed change from rest in the current step
+    float rest() const noexcept { return (low + high) / 2; }
+    bool isTrigger() const noexcept;
+  };
+  Result<PadAnswer> endRest() const;
+  Result<std::string> sourceOf(const std::string& name, const Axis& axis) const;
+  Result<Ok> checkUnused(const std::string& source) const;
+
+  std::size_t step_ = 0;
+  std::map<std::string, Axis> axes_;
+  std::array<PadAnswer, 7> answers_{};
+};
+
+}  // namespace merlin
