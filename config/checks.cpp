@@ -11,6 +11,7 @@
 #include "config/needs.h"
 #include "daemon/base/commands.h"
 #include "daemon/base/tcp_address.h"
+#include "render/out/room_blend.h"
 #include "render/room/room_tiles.h"
 #include "render/stereo/eye_tiles.h"
 
@@ -102,6 +103,24 @@ void checkStereo(const WallSettings& wall, LoadedSettings& loaded) {
   addFaults(of_outputs, "/wall/outputs", loaded);
 }
 
+// Computes the blend ramps that follow from where the screens are.
+void checkBlends(WallSettings& wall, LoadedSettings& loaded) {
+  using render::stereo::StereoMode;
+  const StereoMode mode = wall.stereo.mode;
+  const auto automatic = [](const render::out::OutputSettings& o) {
+    return o.correction.blend.automatic;
+  };
+  const auto first = std::ranges::find_if(wall.outputs, automatic);
+  if (first != wall.outputs.end() &&
+      (mode == StereoMode::kSideBySide || mode == StereoMode::kTopBottom))
+    return loaded.addFinding(
+        fmt::format("/wall/outputs/{}/correction/blend/automatic", first - wall.outputs.begin()),
+        fmt::format("is true, and /wall/stereo/mode is {}, in which an output shows two pictures: "
+                    "give left, right, top and bottom",
+                    nameOf(mode)));
+  addFaults(fillBlends(wall.outputs, wall.tiles), "/wall/outputs", loaded);
+}
+
 // Makes the tiles of a wall that is described as a room. A wall whose room is at fault has no tiles
 // that others could be checked with.
 void checkTiles(LoadedSettings& loaded) {
@@ -114,7 +133,9 @@ void checkTiles(LoadedSettings& loaded) {
   }
   const SettingFaults faults = validate(wall.tiles);
   addFaults(faults, "/wall/tiles", loaded, "cannot be used: ");
-  if (faults.empty()) checkStereo(wall, loaded);
+  if (!faults.empty()) return;
+  checkBlends(wall, loaded);
+  checkStereo(wall, loaded);
 }
 
 // Each entry names one of its kinds of file, and `merlin show` finds it by its name.

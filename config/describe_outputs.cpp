@@ -43,6 +43,11 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
       "of the picture.",
       [&] {
         const Range pixels{0, render::correct::kMostCornerOffset};
+        v.flag(
+            "automatic", c.blend.automatic,
+            "Whether left, right, top and bottom are computed: as wide as the strips that other "
+            "tiles of the same screen show as well, by /wall/room or by the tiles' screen_m. For "
+            "an output that shows one tile.");
         v.number(
             "left", c.blend.left, pixels,
             "Width of the strip at the left border in pixels of the picture before the warp; 0: "

@@ -18,7 +18,7 @@ foreach(pair "installed.json>merlin.json" "postures.json>postures.json" "gesture
 endforeach()
 
 # The examples, which may name what is installed.
-foreach(name wall.json wall-kms-four.json wall-stereo.json wall-three-160.json postures.json gestures.json merlin.schema.json)
+foreach(name wall.json wall-flat-overlap.json wall-kms-four.json wall-stereo.json wall-three-160.json postures.json gestures.json merlin.schema.json)
   set(path "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/merlin/${name}")
   message(STATUS "Installing: ${path}")
   file(READ "${source}/config/${name}" content)

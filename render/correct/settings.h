@@ -39,6 +39,8 @@ struct MeshSettings {
 struct BlendSettings {
   double left = 0, right = 0, top = 0, bottom = 0;
   double gamma = 2.2;  // the display's: light = signal ^ gamma
+  // Whether the strips are those that follow from where the screens are: see out/room_blend.h.
+  bool automatic = false;
 
   bool hasRamp() const { return left > 0 || right > 0 || top > 0 || bottom > 0; }
   bool operator==(const BlendSettings&) const = default;

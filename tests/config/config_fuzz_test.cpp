@@ -18,7 +18,8 @@ using Outcome = ConfigFuzz::Outcome;
 
 std::vector<std::string> examples() {
   std::vector<std::string> all = {settingsText(Settings{})};
-  for (const char* name : {"demo", "installed", "wall", "wall-kms-four", "wall-stereo"}) {
+  for (const char* name :
+       {"demo", "installed", "wall", "wall-kms-four", "wall-flat-overlap", "wall-stereo"}) {
     all.push_back(test::readText(std::string(MERLIN_SOURCE_DIR "/config/") + name + ".json"));
   }
   return all;

@@ -97,6 +97,47 @@ TEST(WallConfig, TheShippedRoomIsThreePanelsAroundTheViewer) {
   EXPECT_NEAR(left[3], tiles[1].screen_m[0], 1e-12) << "hinged";
 }
 
+// 0.3 m of 1.6 m, which 1024 pixels show.
+TEST(WallConfig, TheShippedFlatWallIsBlendedByWhatTheRoomSays) {
+  const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-flat-overlap.json");
+  ASSERT_EQ(loaded.verdict(), Verdict::kValid) << findingsOf(loaded);
+  const auto& outputs = loaded.settings.wall.outputs;
+  ASSERT_EQ(outputs.size(), 4u);
+  const double ramps[3][2] = {{0, 192}, {192, 192}, {192, 0}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& blend = outputs[i + 1].correction.blend;
+    EXPECT_EQ(blend.left, ramps[i][0]) << i;
+    EXPECT_EQ(blend.right, ramps[i][1]) << i;
+    EXPECT_EQ(blend.top + blend.bottom, 0) << i;
+  }
+  const std::string text = settingsText(loaded.settings);
+  const auto again = loadSettings(text, "/");
+  ASSERT_EQ(again.verdict(), Verdict::kValid) << findingsOf(again);
+  EXPECT_EQ(settingsText(again.settings), text) << "what is printed can be read";
+}
+
+TEST(WallConfig, ABlendThatCannotFollowFromTheRoomSaysWhy) {
+  const auto said = [](const std::string& wall) {
+    return findingsOf(loadSettings("{\"wall\": {" + wall + "}}", "/"));
+  };
+  const std::string tiles = R"("tiles": {"tile_width": 320, "tile_height": 240,
+      "frame_width": 640, "frame_height": 240, "tiles": [{"name": "a"}, {"name": "b", "x": 320, "turns": 1}]}, )";
+  EXPECT_NE(said(tiles + R"("outputs": [{"kind": "png", "path": "a.png",
+      "correction": {"blend": {"automatic": true}}}])")
+                .find("/wall/outputs/0/correction/blend/automatic is true, and the output does not "
+                      "show exactly one tile"),
+            std::string::npos);
+  EXPECT_NE(said(tiles + R"("outputs": [{"kind": "png", "path": "a.png", "tiles": [{"tile": "a"}],
+      "correction": {"blend": {"automatic": true}}}])")
+                .find("it is not known where the screen of the tile a is"),
+            std::string::npos);
+  const std::string room = R"("room": {"preset": {"name": "flat", "overlap_m": 0.3}}, )";
+  EXPECT_NE(said(room + R"("outputs": [{"kind": "png", "path": "a.png",
+      "tiles": [{"tile": "panel_1"}], "correction": {"blend": {"automatic": true, "right": 5}}}])")
+                .find("is true, and right is 5, while other screens overlap by"),
+            std::string::npos);
+}
+
 TEST(WallConfig, TheShippedStereoWallHasTwoPicturesOnEachProjector) {
   const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-stereo.json");
   ASSERT_EQ(loaded.verdict(), Verdict::kValid) << findingsOf(loaded);
