@@ -104,7 +104,9 @@ void describeHand(HandSettings& h, SettingsVisitor& v) {
          "Name of the hand in shared memory and in the status; it is formed as a device's, and no "
          "device has the same.");
   describePerson(h.person, v);
-  v.text("glove", h.glove, "Name of the glove that the hand wears. Empty: the first glove.");
+  v.text("glove", h.glove,
+         "Name of the glove that the hand wears. Empty: the first glove. none: the hand wears no "
+         "glove, and holds a tracked wand for example.");
   v.text("tracker", h.tracker,
          "Name of the tracker whose receiver is on the hand. Empty: the first tracker.");
   v.integer(

@@ -18,9 +18,23 @@ namespace {
 constexpr std::size_t kLongestName = 16;
 
 // Names in shared memory and of inputs that are no device's.
-constexpr const char* kReserved[] = {
-    "posture", "posture_state", "postures", "gesture", "gpio",  "panel",  "actions", "health",
-    "key",     "button",        "axis",     "switch",  "pinch", "spread", "now_ns",  "time_utc"};
+constexpr const char* kReserved[] = {"posture",
+                                     "posture_state",
+                                     "postures",
+                                     "gesture",
+                                     "gpio",
+                                     "panel",
+                                     "actions",
+                                     "health",
+                                     "key",
+                                     "button",
+                                     "axis",
+                                     "switch",
+                                     "pinch",
+                                     "spread",
+                                     "now_ns",
+                                     "time_utc",
+                                     HandSettings::kNoGlove};
 
 std::string deviceAt(std::size_t index) { return fmt::format("/devices/{}", index); }
 std::string handAt(std::size_t index) { return fmt::format("/hands/{}", index); }
@@ -281,6 +295,24 @@ std::string trackerNamed(const DevicesSettings& d, const std::string& name) {
   return first ? first->name : name;
 }
 
+// A glove is worn on one hand.
+void checkGloves(LoadedSettings& loaded) {
+  const DevicesSettings& d = loaded.settings.devices;
+  std::map<const DeviceSettings*, std::size_t> worn;
+  for (std::size_t i = 0; i < d.hands.size(); ++i) {
+    if (!d.hands[i].wearsGlove()) continue;
+    checkNamed(d.hands[i].glove, SampleKind::kGlove, handAt(i) + "/glove", loaded);
+    const DeviceSettings* const glove = findDevice(d, SampleKind::kGlove, d.hands[i].glove);
+    if (!glove) continue;
+    const auto [first, fresh] = worn.emplace(glove, i);
+    if (!fresh)
+      loaded.addFinding(handAt(i) + "/glove",
+                        fmt::format("is {}, the glove of the hand at {}; name another one, or "
+                                    "\"none\" for a hand without a glove",
+                                    glove->name, handAt(first->second)));
+  }
+}
+
 // A station whose poses cannot come: a hand there would never be seen.
 void checkStationComes(const std::string& tracker, int station, const std::string& at,
                        LoadedSettings& loaded) {
@@ -347,9 +379,9 @@ void checkDevices(LoadedSettings& loaded) {
   checkPortsDiffer(d, loaded);
   for (std::size_t i = 0; i < d.list.size(); ++i) checkDevice(d.list[i], deviceAt(i), loaded);
   for (std::size_t i = 0; i < d.hands.size(); ++i) {
-    checkNamed(d.hands[i].glove, SampleKind::kGlove, handAt(i) + "/glove", loaded);
     checkNamed(d.hands[i].tracker, SampleKind::kTracker, handAt(i) + "/tracker", loaded);
   }
+  checkGloves(loaded);
   checkInputs(loaded);
   checkStations(loaded);
 }

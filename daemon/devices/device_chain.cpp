@@ -81,7 +81,8 @@ SampleSink* DeviceChain::addHand(const DevicesSettings& settings, std::size_t in
                                  const Trained& trained, std::uint64_t generation,
                                  SampleSink& next) {
   const HandSettings& hand = settings.hands[index];
-  const auto glove = placeOf(settings, SampleKind::kGlove, hand.glove);
+  const auto glove =
+      hand.wearsGlove() ? placeOf(settings, SampleKind::kGlove, hand.glove) : std::nullopt;
   Hand& added = hands_.emplace_back();
   added.index = index;
   added.gestures = std::make_unique<HandGestures>(

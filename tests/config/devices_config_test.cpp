@@ -223,6 +223,20 @@ TEST(DevicesConfig, NamesOfAnotherMachinesDevicesAreNotLookedFor) {
   EXPECT_EQ(devicesAre("", far + R"(, "hands": [{"glove": "left", "tracker": "there"}])"), "");
 }
 
+TEST(DevicesConfig, AGloveIsWornOnceAndAHandMayWearNone) {
+  const std::string list = R"({"name": "left", "driver": "cyberglove", "port": "pty:/tmp/a"},
+      {"name": "t", "driver": "fastrak", "port": "pty:/tmp/b"})";
+  const auto hands = [&](const std::string& second) {
+    return devicesAre(
+        list, R"(, "hands": [{"name": "one"}, {"name": "two", "station": 2)" + second + R"(}])");
+  };
+  EXPECT_EQ(
+      hands(""),
+      "f.json:2: /hands/1/glove is left, the glove of the hand at /hands/0; name another one, "
+      "or \"none\" for a hand without a glove\n");
+  EXPECT_EQ(hands(R"(, "glove": "none")"), "");
+}
+
 TEST(DevicesConfig, AStationIsWornOnce) {
   const std::string trackers =
       R"({"name": "a", "driver": "fastrak"}, {"name": "b", "driver": "fastrak"})";
@@ -319,7 +333,8 @@ TEST(DevicesConfig, BindingsNameHandsThatMakeGestures) {
                                       R"(], "bindings": [{"action": "reset_view", "input": ")" +
                                       input + "\"}]");
   };
-  const std::string two = R"({"name": "near"}, {"name": "far", "station": 2, "gestures": false})";
+  const std::string two =
+      R"({"name": "near"}, {"name": "far", "glove": "none", "station": 2, "gestures": false})";
   EXPECT_EQ(bound("gesture.push", two), "");
   EXPECT_EQ(bound("near.gesture.push", two), "");
   EXPECT_EQ(bound("eye.gesture.push", two),

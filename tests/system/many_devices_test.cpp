@@ -1,13 +1,22 @@
 // Several devices of each kind at one merlind, over pseudo-terminals: two gloves, a tracker with
-// two stations, two balls, a gamepad that is not there, and two hands. Each has its slots under its
-// name, and none notices what happens to another; two people take turns at the wall.
+// two stations, two balls, a gamepad, and two hands; and a tracker of a VRPN server. Each has its
+// slots under its name, and none notices what happens to another; two people take turns at the
+// wall.
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
+#include <thread>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <linux/input-event-codes.h>
+#include <unistd.h>
 
 #include "daemon/base/commands.h"
+#include "daemon/net/connection_server.h"
+#include "drivers/io/pty_master.h"
+#include "drivers/port/evdev_line.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -69,19 +78,91 @@ class Emulators {
   std::map<std::string, std::unique_ptr<Process>> processes_;
 };
 
+// A gamepad at the other end of a pseudo-terminal: a thread describes it and moves its stick, again
+// and again, so that it may be opened at any time.
+class Gamepad {
+ public:
+  explicit Gamepad(const std::string& link)
+      : line_(*io::PtyMaster::open(link)),
+        thread_([this](const std::stop_token& stop) { speak(stop); }) {}
+
+ private:
+  static std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0) {
+    EvdevRecord r;
+    r.kind = kind;
+    r.code = static_cast<std::uint16_t>(code);
+    r.value = value;
+    r.low = -100;
+    r.high = 100;
+    std::string out;
+    append(r, out);
+    return out;
+  }
+  void speak(const std::stop_token& stop) const {
+    using Kind = EvdevRecord::Kind;
+    const std::string description = record(Kind::kAxis, ABS_X) + record(Kind::kReady);
+    for (int turn = 0; !stop.stop_requested(); ++turn) {
+      const std::string bytes =
+          description + record(Kind::kMoved, ABS_X, turn % 100) + record(Kind::kReport);
+      (void)!::write(line_.fd(), bytes.data(), bytes.size());
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  io::PtyMaster line_;
+  std::jthread thread_;
+};
+
+// The tracker of a VRPN server, which is another merlind.
+class VrpnServer {
+ public:
+  explicit VrpnServer(const TempDir& dir) : dir_(dir), port_(freePort()) { start(); }
+  void start() {
+    server_.emplace(
+        dir_, "", fmt::format("server{}", ++starts_),
+        MerlindOptions{
+            .script = "turning", .role = "devices", .also = {{"serve", {{"vrpn_port", port_}}}}});
+  }
+  void kill() { server_->process().kill(SIGKILL); }
+  json entry() const {
+    return deviceEntry("eyes", "vrpn", fmt::format("tcp://127.0.0.1:{}", port_));
+  }
+
+ private:
+  // A TCP port that is free: the system has just assigned it, and it was closed again.
+  static int freePort() {
+    const auto probe = net::listenTcp("127.0.0.1", 0);
+    return probe ? net::portOf(probe->get()) : 0;
+  }
+
+  const TempDir& dir_;
+  int port_, starts_ = 0;
+  std::optional<Merlind> server_;
+};
+
+// A device that can be taken away and brought back.
+struct Removable {
+  std::string name;
+  std::function<void()> remove, bring_back;
+};
+
 class ManyDevices : public testing::Test {
  protected:
-  // Both hands make a fist and open in turn, at the same time.
-  void start(const std::string& script_of_near, const std::string& script_of_far) {
+  // Both hands make a fist and open in turn, at the same time. `more`: other devices.
+  void start(const std::string& script_of_near, const std::string& script_of_far,
+             const json& more = json::array()) {
     emulators_.emplace(std::vector<Emulated>{{"left", "cyberglove", "grabbing"},
                                              {"right", "cyberglove", "grabbing"},
                                              {"stage", "fastrak", "grabbing", {"--model", "2"}},
                                              {"near", "spaceball", script_of_near},
                                              {"far", "spaceball", script_of_far}});
     json list = emulators_->list();
-    list.push_back(deviceEntry("pad", "evdev", "evdev:" + dir_ / "no-gamepad"));
-    const json hands = {{{"name", "left_hand"}, {"glove", "left"}, {"station", 1}},
-                        {{"name", "right_hand"}, {"glove", "right"}, {"station", 2}}};
+    if (more.empty()) list.push_back(deviceEntry("pad", "evdev", "evdev:" + dir_ / "no-gamepad"));
+    list.insert(list.end(), more.begin(), more.end());
+    json hands = {{{"name", "left_hand"}, {"glove", "left"}, {"station", 1}},
+                  {{"name", "right_hand"}, {"glove", "right"}, {"station", 2}}};
+    if (!more.empty())
+      hands.push_back({{"name", "wand"}, {"glove", "none"}, {"tracker", "eyes"}, {"station", 1}});
     const json bindings = {{{"input", "left.posture.fist"}, {"action", "next_mode"}},
                            {{"input", "right.posture.open"}, {"action", "reset_view"}},
                            {{"input", "far.button.1"}, {"action", "freeze"}},
@@ -107,7 +188,8 @@ class ManyDevices : public testing::Test {
     if (const auto* const glove = slots->glove(device)) return glove->samples->count();
     if (const auto* const ball = slots->ball(device)) return ball->samples->count();
     const auto& stations = slots->tracker(device)->stations;
-    return std::min(stations[0]->count(), stations[1]->count());
+    return device == "eyes" ? stations[0]->count()
+                            : std::min(stations[0]->count(), stations[1]->count());
   }
 
   TempDir dir_;
@@ -210,29 +292,40 @@ void expectContiguous(const shm::DeviceSlots& devices, const std::string& device
     return expectContiguous(*glove->samples, from, device);
   if (const auto* const ball = devices.ball(device))
     return expectContiguous(*ball->samples, from, device);
-  for (std::size_t i = 0; i < 2; ++i)
+  for (std::size_t i = 0; i < (device == "eyes" ? 1 : 2); ++i)
     expectContiguous(*devices.tracker(device)->stations[i], from, device);
 }
 
 TEST_F(ManyDevices, EachMayDieAndComeBackWithoutTheOthersNoticing) {
-  start("turning", "turning");
+  std::optional<Gamepad> pad(std::in_place, dir_ / "pad");
+  VrpnServer server(dir_);
+  start("turning", "turning",
+        json::array({deviceEntry("pad", "evdev", "pty:" + dir_ / "pad"), server.entry()}));
+  std::vector<Removable> all = {{"pad", [&] { pad.reset(); }, [&] { pad.emplace(dir_ / "pad"); }},
+                                {"eyes", [&] { server.kill(); }, [&] { server.start(); }}};
   for (const Emulated& device : emulators_->all())
+    all.push_back({device.name, [this, &device] { emulators_->kill(device.name); },
+                   [this, &device] { emulators_->start(device.name); }});
+  for (const Removable& device : all)
     ASSERT_TRUE(eventually([&] { return count(device.name) > 0; })) << device.name;
-  for (const Emulated& victim : emulators_->all()) {
+  const auto wand = m_->devices()->hand("wand")->samples->newest();
+  ASSERT_TRUE(wand);
+  EXPECT_EQ(wand->flags & HandSample::kJoints, 0u) << "it wears no glove, though there are two";
+  for (const Removable& victim : all) {
     std::map<std::string, std::uint64_t> from;
-    emulators_->kill(victim.name);
+    victim.remove();
     EXPECT_TRUE(m_->healthIs(victim.name, HealthState::kAbsent)) << victim.name;
-    for (const Emulated& device : emulators_->all()) from[device.name] = count(device.name);
-    for (const Emulated& other : emulators_->all()) {
+    for (const Removable& device : all) from[device.name] = count(device.name);
+    for (const Removable& other : all) {
       if (other.name == victim.name) continue;
       EXPECT_TRUE(eventually([&] { return count(other.name) > from[other.name] + 5; }))
-          << other.name << " while " << victim.name << " is dead";
+          << other.name << " while " << victim.name << " is away";
     }
-    emulators_->start(victim.name);
+    victim.bring_back();
     EXPECT_TRUE(m_->healthIs(victim.name, HealthState::kOk)) << victim.name;
     EXPECT_TRUE(eventually([&] { return count(victim.name) > from[victim.name]; })) << victim.name;
     EXPECT_GE(m_->health(victim.name)->reconnects, 1u) << victim.name;
-    for (const Emulated& other : emulators_->all()) {
+    for (const Removable& other : all) {
       if (other.name != victim.name) expectContiguous(*m_->devices(), other.name, from[other.name]);
     }
   }
@@ -263,7 +356,7 @@ TEST_F(ManyDevices, TheCommandsCalibrateAndRecordTheOneThatIsNamed) {
   refused({"ball", "--device", "left", "--dead-zone", "1"},
           "/devices/0 (\"left\") has the driver \"cyberglove\", which is not that of a ball");
   refused({"ball", "--device", "pad", "--dead-zone", "1"},
-          "edit axes, buttons, dead_zone and curve in /devices/5/evdev instead");
+          "run `merlin calibrate pad --device pad -o");
   refused({"ball", "--device", "far", "--full-scale", "300"},
           "\"far\" has the driver spaceball, whose options for its scale are "
           "--full-scale-translation");
