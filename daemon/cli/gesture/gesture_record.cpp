@@ -18,7 +18,9 @@
 namespace merlin::cli {
 namespace {
 
-constexpr Duration kHandPatience = std::chrono::seconds(3);  // longest time without a sample
+constexpr Duration kHandPatience = std::chrono::seconds(3);       // longest time without a sample
+constexpr Duration kLongestGap = std::chrono::milliseconds(250);  // within a take
+constexpr int kMostTries = 5;                                     // of a take
 constexpr double kBetweenFiles_s = 10;  // from the last take in the file to the first new one
 
 struct RecordOptions {
@@ -96,6 +98,40 @@ Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std:
   return Ok{};
 }
 
+// Whether no part of the time between was without a pose.
+bool isSeenThroughout(std::span<const nn::LabelledPose> take, Timestamp from, Timestamp to) {
+  Timestamp last = from;
+  for (const nn::LabelledPose& p : take) {
+    const Timestamp at = fromNanoseconds(p.pose.at_ns);
+    if (at - last > kLongestGap) return false;
+    last = at;
+  }
+  return to - last <= kLongestGap;
+}
+
+// A take in which the hand was lost for a moment, as on a busy machine, is taken once more.
+Result<Ok> takeOne(LiveHand& hand, const RecordOptions& options, const nn::WallAxes& axes,
+                   std::uint32_t label, std::vector<nn::LabelledPose>& poses) {
+  const SystemClock clock;
+  for (int tries = 1; tries <= kMostTries; ++tries) {
+    if (auto waited = listen(hand, options.pause, axes, label, nullptr); !waited) return waited;
+    printError("now: {}\n", options.label);
+    std::vector<nn::LabelledPose> take;
+    const Timestamp began = clock.now();
+    if (auto taken = listen(hand, options.seconds, axes, label, &take); !taken) return taken;
+    if (isSeenThroughout(take, began, began + fromSeconds(options.seconds))) {
+      poses.insert(poses.end(), take.begin(), take.end());
+      return Ok{};
+    }
+    printError("the hand was not seen all the time: once more, hold it still ...\n");
+  }
+  return Error{
+      Errc::kTimeout,
+      fmt::format("the hand \"{}\" was lost in each of {} takes: see `merlin status` for its "
+                  "tracker",
+                  hand.name, kMostTries)};
+}
+
 Result<nn::PathRecording> takes(const RecordOptions& options, const nn::WallAxes& axes) {
   auto hand = openHand(options);
   if (!hand) return hand.error();
@@ -103,10 +139,7 @@ Result<nn::PathRecording> takes(const RecordOptions& options, const nn::WallAxes
   const std::uint32_t label = recording.labelled(options.label);
   for (std::size_t n = 0; n < options.times; ++n) {
     printError("{} of {}: hold the hand still ...\n", n + 1, options.times);
-    if (auto waited = listen(*hand, options.pause, axes, label, nullptr); !waited)
-      return waited.error();
-    printError("now: {}\n", options.label);
-    if (auto taken = listen(*hand, options.seconds, axes, label, &recording.poses); !taken)
+    if (auto taken = takeOne(*hand, options, axes, label, recording.poses); !taken)
       return taken.error();
   }
   return recording;

@@ -138,11 +138,11 @@ class Labels {
     std::string out;
     for (const auto& [key, label] : all_) {
       const auto& [at, angle_deg, lines] = label;
-      const std::string turned =
-          fmt::format("transform=\"rotate({:.1f} {:.1f} {:.1f})\" ", angle_deg, at.x(), at.y());
+      const std::string looks = fmt::format("{}transform=\"rotate({:.1f} {:.1f} {:.1f})\" {}",
+                                            kLabel, angle_deg, at.x(), at.y(), attributes);
       double y = at.y() - kLine * (static_cast<double>(lines.size()) - 1) / 2 + 4;
       for (const std::string& what : lines) {
-        out += text({at.x(), y}, kLabel + turned + attributes, what);
+        out += text({at.x(), y}, looks, what);
         y += kLine;
       }
     }
