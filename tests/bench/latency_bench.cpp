@@ -2,8 +2,9 @@
 // for the same with idle cores kept awake (cpu_latency_us = 0), for that reader over a line
 // that is asked once a millisecond, over one that is asked without a pause, and for a bare blocking
 // loop without a device: interleaved in one run, over a pseudo-terminal and over a socket pair,
-// idle and with all cores loaded. That is a glove; a tracker and a ball are measured beside a bare
-// loop of their own.
+// idle and with all cores loaded. That is a glove; each other kind of device is measured beside a
+// bare loop of its own: those of 1998 in their dialogue, those of today as their ports carry what
+// they say (records of an input device, a VRPN server's messages, datagrams).
 //
 // Absolute times belong to this machine and this minute; the ratios are what counts. A pty's bytes
 // pass through a kernel worker, a socket pair's do not.
@@ -164,7 +165,8 @@ void benchReaders(const Options& options, Report& report) {
 void benchKinds(const Options& options, Report& report) {
   report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (asked at most 1.2)\n");
   Times& times = makeTimes();
-  for (const Kind* kind : {&kTrackerKind, &kBallKind}) {
+  for (const Kind* kind : {&kTrackerKind, &kBallKind, &kGamepadKind, &kTouchKind, &kVrpnTrackerKind,
+                           &kVrpnPadKind, &kOscKind, &kTuioKind}) {
     std::map<Reader, std::vector<double>> all;
     for (int r = 0; r < options.rounds; ++r) {
       note(fmt::format("{}: round {} of {}", kind->name, r + 1, options.rounds));

@@ -13,15 +13,20 @@ namespace merlin::bench {
 
 struct Kind {
   const char* name;      // "glove"
-  const char* emulator;  // that answers the driver's dialogue: "cyberglove"
+  const char* emulator;  // that answers the driver's dialogue: "cyberglove"; null: greeting() does
   SampleKind kind;
   std::unique_ptr<Device> (*make)(const Clock&, SampleSink&);
   // The n-th record as the device sends it. All records of a kind have the same length.
   std::string (*record)(std::uint32_t n);
+  // What a device without an emulator says when its line is opened, whatever it is asked.
+  std::string (*greeting)() = nullptr;
 };
 
 // A CyberGlove, a Fastrak with one station, a Spaceball.
 extern const Kind kGloveKind, kTrackerKind, kBallKind;
+// A gamepad and a touch frame of the kernel, a tracker and the analogs of a VRPN server, a tracker
+// by OSC, a touch surface by TUIO: as their ports carry what they say.
+extern const Kind kGamepadKind, kTouchKind, kVrpnTrackerKind, kVrpnPadKind, kOscKind, kTuioKind;
 
 // Calls `use` with the channel of the first device of this kind; of a tracker its first station's.
 // `segment`: a shm::DevicesSegment, const or not.
@@ -29,6 +34,7 @@ template <typename Segment, typename Use>
 auto withChannel(Segment& segment, const Kind& kind, Use use) {
   if (kind.kind == SampleKind::kGlove) return use(segment.glove[0].samples);
   if (kind.kind == SampleKind::kTracker) return use(segment.tracker[0].stations[0]);
+  if (kind.kind == SampleKind::kTouch) return use(segment.touch[0]);
   return use(segment.ball[0]);
 }
 

@@ -33,6 +33,15 @@ void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool
   }
 }
 
+void serveGreeting(int fd, const std::string& greeting, const std::function<bool()>& done) {
+  (void)!::write(fd, greeting.data(), greeting.size());
+  std::byte asked[256];
+  while (!done()) {
+    pollfd item{fd, POLLIN, 0};
+    if (::poll(&item, 1, 1) > 0) (void)!::read(fd, asked, sizeof asked);
+  }
+}
+
 void atIrregularTimes(std::uint32_t count, double rate_hz,
                       const std::function<void(std::uint32_t n)>& send) {
   const SystemClock clock;

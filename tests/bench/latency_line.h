@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "drivers/emulate/emulator.h"
 
@@ -15,6 +16,9 @@ bool askForRealTime();
 // Lets the emulator answer what is asked on the line until `done`. `fd`: the device's end,
 // non-blocking.
 void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool()>& done);
+
+// Says `greeting` on the line, and takes what is asked there without an answer until `done`.
+void serveGreeting(int fd, const std::string& greeting, const std::function<bool()>& done);
 
 // Calls `send` with 0, 1 ... `count` - 1, at irregular intervals around the rate, so that no loop
 // can synchronise to it.

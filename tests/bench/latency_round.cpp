@@ -202,6 +202,14 @@ void sendRecords(int fd, const RoundSize& size, const Kind& kind, std::uint32_t 
   });
 }
 
+// What the driver begins with; a bare loop begins with nothing, and must not count a greeting.
+void beginDialogue(int fd, const Kind& kind, Reader reader, const std::function<bool()>& done) {
+  if (!kind.emulator) return serveGreeting(fd, reader == kBare ? "" : kind.greeting(), done);
+  const auto emulator = emulate::findEmulator(kind.emulator)
+                            ->make({}, *emulate::findMotionScript("still"), SystemClock().now());
+  serveDialogue(fd, *emulator, done);
+}
+
 // Latency of each record from the line to the client, in microseconds.
 std::vector<double> latencies(const Times& times, std::uint32_t first, std::uint32_t last) {
   std::vector<double> all_us;
@@ -258,9 +266,7 @@ Round runRound(const RoundSize& size, Reader reader, Line line, Times& times, co
   std::optional<Client> client(std::in_place, name, kind, times);
   ReaderThread reading;
   std::thread thread([&] { reading.run(reader, kind, ends.reader.get(), **segment); });
-  const auto emulator = emulate::findEmulator(kind.emulator)
-                            ->make({}, *emulate::findMotionScript("still"), clock.now());
-  serveDialogue(ends.deviceFd(), *emulator, [&] { return reading.streaming || reading.ended; });
+  beginDialogue(ends.deviceFd(), kind, reader, [&] { return reading.streaming || reading.ended; });
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   const std::uint32_t first = withChannel(**segment, kind, [](const auto& channel) {
     const auto sample = channel.newest();
@@ -280,7 +286,8 @@ Round runRound(const RoundSize& size, Reader reader, Line line, Times& times, co
   client.reset();
   if (ended_early)
     didNotRun(fmt::format("{} on a {}", kReaderNames[reader], kLineNames[line]),
-              "it ended before its line did", fmt::format("see drivers/{}", kind.emulator));
+              "it ended before its line did",
+              fmt::format("see drivers/{}", kind.emulator ? kind.emulator : kind.name));
   return {latencies(times, first, first + static_cast<std::uint32_t>(size.samples)),
           reading.cpu_s / took, reading.real_time};
 }

@@ -6,11 +6,14 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/base/blocks.h"
 #include "daemon/base/files.h"
@@ -22,6 +25,7 @@
 #include "render/range/io/range_file.h"
 #include "render/range/triangulate.h"
 #include "tests/bench/figures.h"
+#include "tests/support/process.h"
 
 namespace merlin::bench {
 namespace {
@@ -33,7 +37,7 @@ constexpr std::size_t kSide = 1024;
 constexpr double kMostTimes = 5;
 
 struct Files {
-  std::string range, colour, mesh, copy;
+  std::string range, colour, mesh, copy, cloud;
 };
 
 double secondsSince(SteadyClock::time_point then) {
@@ -106,10 +110,62 @@ void copyOnce(const Files& files, const std::string& mesh, Steps& steps) {
   steps.alone.push_back(secondsSince(began));
 }
 
-bool measure(int rounds, const std::string& folder, Report& report) {
+// The same image as the organised cloud that peers read: binary PCD.
+void writeCloud(const Files& files) {
+  const auto image = orEnd(range::readRange(files.range, {}), files.range).image;
+  const std::vector<float> points = range::pointsOf(image, range::Work{threadsOr(0)});
+  const auto colours = orEnd(FileCopy::read(files.colour), files.colour);
+  const std::string_view rgb = colours.text().substr(colours.text().size() - 3 * kSide * kSide);
+  std::string bytes = fmt::format(
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n"
+      "WIDTH {0}\nHEIGHT {0}\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {1}\nDATA binary\n",
+      kSide, kSide * kSide);
+  const auto append = [&](const auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (std::size_t p = 0; p < kSide * kSide; ++p) {
+    const bool there = image.range[p] != range::kNoReturn;
+    for (std::size_t i = 0; i < 3; ++i)
+      append(there ? points[3 * p + i] : std::numeric_limits<float>::quiet_NaN());
+    const auto channel = [&](std::size_t c) {
+      return std::uint32_t{static_cast<unsigned char>(rgb[3 * p + c])};
+    };
+    append(channel(0) << 16 | channel(1) << 8 | channel(2));
+  }
+  orEnd(writeFile(files.cloud, bytes), files.cloud);
+}
+
+// What a peer's program prints of the same way: from its cloud to a mesh of triangles.
+void comparePeer(const std::string& program, int rounds, const Files& files, const Measured& all,
+                 Report& report) {
+  writeCloud(files);
+  const auto image = orEnd(range::readRange(files.range, {}), files.range).image;
+  const double edge_m = 10 * range::stepOf(image) * 2;  // at the mean range, 2 m
+  const test::Outcome said = test::run(
+      {program, files.cloud, files.mesh, fmt::format("{:.6f}", edge_m), std::to_string(rounds)});
+  const auto object = nlohmann::json::parse(said.output, nullptr, false);
+  if (said.status != 0 || !object.is_object())
+    didNotRun(program, fmt::format("exit status {}; {}", said.status, said.output),
+              "./dev bench range --peer builds it");
+  const auto ms = [&](const char* step) { return object[step].get<double>(); };
+  report.text(
+      "PCL's organised mesh, with a median filter, without a filter for spikes and without "
+      "normals: {} triangles\n",
+      object["triangles"].get<std::uint64_t>());
+  for (const char* step : {"reading", "filtering", "meshing", "writing", "all"})
+    report.text("  {:<12} {:8.1f} ms\n", step, ms(step));
+  const Measured peer =
+      Measured::of(ms("all"), static_cast<std::uint64_t>(rounds), "imports by PCL");
+  const Measured ratio = ratioOf(peer, scaled(all, 1000), "PCL beside MERLIN");
+  report.text("  {:.1f} times MERLIN's time\n", ratio.value());
+  report.figure("pcl_all_ms", peer, "ms");
+  report.figure("pcl_by_merlin", ratio, "1");
+}
+
+bool measure(int rounds, const std::string& folder, const std::string& peer, Report& report) {
   std::filesystem::create_directories(folder);
   const Files files{folder + "/range.pgm", folder + "/colour.ppm", folder + "/mesh.ply",
-                    folder + "/copy.ply"};
+                    folder + "/copy.ply", folder + "/cloud.pcd"};
   makeInput(files);
   const unsigned threads = threadsOr(0);
   Steps warm, steps;
@@ -139,6 +195,7 @@ bool measure(int rounds, const std::string& folder, Report& report) {
   report.figure("times_the_bytes_alone", ratio, "1");
   report.figure("triangles", Measured::of(static_cast<double>(steps.triangles), 1, "triangles"),
                 "1");
+  if (!peer.empty()) comparePeer(peer, rounds, files, all, report);
   return ratio.value() <= kMostTimes;
 }
 
@@ -149,13 +206,14 @@ int main(int argc, char** argv) {
   CLI::App app("A range image to two million triangles, beside its bytes alone");
   int rounds = 15;
   bool json = false;
-  std::string work = "build/bench/range";
+  std::string work = "build/bench/range", peer;
   app.add_option("--rounds", rounds, "Imports, and copies of the bytes")
       ->check(CLI::Range(1, 1000));
   app.add_option("--work", work, "Folder for its files")->capture_default_str();
+  app.add_option("--peer-program", peer, "PCL's way, which ./dev bench range --peer builds");
   app.add_flag("--json", json, "One JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("range", json, [&](merlin::bench::Report& report) {
-    return merlin::bench::measure(rounds, work, report);
+    return merlin::bench::measure(rounds, work, peer, report);
   });
 }

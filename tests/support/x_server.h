@@ -8,12 +8,14 @@
 #include <utility>
 #include <vector>
 
+// clang-format off
+#include <gtest/gtest.h>  // before Xlib, whose macros it does not bear
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/XTest.h>
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
+// clang-format on
 
 #include "tests/support/pictures.h"
 #include "tests/support/process.h"

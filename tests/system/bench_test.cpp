@@ -191,9 +191,10 @@ TEST_F(Bench, AttackWithoutMerlindOrFloodHasNoFigures) {
                   {"merlind", "it ended", "no wall"});
 }
 
-TEST_F(Bench, KillAndSoakWithoutMerlindHaveNoFigures) {
+TEST_F(Bench, KillPageAndSoakWithoutMerlindHaveNoFigures) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> benches = {
       {"kill", {"python3", "-B", kBench + "/kill_bench.py", "--times", "1"}},
+      {"page", {"python3", "-B", kBench + "/page_bench.py", "--seconds", "1", "--open", "1"}},
       {"soak", {"python3", "-B", kBench + "/soak/soak.py", "60s"}}};
   std::filesystem::create_directories(dir_ / "fake");
   std::filesystem::create_symlink(kMerlin, dir_ / "fake/merlin");
