@@ -31,7 +31,7 @@ Ramps rampsOf(const tiles::Tile& tile, const tiles::PlanePart& part,
 Ramps onOutput(Ramps ramps, const PlacedTile& placed) {
   if (placed.mirror == Mirror::kHorizontal) std::swap(ramps[0], ramps[2]);
   if (placed.mirror == Mirror::kVertical) std::swap(ramps[1], ramps[3]);
-  std::ranges::rotate(ramps, ramps.end() - static_cast<int>(placed.turn));
+  std::rotate(ramps.begin(), ramps.end() - static_cast<int>(placed.turn), ramps.end());
   return ramps;
 }
 
