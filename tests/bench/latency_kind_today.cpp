@@ -4,12 +4,12 @@
 
 #include "drivers/evdev/device.h"
 #include "drivers/osc/device.h"
-#include "drivers/port/evdev_line.h"
 #include "drivers/touch/device.h"
 #include "drivers/tuio/device.h"
 #include "drivers/vrpn/device.h"
 #include "drivers/vrpn/pad_device.h"
 #include "tests/bench/latency_kind.h"
+#include "tests/support/evdev_records.h"
 #include "tests/support/osc_packets.h"
 #include "tests/support/vrpn_messages.h"
 
@@ -19,14 +19,7 @@ namespace {
 using Evdev = EvdevRecord::Kind;
 
 std::string evdev(Evdev kind, int code = 0, std::int32_t value = 0) {
-  EvdevRecord r;
-  r.kind = kind;
-  r.code = static_cast<std::uint16_t>(code);
-  r.value = value;
-  r.high = 1000;
-  std::string out;
-  append(r, out);
-  return out;
+  return test::evdevRecord(kind, code, value, 0, 1000);
 }
 
 // Each is another place than the one before.

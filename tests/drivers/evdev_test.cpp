@@ -5,6 +5,7 @@
 
 #include "daemon/base/random.h"
 #include "drivers/evdev/device.h"
+#include "tests/support/evdev_records.h"
 #include "tests/support/fake_clock.h"
 #include "tests/support/fake_stream.h"
 #include "tests/support/recording_sink.h"
@@ -13,19 +14,6 @@ namespace merlin::evdev {
 namespace {
 
 using Kind = EvdevRecord::Kind;
-
-std::string record(Kind kind, int code = 0, std::int32_t value = 0, std::int32_t low = 0,
-                   std::int32_t high = 0) {
-  EvdevRecord r;
-  r.kind = kind;
-  r.code = static_cast<std::uint16_t>(code);
-  r.value = value;
-  r.low = low;
-  r.high = high;
-  std::string out;
-  append(r, out);
-  return out;
-}
 
 std::string named(Kind kind, int code, std::string_view text) {
   EvdevRecord r;
@@ -38,7 +26,7 @@ std::string named(Kind kind, int code, std::string_view text) {
 }
 
 std::string axis(int code, std::int32_t low, std::int32_t high, std::int32_t value) {
-  return record(EvdevRecord::kAxis, code, value, low, high);
+  return test::evdevRecord(EvdevRecord::kAxis, code, value, low, high);
 }
 
 // As xpad describes a controller; resting values are seldom the middle.
@@ -52,19 +40,23 @@ std::string gamepad() {
                                               {BTN_NORTH, "NORTH"}, {BTN_WEST, "WEST"},
                                               {BTN_TL, "TL"},       {BTN_START, "START"}};
   for (const auto& [code, name] : keys) text += named(EvdevRecord::kKey, code, name);
-  return text + record(EvdevRecord::kReady);
+  return text + test::evdevRecord(EvdevRecord::kReady);
 }
 
 std::string spaceMouse() {
   std::string text = named(EvdevRecord::kName, 0, "SpaceNavigator");
   for (int code = ABS_X; code <= ABS_RZ; ++code) text += axis(code, -350, 350, 0);
   text += named(EvdevRecord::kKey, BTN_0, "0") + named(EvdevRecord::kKey, BTN_1, "1");
-  return text + record(EvdevRecord::kReady);
+  return text + test::evdevRecord(EvdevRecord::kReady);
 }
 
-std::string moved(int code, std::int32_t value) { return record(EvdevRecord::kMoved, code, value); }
-std::string pressed(int code, int value) { return record(EvdevRecord::kPressed, code, value); }
-const std::string kReport = record(EvdevRecord::kReport);
+std::string moved(int code, std::int32_t value) {
+  return test::evdevRecord(EvdevRecord::kMoved, code, value);
+}
+std::string pressed(int code, int value) {
+  return test::evdevRecord(EvdevRecord::kPressed, code, value);
+}
+const std::string kReport = test::evdevRecord(EvdevRecord::kReport);
 
 class EvdevTest : public testing::Test {
  protected:
@@ -165,9 +157,9 @@ TEST_F(EvdevTest, AHeldStickIsPublishedAgainUntilItIsLetGo) {
 }
 
 TEST_F(EvdevTest, ARelativeAxisThatSaysNothingMoreIsAtRest) {
-  connect(record(EvdevRecord::kRelative, REL_X) + named(EvdevRecord::kKey, BTN_LEFT, "LEFT") +
-          record(EvdevRecord::kReady));
-  EXPECT_FLOAT_EQ(after(record(EvdevRecord::kShifted, REL_X, 350)).translation[0], 1);
+  connect(test::evdevRecord(EvdevRecord::kRelative, REL_X) +
+          named(EvdevRecord::kKey, BTN_LEFT, "LEFT") + test::evdevRecord(EvdevRecord::kReady));
+  EXPECT_FLOAT_EQ(after(test::evdevRecord(EvdevRecord::kShifted, REL_X, 350)).translation[0], 1);
   const Timestamp pushed = clock_.now();
   while (sink_.ball.back().translation[0] != 0) ASSERT_TRUE(device_->poll(stream_));
   EXPECT_LE(clock_.now() - pushed, std::chrono::milliseconds(110));
@@ -176,10 +168,11 @@ TEST_F(EvdevTest, ARelativeAxisThatSaysNothingMoreIsAtRest) {
 
 // The kernel tells of no motion by no event, so only the axis that goes on is told of.
 TEST_F(EvdevTest, ARelativeAxisRestsWhileAnotherOneMoves) {
-  connect(record(EvdevRecord::kRelative, REL_X) + record(EvdevRecord::kRelative, REL_Y) +
-          record(EvdevRecord::kReady));
-  EXPECT_FLOAT_EQ(after(record(EvdevRecord::kShifted, REL_X, 350)).translation[0], 1);
-  const std::string up = record(EvdevRecord::kShifted, REL_Y, -350);
+  connect(test::evdevRecord(EvdevRecord::kRelative, REL_X) +
+          test::evdevRecord(EvdevRecord::kRelative, REL_Y) +
+          test::evdevRecord(EvdevRecord::kReady));
+  EXPECT_FLOAT_EQ(after(test::evdevRecord(EvdevRecord::kShifted, REL_X, 350)).translation[0], 1);
+  const std::string up = test::evdevRecord(EvdevRecord::kShifted, REL_Y, -350);
   clock_.advance(std::chrono::milliseconds(50));
   EXPECT_FLOAT_EQ(after(up).translation[0], 1);
   EXPECT_FLOAT_EQ(after(up).translation[2], -1);
@@ -192,7 +185,8 @@ TEST_F(EvdevTest, AClickersKeysAreTheButtonsThatTheConfigurationNames) {
   EvdevSettings settings;
   settings.buttons = {"pagedown", "pageup"};
   connect(named(EvdevRecord::kKey, KEY_PAGEUP, "PAGEUP") +
-              named(EvdevRecord::kKey, KEY_PAGEDOWN, "PAGEDOWN") + record(EvdevRecord::kReady),
+              named(EvdevRecord::kKey, KEY_PAGEDOWN, "PAGEDOWN") +
+              test::evdevRecord(EvdevRecord::kReady),
           settings);
   EXPECT_EQ(device_->input().chosen(),
             "axes none, none, none, none, none, none; buttons pagedown, pageup");
@@ -218,7 +212,7 @@ TEST_F(EvdevTest, KeysThatArePressedAreThereByTheKernelsNumbers) {
 TEST_F(EvdevTest, OfManyKeysEightAreThere) {
   std::string keyboard;
   for (int code = KEY_1; code <= KEY_0; ++code) keyboard += named(EvdevRecord::kKey, code, "1");
-  connect(keyboard + record(EvdevRecord::kReady));
+  connect(keyboard + test::evdevRecord(EvdevRecord::kReady));
   std::string all;
   for (int code = KEY_1; code <= KEY_0; ++code) all += pressed(code, 1);
   EXPECT_EQ(after(all).keys[kKeys - 1], KEY_1 + 7);
@@ -256,7 +250,8 @@ TEST_F(EvdevTest, WhatItLacksIsNamedWholeAndLeavesTheRestAsItIs) {
 
 TEST_F(EvdevTest, AKeyThatIsPressedAtTheBeginningIsPressed) {
   std::string description = gamepad();
-  description.insert(description.size() - record(EvdevRecord::kReady).size(), pressed(BTN_EAST, 1));
+  description.insert(description.size() - test::evdevRecord(EvdevRecord::kReady).size(),
+                     pressed(BTN_EAST, 1));
   connect(description);
   EXPECT_EQ(after(moved(ABS_X, 0)).buttons, 2u);
 }
@@ -292,7 +287,7 @@ TEST_F(EvdevTest, WhatWasHeldWhenItWentIsReleasedWhenItReturns) {
   EXPECT_EQ(sink_.ball.size(), 2u) << "nothing was held any more";
   after(pressed(BTN_SOUTH, 1));
   std::string held = gamepad();
-  held.insert(held.size() - record(EvdevRecord::kReady).size(), pressed(BTN_SOUTH, 1));
+  held.insert(held.size() - test::evdevRecord(EvdevRecord::kReady).size(), pressed(BTN_SOUTH, 1));
   stream_.feed(held);
   ASSERT_TRUE(device_->open(stream_));
   EXPECT_EQ(sink_.ball.back().buttons, 1u) << "it is still held";
@@ -326,7 +321,7 @@ TEST_F(EvdevTest, ADescriptionThatDoesNotEndIsRefusedInTime) {
   const Timestamp began = clock_.now();
   EXPECT_EQ(device_->open(stream_).error().code, Errc::kTimeout);
   EXPECT_LE(clock_.now() - began, std::chrono::milliseconds(1100));
-  stream_.feed(record(EvdevRecord::kReady));
+  stream_.feed(test::evdevRecord(EvdevRecord::kReady));
   EXPECT_EQ(device_->open(stream_).error().code, Errc::kMalformed);  // neither axes nor keys
 }
 
@@ -334,11 +329,11 @@ TEST_F(EvdevTest, RandomBytesGiveNoSampleThatIsNotPlausible) {
   connect(gamepad());
   Random random(11);
   for (int i = 0; i < 100'000; ++i) {
-    std::string bytes =
-        record(static_cast<Kind>(1 + random.below(9)),
-               static_cast<int>(random.below(random.below(2) ? 32 : 0x140)),
-               static_cast<std::int32_t>(random.next()), static_cast<std::int32_t>(random.next()),
-               static_cast<std::int32_t>(random.next()));
+    std::string bytes = test::evdevRecord(
+        static_cast<Kind>(1 + random.below(9)),
+        static_cast<int>(random.below(random.below(2) ? 32 : 0x140)),
+        static_cast<std::int32_t>(random.next()), static_cast<std::int32_t>(random.next()),
+        static_cast<std::int32_t>(random.next()));
     bytes[random.below(bytes.size())] = static_cast<char>(random.next());
     stream_.feed(bytes);
     ASSERT_TRUE(device_->poll(stream_));

@@ -14,7 +14,7 @@
 
 #include "daemon/base/unique_fd.h"
 #include "drivers/io/pty_master.h"
-#include "drivers/port/evdev_line.h"
+#include "tests/support/evdev_records.h"
 #include "tests/support/osc_packets.h"
 #include "tests/system/merlind.h"
 
@@ -23,20 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
-                   std::int32_t low = 0, std::int32_t high = 0) {
-  EvdevRecord r;
-  r.kind = kind;
-  r.code = static_cast<std::uint16_t>(code);
-  r.value = value;
-  r.low = low;
-  r.high = high;
-  std::string out;
-  append(r, out);
-  return out;
-}
-
-std::string moved(int code, int value) { return record(EvdevRecord::kMoved, code, value); }
+std::string moved(int code, int value) { return evdevRecord(EvdevRecord::kMoved, code, value); }
 
 // The other end of an input device's line.
 class Line {
@@ -45,7 +32,7 @@ class Line {
   void say(const std::string& bytes) const {
     (void)!::write(line_.fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
   }
-  void report(const std::string& events) const { say(events + record(EvdevRecord::kReport)); }
+  void report(const std::string& events) const { say(events + evdevRecord(EvdevRecord::kReport)); }
   // What was sent before it was opened was dropped: says the description until it was read.
   bool describes(Process& calibrate, const std::string& description) const {
     return eventually([&] {
@@ -65,8 +52,8 @@ class Line {
 std::string description(std::initializer_list<std::array<int, 4>> axes) {
   std::string text;
   for (const auto& [code, value, low, high] : axes)
-    text += record(EvdevRecord::kAxis, code, value, low, high);
-  return text + record(EvdevRecord::kReady);
+    text += evdevRecord(EvdevRecord::kAxis, code, value, low, high);
+  return text + evdevRecord(EvdevRecord::kReady);
 }
 
 std::vector<std::string> calibrate(const std::string& what, const std::string& file) {

@@ -16,7 +16,7 @@
 #include "daemon/base/commands.h"
 #include "daemon/net/connection_server.h"
 #include "drivers/io/pty_master.h"
-#include "drivers/port/evdev_line.h"
+#include "tests/support/evdev_records.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -87,23 +87,13 @@ class Gamepad {
         thread_([this](const std::stop_token& stop) { speak(stop); }) {}
 
  private:
-  static std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0) {
-    EvdevRecord r;
-    r.kind = kind;
-    r.code = static_cast<std::uint16_t>(code);
-    r.value = value;
-    r.low = -100;
-    r.high = 100;
-    std::string out;
-    append(r, out);
-    return out;
-  }
   void speak(const std::stop_token& stop) const {
     using Kind = EvdevRecord::Kind;
-    const std::string description = record(Kind::kAxis, ABS_X) + record(Kind::kReady);
+    const std::string description =
+        evdevRecord(Kind::kAxis, ABS_X, 0, -100, 100) + evdevRecord(Kind::kReady);
     for (int turn = 0; !stop.stop_requested(); ++turn) {
       const std::string bytes =
-          description + record(Kind::kMoved, ABS_X, turn % 100) + record(Kind::kReport);
+          description + evdevRecord(Kind::kMoved, ABS_X, turn % 100) + evdevRecord(Kind::kReport);
       (void)!::write(line_.fd(), bytes.data(), bytes.size());
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }

@@ -7,6 +7,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/calibrate/calibrate.h"
 #include "daemon/cli/calibrate/calibrated_device.h"
+#include "daemon/cli/calibrate/ignoring_sink.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/print.h"
@@ -26,7 +27,7 @@ struct GloveOptions {
 };
 
 // Measures the glove directly on its serial line.
-class GuidedGlove final : public Guided, private SampleSink {
+class GuidedGlove final : public Guided, private IgnoringSink {
  public:
   GuidedGlove(const CybergloveSettings& settings, ByteStream& line, const Clock& clock)
       : settings_(settings), line_(line), device_(cyberglove::makeDevice(settings, clock, *this)) {}
@@ -44,9 +45,6 @@ class GuidedGlove final : public Guided, private SampleSink {
   void publish(const GloveSample& sample) noexcept override {
     if (measuring_) calibration_.add(sample);
   }
-  void publish(const TrackerSample&) noexcept override {}
-  void publish(const BallSample&) noexcept override {}
-  void publish(const TouchSample&) noexcept override {}
   std::string spans() const;
 
   CybergloveSettings settings_;

@@ -1,6 +1,5 @@
 // merlin calibrate pad: sets the axes and the dead zone of a gamepad, a joystick or a space mouse
 // that is read directly, or of a VRPN server's analogs, from options or from what a person moves.
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/calibrate/calibrate.h"
 #include "daemon/cli/calibrate/calibrated_device.h"
+#include "daemon/cli/calibrate/ignoring_sink.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/print.h"
@@ -38,10 +38,7 @@ struct PadOptions {
 // Errors: kInvalidArgument (it has another driver), those of findDevice().
 Result<CalibratedDevice> findPad(const PadOptions& o) {
   auto pad = findDevice(o.output, SampleKind::kBall, o.device, kDrivers);
-  if (!pad || std::ranges::find(kDrivers, pad->driver, [](const char* name) {
-                return std::string(name);
-              }) != std::end(kDrivers))
-    return pad;
+  if (!pad || isOneOf(pad->driver, kDrivers)) return pad;
   return Error{
       Errc::kInvalidArgument,
       fmt::format("{}: {}/driver, that of \"{}\", is \"{}\": `merlin calibrate ball` is for "
@@ -50,7 +47,7 @@ Result<CalibratedDevice> findPad(const PadOptions& o) {
 }
 
 // Measures the device on its own line.
-class GuidedPadLine final : public Guided, private SampleSink {
+class GuidedPadLine final : public Guided, private IgnoringSink {
  public:
   GuidedPadLine(const OwnLine& line, const std::string& driver, const Clock& clock)
       : stream_(*line.stream) {
@@ -94,11 +91,6 @@ class GuidedPadLine final : public Guided, private SampleSink {
   std::optional<PadAxes> solve() const { return pad_.solve(); }
 
  private:
-  void publish(const GloveSample&) noexcept override {}
-  void publish(const TrackerSample&) noexcept override {}
-  void publish(const BallSample&) noexcept override {}
-  void publish(const TouchSample&) noexcept override {}
-
   ByteStream& stream_;
   std::unique_ptr<Device> device_;
   std::function<std::vector<AxisReading>()> readings_;

@@ -8,6 +8,7 @@
 #include "daemon/base/files.h"
 #include "daemon/cli/calibrate/calibrate.h"
 #include "daemon/cli/calibrate/calibrated_device.h"
+#include "daemon/cli/calibrate/ignoring_sink.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/guide.h"
 #include "daemon/cli/print.h"
@@ -27,7 +28,7 @@ struct TouchOptions {
 };
 
 // Measures the surface on its own line, in its own axes.
-class GuidedSurface final : public Guided, private SampleSink {
+class GuidedSurface final : public Guided, private IgnoringSink {
  public:
   GuidedSurface(const OwnLine& line, const DriverEntry& driver, const Clock& clock)
       : stream_(*line.stream), device_(driver.make(inOwnAxes(line.settings.own), clock, *this)) {}
@@ -59,9 +60,6 @@ class GuidedSurface final : public Guided, private SampleSink {
     settings.touch.orientation = settings.tuio.orientation = {};
     return settings;
   }
-  void publish(const GloveSample&) noexcept override {}
-  void publish(const TrackerSample&) noexcept override {}
-  void publish(const BallSample&) noexcept override {}
   void publish(const TouchSample& sample) noexcept override {
     newest_ = sample;
     if (measuring_) corners_.add(sample);

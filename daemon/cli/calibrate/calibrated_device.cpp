@@ -76,10 +76,7 @@ std::string namesOf(const Json& list, SampleKind kind) {
 // The first of this kind with one of these drivers; nothing if there is none.
 std::optional<std::size_t> firstOf(const Json& list, SampleKind kind, DriverNames drivers) {
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (kindOf(list[i]) == kind &&
-        std::ranges::find(drivers, textOf(list[i], "driver"),
-                          [](const char* name) { return std::string(name); }) != drivers.end())
-      return i;
+    if (kindOf(list[i]) == kind && isOneOf(textOf(list[i], "driver"), drivers)) return i;
   }
   return std::nullopt;
 }
@@ -125,6 +122,10 @@ Result<CalibratedDevice> deviceAt(const Json& list, std::size_t index, const std
 }
 
 }  // namespace
+
+bool isOneOf(const std::string& driver, DriverNames drivers) {
+  return std::ranges::any_of(drivers, [&](const char* name) { return driver == name; });
+}
 
 Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
                                     const std::string& name, DriverNames drivers) {

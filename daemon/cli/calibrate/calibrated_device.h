@@ -28,6 +28,7 @@ struct CalibratedDevice {
 };
 
 using DriverNames = std::span<const char* const>;
+bool isOneOf(const std::string& driver, DriverNames drivers);
 
 // Finds the device named `name`; if `name` is empty, the first device of this kind with one of
 // `drivers`, or the first of this kind if none has one of them. A file that does not exist or has

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "daemon/base/clock.h"
+#include "daemon/cli/calibrate/ignoring_sink.h"
 #include "daemon/cli/print.h"
 #include "drivers/fastrak/guided_alignment.h"
 #include "drivers/port/tracker_placement.h"
@@ -15,7 +16,7 @@ namespace {
 using fastrak::GuidedAlignment;
 
 // Measures a station on the tracker's own line, in the frame that is sent.
-class GuidedSender final : public Guided, private SampleSink {
+class GuidedSender final : public Guided, private IgnoringSink {
  public:
   GuidedSender(const OwnLine& line, const DriverEntry& driver, int station, const Clock& clock)
       : stream_(*line.stream),
@@ -54,14 +55,11 @@ class GuidedSender final : public Guided, private SampleSink {
     settings.vrpn.placement = settings.osc.placement = {};
     return settings;
   }
-  void publish(const GloveSample&) noexcept override {}
   void publish(const TrackerSample& sample) noexcept override {
     if (sample.station != station_) return;
     newest_ = sample;
     if (measuring_) alignment_.add(sample);
   }
-  void publish(const BallSample&) noexcept override {}
-  void publish(const TouchSample&) noexcept override {}
 
   ByteStream& stream_;
   std::unique_ptr<Device> device_;
