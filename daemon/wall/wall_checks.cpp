@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "config/drawn_wall.h"
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "render/correct/io/mpcdi.h"
@@ -116,12 +117,41 @@ void checkIsPicture(LoadedSettings& loaded, const std::string& path, const std::
   }
 }
 
+// A region that was measured for another output is used, since only a person can see whether it
+// fits; what is suspicious about it is said.
+void checkFits(LoadedSettings& loaded, const render::correct::MeasuredCorrection& measured,
+               std::size_t index, const std::string& at) {
+  const std::vector<render::out::OutputSettings>& outputs = loaded.settings.wall.outputs;
+  const render::correct::CorrectionSettings& correction = outputs[index].correction;
+  const auto same = std::ranges::find_if(outputs, [&](const render::out::OutputSettings& other) {
+    return other.correction.mpcdi == correction.mpcdi &&
+           other.correction.mpcdi_region == correction.mpcdi_region;
+  });
+  if (const auto first = static_cast<std::size_t>(same - outputs.begin()); first != index) {
+    loaded.add({true, loaded.lineOf(at), at,
+                fmt::format("is the region that the output {} uses too; each projector usually "
+                            "needs a region of its own",
+                            same->shownName())});
+  }
+  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return;  // nothing to draw
+  const WallSettings drawn = drawnWall(loaded.settings.wall);
+  if (drawn.outputs.size() != outputs.size()) return;
+  const auto size = render::out::pictureSize(drawn.outputs[index], drawn.tiles);
+  if (!size || (size->width == measured.width && size->height == measured.height)) return;
+  loaded.add({true, loaded.lineOf(at), at,
+              fmt::format("was measured for {} x {} pixels and the output has {} x {}: its warp "
+                          "and blend are stretched to that",
+                          measured.width, measured.height, size->width, size->height)});
+}
+
 // At a start a damaged file makes one output look wrong, which is better than a dark wall.
-void checkMeasured(LoadedSettings& loaded, const render::correct::CorrectionSettings& correction,
-                   const std::string& at, bool is_start) {
+void checkMeasured(LoadedSettings& loaded, std::size_t index, bool is_start) {
+  const render::correct::CorrectionSettings correction =
+      loaded.settings.wall.outputs[index].correction;
   if (correction.mpcdi.empty()) return;
+  const std::string at = fmt::format("/wall/outputs/{}/correction", index);
   const auto measured = render::correct::readMeasured(correction.mpcdi, correction.mpcdi_region);
-  if (measured) return;
+  if (measured) return checkFits(loaded, *measured, index, at + "/mpcdi");
   const std::string what = kCannot + measured.error().what;
   if (measured.error().code == Errc::kInvalidArgument)
     return loaded.addFinding(at + "/mpcdi_region", what);
@@ -158,8 +188,7 @@ void checkRenderer(LoadedSettings& loaded) {
 void checkOutputs(LoadedSettings& loaded, bool is_start) {
   const WallSettings wall = loaded.settings.wall;
   for (std::size_t i = 0; i < wall.outputs.size(); ++i) {
-    checkMeasured(loaded, wall.outputs[i].correction, fmt::format("/wall/outputs/{}/correction", i),
-                  is_start);
+    checkMeasured(loaded, i, is_start);
     if (const auto there = render::out::checkIsThere(wall.outputs[i].kind); !there) {
       loaded.addFinding(
           fmt::format("/wall/outputs/{}/kind", i),

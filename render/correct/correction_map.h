@@ -41,6 +41,7 @@ struct MeasuredCorrection {
   MeasuredWarp warp{};
   std::optional<MeasuredShares> alpha{}, beta{};
   std::array<double, 3> beta_level{1, 1, 1};  // each channel's light at a beta share of 1
+  int width = 0, height = 0;  // of the output that it was measured for [px]; 0: not known
 };
 
 // Constants of the formula.

@@ -119,6 +119,27 @@ TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
   EXPECT_EQ(cut.pixels, without.pixels);
 }
 
+// It is used nevertheless: only a person can see whether it fits.
+TEST_F(Correction, AnMpcdiRegionOfAnotherOutputIsUsedAndSaid) {
+  const std::string config = file("by_hand", kCorrection);
+  ASSERT_EQ(run({kMerlin, "wall", "mpcdi", "export", mpcdi_, "-c", config}).status, 0);
+  json other = json::parse(readText(file("other", {{"mpcdi", mpcdi_}})));
+  json second = other["wall"]["outputs"][1];
+  second["name"] = "wide";
+  second["path"] = dir_ / "wide.png";
+  second["tiles"] = json::array({{{"tile", "left"}}, {{"tile", "right"}, {"x", 640}}});
+  other["wall"]["outputs"].push_back(second);
+  writeText(dir_ / "other.json", other.dump(1));
+  const Outcome checked = run({kMerlind, "--check-config", dir_ / "other.json"});
+  EXPECT_EQ(checked.status, 1) << "adjusted: " << checked.output;
+  for (const char* const said :
+       {"/wall/outputs/2/correction/mpcdi is the region that the output left uses too",
+        "/wall/outputs/2/correction/mpcdi was measured for 640 x 480 pixels and the output has "
+        "1280 x 480: its warp and blend are stretched to that"})
+    EXPECT_NE(checked.output.find(said), std::string::npos) << checked.output;
+  EXPECT_EQ(checked.output.find("/wall/outputs/1"), std::string::npos) << checked.output;
+}
+
 TEST_F(Correction, BadWordsAndFilesOfTheCommandAreSaid) {
   const auto refused = [&](std::vector<std::string> words, const std::string& what) {
     words.insert(words.begin(), {kMerlin, "wall", "mpcdi"});

@@ -345,6 +345,8 @@ Result<MeasuredCorrection> Mpcdi::measured(const std::string& region) const {
                                    fmt::join(ids, ", "))};
   }
   MeasuredCorrection measured;
+  measured.width = found->region.width;
+  measured.height = found->region.height;
   auto warp = content_->warp(*found);
   if (!warp) return warp.error();
   measured.warp = *std::move(warp);
