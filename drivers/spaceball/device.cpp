@@ -49,6 +49,8 @@ Result<std::string> SpaceballDevice::open(ByteStream& stream) {
   model_ = modelOf(*firmware);
   set_ups_ = 0;
   complaint_ = "";
+  parser_ = {};  // of an earlier connection may be half a packet
+  pinged_ = false;
   if (const auto done = setUp(stream); !done) return done.error();
   last_heard_ = clock_.now();
   const std::uint32_t counter = sample_.counter;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -62,31 +63,38 @@ class Lines final : public SampleSink {
  public:
   void publish(const GloveSample& s) noexcept override {
     text += fmt::format("{{\"glove\":{},\"flags\":{},\"sensors\":{},\"raw\":{},\"rad\":{}}}\n",
-                        s.counter, s.flags, s.sensors, list(std::span(s.raw).first(23), "{}{}"),
-                        list(s.angle_rad, "{}{:.3f}"));
+                        count(s.counter), s.flags, s.sensors,
+                        list(std::span(s.raw).first(23), "{}{}"), list(s.angle_rad, "{}{:.3f}"));
   }
   void publish(const TouchSample& s) noexcept override {
-    text += fmt::format("{{\"touch\":{},\"fingers\":[", s.counter);
+    text += fmt::format("{{\"touch\":{},\"fingers\":[", count(s.counter));
     for (std::size_t i = 0; i < s.fingers; ++i) {
-      text += fmt::format("{}[{},{:.4f},{:.4f}]", i == 0 ? "" : ",", s.id[i], s.position[i][0],
-                          s.position[i][1]);
+      text += fmt::format("{}[{},{:.4f},{:.4f}]", i == 0 ? "" : ",", count(s.id[i]),
+                          s.position[i][0], s.position[i][1]);
     }
     text += ']';
-    if (s.buttons != 0 || s.wheel != 0)
-      text += fmt::format(",\"buttons\":{},\"wheel\":{}", s.buttons, s.wheel);
+    if (s.buttons != 0 || count(s.wheel) != 0)
+      text += fmt::format(",\"buttons\":{},\"wheel\":{}", s.buttons, count(s.wheel));
     text += "}\n";
   }
   void publish(const TrackerSample& s) noexcept override {
     text += fmt::format("{{\"tracker\":{},\"station\":{},\"error\":\"{}\",\"m\":{},\"wxyz\":{}}}\n",
-                        s.counter, s.station, s.error, list(s.position_m, "{}{:.4f}"),
+                        count(s.counter), s.station, s.error, list(s.position_m, "{}{:.4f}"),
                         list(s.orientation_wxyz, "{}{:.3f}"));
   }
   void publish(const BallSample& s) noexcept override {
     text += fmt::format("{{\"ball\":{},\"buttons\":{},\"push\":{},\"twist\":{},\"raw\":{}}}\n",
-                        s.counter, s.buttons, list(s.translation, "{}{:.3f}"),
+                        count(s.counter), s.buttons, list(s.translation, "{}{:.3f}"),
                         list(s.rotation, "{}{:.3f}"), list(s.raw, "{}{}"));
   }
   std::string text;
+  bool counts = true;  // false: 0 instead of what goes on when a line comes back
+
+ private:
+  template <typename T>
+  T count(T value) const {
+    return counts ? value : T{0};
+  }
 };
 
 const DriverEntry* driverNamed(std::string_view name) {
@@ -152,6 +160,71 @@ INSTANTIATE_TEST_SUITE_P(Files, Corpus, testing::ValuesIn(corpus()), [](const au
   for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return name;
 });
+
+// The transcript of a line that is pulled after so many bytes of the device.
+io::Transcript pulledAfter(std::size_t bytes, io::Transcript transcript) {
+  std::vector<io::TranscriptChunk>& chunks = transcript.chunks;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    if (chunks[i].to_device) continue;
+    if (bytes < chunks[i].bytes.size()) {
+      chunks[i].bytes.resize(bytes);
+      chunks.resize(i + (bytes > 0 ? 1 : 0));
+      break;
+    }
+    bytes -= chunks[i].bytes.size();
+  }
+  return transcript;
+}
+
+std::size_t deviceBytes(const io::Transcript& transcript) {
+  std::size_t bytes = 0;
+  for (const io::TranscriptChunk& chunk : transcript.chunks)
+    bytes += chunk.to_device ? 0 : chunk.bytes.size();
+  return bytes;
+}
+
+// What a device says that is opened on the transcript, until it ends.
+std::string readBy(Device& device, const io::Transcript& transcript, FakeClock& clock,
+                   Lines& lines) {
+  lines.text.clear();
+  io::ReplayStream stream(transcript, clock);
+  const auto opened = device.open(stream);
+  Result<Ok> polled = Ok{};
+  while (opened && polled) polled = device.poll(stream);
+  return lines.text + (opened ? *opened : opened.error().what);
+}
+
+// Whether it is nothing, or one sample that ends what was held as the line was pulled.
+bool isRelease(const std::string& text) {
+  static const std::regex release(
+      R"re(\{"touch":0,"fingers":\[\]\}\n|\{"ball":0,"buttons":0,"push":\[(0.000,?){3}\],"twist":\[(0.000,?){3}\],"raw":.*\n)re");
+  return text.empty() || std::regex_match(text, release);
+}
+
+// In each state of its dialogue, and while it streams.
+TEST_P(Corpus, IsReadAnewAfterALineThatWasPulled) {
+  const auto transcript = io::readTranscript(GetParam());
+  ASSERT_TRUE(transcript) << transcript.error().what;
+  const DriverEntry& driver = *driverNamed((*transcript)["driver"]);
+  const auto made = [&](FakeClock& clock, Lines& lines) {
+    return driver.make(settingsOf((*transcript)["settings"]), clock, lines);
+  };
+  FakeClock clock;
+  Lines lines;
+  lines.counts = false;
+  const std::string fresh = readBy(*made(clock, lines), *transcript, clock, lines);
+  const std::size_t bytes = deviceBytes(*transcript);
+  constexpr std::size_t kDialogue = 300, kStep = 3, kMore = 20;
+  for (std::size_t cut = 0; cut < bytes; cut += cut < kDialogue ? kStep : bytes / kMore + 1) {
+    const auto device = made(clock, lines);
+    readBy(*device, pulledAfter(cut, *transcript), clock, lines);
+    const std::string again = readBy(*device, *transcript, clock, lines);
+    ASSERT_TRUE(again.ends_with(fresh) && isRelease(again.substr(0, again.size() - fresh.size())))
+        << "pulled after byte " << cut << "\n"
+        << again << "\ninstead of\n"
+        << fresh;
+  }
+}
 
 TEST(CorpusFolder, HasSnapshotsOfAllDevices) {
   std::map<std::string, int> count;
