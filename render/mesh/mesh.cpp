@@ -168,6 +168,15 @@ std::size_t keepVertices(Mesh& mesh, const std::vector<bool>& kept) {
   return dropped;
 }
 
+std::uint32_t addCopy(std::uint32_t vertex, Mesh& mesh) {
+  const auto copy = [vertex](std::vector<float>& values, std::size_t dimension) {
+    for (std::size_t k = 0; k < dimension; ++k) values.push_back(values[vertex * dimension + k]);
+  };
+  copy(mesh.positions, 3);
+  for (Feature& f : mesh.features) copy(f.values, f.dimension);
+  return static_cast<std::uint32_t>(mesh.vertexCount() - 1);
+}
+
 TidyReport tidy(Mesh& mesh) {
   TidyReport report;
   report.degenerate = dropDegenerate(mesh);

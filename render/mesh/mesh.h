@@ -65,6 +65,9 @@ TidyReport tidy(Mesh& mesh);
 // an entry for each vertex, and every vertex of a triangle is kept.
 std::size_t keepVertices(Mesh& mesh, const std::vector<bool>& kept);
 
+// Adds a vertex that is where `vertex` is and has all its features; returns the new one's index.
+std::uint32_t addCopy(std::uint32_t vertex, Mesh& mesh);
+
 // Bounding box of all vertices; all zero if there are none.
 Box boundingBox(std::span<const float> positions) noexcept;
 

@@ -122,6 +122,38 @@ TEST(ReadMesh, GroupsNumberedPropertiesThatFollowOneAnother) {
             "texcoord:2 colour:3 confidence:1 thermal:1 radiation:1 label:1");
 }
 
+TEST(ReadMesh, ColoursOfFacesBecomeThoseOfTheirCorners) {
+  const TempDir dir;
+  const auto read = [&](const std::string& of_vertices, const std::string& vertex) {
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+        "property float y\nproperty float z\n" +
+        of_vertices +
+        "element face 2\nproperty uchar red\nproperty uchar green\n"
+        "property list uchar int vertex_indices\nproperty uchar blue\nend_header\n";
+    for (const char* const p : {"0 0 0", "1 0 0", "1 1 0", "0 1 0"}) text += p + vertex + "\n";
+    writeText(dir / "a.ply", text + "255 0 3 0 1 2 0\n0 255 3 0 2 3 255\n");
+    return mesh::readMesh(dir / "a.ply");
+  };
+  const auto loaded = read("", "");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->notes.size(), 0u);
+  EXPECT_EQ(loaded->mesh.vertexCount(), 6u);
+  const mesh::Feature* const colour = loaded->mesh.find("colour");
+  ASSERT_TRUE(colour);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const float* const c = &colour->values[3 * std::size_t{loaded->mesh.triangles[i]}];
+    EXPECT_EQ(std::vector(c, c + 3),
+              i < 3 ? (std::vector<float>{1, 0, 0}) : (std::vector<float>{0, 1, 1}));
+  }
+  const auto vertices =
+      read("property uchar red\nproperty uchar green\nproperty uchar blue\n", " 0 255 0");
+  EXPECT_EQ(vertices->mesh.vertexCount(), 4u);
+  EXPECT_EQ(vertices->notes,
+            (std::vector<std::string>{"left out: colours (of the faces, since the vertices have "
+                                      "colours)"}));
+}
+
 TEST(WriteMesh, IsDoneWholeOrNotAtAll) {
   const TempDir dir;
   const auto refused = mesh::writeMesh(dir / "none/a.ply", test::cube());

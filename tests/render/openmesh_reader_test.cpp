@@ -115,11 +115,39 @@ TEST_F(OpenMeshReader, TheBrightestColourOfAnOffFileTellsWhetherAllAreFractions)
   EXPECT_EQ(colours("0.0 0 0", "51 255 0"), (Floats{0, 0, 0, 0.2F, 1, 0}));
 }
 
-TEST_F(OpenMeshReader, TheColoursOfAnOffFilesFacesAreSaidToBeLeftOut) {
+// The colours of the triangles' corners, a line for each triangle.
+std::vector<std::vector<float>> coloursAtCorners(const mesh::Mesh& mesh) {
+  std::vector<std::vector<float>> all(mesh.triangleCount());
+  const mesh::Feature* const colour = mesh.find("colour");
+  for (std::size_t i = 0; colour && i < mesh.triangles.size(); ++i) {
+    const float* const c = &colour->values[3 * std::size_t{mesh.triangles[i]}];
+    all[i / 3].insert(all[i / 3].end(), c, c + 3);
+  }
+  return all;
+}
+std::vector<float> threeTimes(const std::vector<float>& colour) {
+  std::vector<float> all;
+  for (int k = 0; k < 3; ++k) all.insert(all.end(), colour.begin(), colour.end());
+  return all;
+}
+
+TEST_F(OpenMeshReader, ColoursOfAnOffFilesFacesBecomeThoseOfTheirCorners) {
   const std::string vertices = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
-  EXPECT_EQ(read("a.off", vertices + "3 0 1 2 255 0 0\n3 0 2 3\n")->notes,
+  const auto one = read("a.off", vertices + "3 0 1 2\n3 0 2 3 255 0 51 255\n");
+  ASSERT_TRUE(one) << one.error().what;
+  EXPECT_EQ(one->notes.size(), 0u);
+  EXPECT_EQ(one->mesh.vertexCount(), 6u) << "two for each end of the edge between the colours";
+  const auto colours = coloursAtCorners(one->mesh);
+  EXPECT_EQ(colours[0], threeTimes({1, 1, 1}));
+  EXPECT_EQ(colours[1], threeTimes({1, 0, 0.2F}));
+  const auto both = read("a.off", vertices + "3 0 1 2 0.5 0 1\n3 0 2 3 0.5 0 1\n");
+  EXPECT_EQ(both->mesh.vertexCount(), 4u) << "the same colour";
+  const auto polygon = read("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 0 1 0\n");
+  EXPECT_EQ(coloursAtCorners(polygon->mesh)[1], threeTimes({0, 1, 0}));
+  EXPECT_EQ(read("a.off", vertices + "3 0 1 2\n3 0 2 3  # none\n")->mesh.find("colour"), nullptr);
+  EXPECT_EQ(read("a.off", vertices + "3 0 1 2 7\n3 0 2 3\n")->notes,
             (std::vector<std::string>{"left out: the colours of 1 faces"}));
-  EXPECT_EQ(read("a.off", vertices + "3 0 1 2\n3 0 2 3  # none\n")->notes.size(), 0u);
+  EXPECT_FALSE(read("a.off", vertices + "3 0 1 2 inf 0 0\n3 0 2 3\n"));
 }
 
 TEST_F(OpenMeshReader, SaysWhatIsWrong) {
@@ -184,14 +212,40 @@ TEST_F(OpenMeshReader, AnAsciiStlMayBeInCapitals) {
   EXPECT_TRUE(mesh::isMeshFile(dir_ / "a.stl"));
 }
 
-TEST_F(OpenMeshReader, TheAttributesOfABinaryStlAreSaidToBeLeftOut) {
+TEST_F(OpenMeshReader, ColoursOfABinaryStlAreThoseOfVisCamOrOfMagics) {
   std::string bytes = tetrahedronAs("stl", OpenMesh::IO::Options::Binary);
-  EXPECT_EQ(read("a.stl", bytes)->notes.size(), 0u);
-  bytes[84 + 48] = '\x1F';
-  bytes[84 + 4 * 50 - 1] = '\x80';
-  EXPECT_EQ(read("a.stl", bytes)->notes,
-            (std::vector<std::string>{
-                "left out: the attributes of 2 triangles, which may be their colours"}));
+  const auto set = [&](std::size_t triangle, unsigned attribute) {
+    bytes[84 + 50 * triangle + 48] = static_cast<char>(attribute & 0xFF);
+    bytes[84 + 50 * triangle + 49] = static_cast<char>(attribute >> 8);
+  };
+  EXPECT_EQ(read("a.stl", bytes)->mesh.find("colour"), nullptr);
+  set(0, 0x1F);
+  const auto none = read("a.stl", bytes);
+  EXPECT_EQ(none->mesh.find("colour"), nullptr);
+  EXPECT_EQ(
+      none->notes,
+      (std::vector<std::string>{"left out: the attributes of 1 triangles, which are not colours"}));
+
+  set(0, 0x8000 | 31U << 10);
+  set(3, 0x8000 | 31U);
+  const auto viscam = read("a.stl", bytes);
+  EXPECT_EQ(viscam->notes.size(), 0u);
+  EXPECT_EQ(coloursAtCorners(viscam->mesh),
+            (std::vector<std::vector<float>>{threeTimes({1, 0, 0}), threeTimes({1, 1, 1}),
+                                             threeTimes({1, 1, 1}), threeTimes({0, 0, 1})}));
+
+  bytes.replace(10, 10, "COLOR=\x33\xFF\x01\xFF");
+  bytes[17 + 1] = '\0';
+  set(0, 31U);
+  set(1, 0x8000);
+  set(2, 31U << 10);
+  const auto magics = read("a.stl", bytes);
+  EXPECT_EQ(coloursAtCorners(magics->mesh),
+            (std::vector<std::vector<float>>{threeTimes({1, 0, 0}), threeTimes({0.2F, 1, 0}),
+                                             threeTimes({0, 0, 1}), threeTimes({0.2F, 1, 0})}));
+  for (std::size_t t = 0; t < 4; ++t) set(t, 0);
+  EXPECT_EQ(coloursAtCorners(read("a.stl", bytes)->mesh)[2], threeTimes({0.2F, 1, 0}))
+      << "the header alone";
 }
 
 TEST_F(OpenMeshReader, TellsTheSizeBeforeItReads) {

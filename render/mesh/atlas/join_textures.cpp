@@ -67,11 +67,7 @@ class Splitter {
   }
 
   void addTwin(std::uint32_t v, std::uint32_t t) {
-    const auto copy = [v](std::vector<float>& values, std::size_t dimension) {
-      for (std::size_t k = 0; k < dimension; ++k) values.push_back(values[v * dimension + k]);
-    };
-    copy(mesh_.positions, 3);
-    for (Feature& f : mesh_.features) copy(f.values, f.dimension);
+    addCopy(v, mesh_);
     triangle_of_.push_back(t);
   }
 

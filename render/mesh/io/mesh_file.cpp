@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "render/mesh/facet_colours.h"
 #include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/writer.h"
@@ -205,6 +206,10 @@ Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path)
   if (!loaded) return inFile(path, loaded.error());
   *file = MappedFile();  // unmap it: it is as large as the mesh
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
+  if (!loaded->facet_colours.empty()) {
+    colourByFacets(std::exchange(loaded->facet_colours, {}), loaded->mesh);
+    if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
+  }
   const TidyReport tidied = tidy(loaded->mesh);
   if (loaded->origin != Origin{}) loaded->notes.push_back(noteOf(loaded->origin));
   const std::size_t in_file = loaded->tidied.degenerate;

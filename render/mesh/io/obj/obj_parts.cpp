@@ -35,15 +35,6 @@ Twins needed(const std::vector<std::uint32_t>& part_of, const Mesh& mesh, const 
   return twins;
 }
 
-std::uint32_t addTwin(std::uint32_t v, Mesh& mesh) {
-  const auto copy = [v](std::vector<float>& values, std::size_t dimension) {
-    for (std::size_t k = 0; k < dimension; ++k) values.push_back(values[v * dimension + k]);
-  };
-  copy(mesh.positions, 3);
-  for (Feature& f : mesh.features) copy(f.values, f.dimension);
-  return static_cast<std::uint32_t>(mesh.vertexCount() - 1);
-}
-
 }  // namespace
 
 void labelParts(const std::vector<std::uint32_t>& part_of, Mesh& mesh) {
@@ -53,7 +44,7 @@ void labelParts(const std::vector<std::uint32_t>& part_of, Mesh& mesh) {
     const auto found = twins.find({mesh.triangles[i], part_of[i / 3]});
     if (found == twins.end()) continue;
     if (found->second == kNone) {
-      found->second = addTwin(mesh.triangles[i], mesh);
+      found->second = addCopy(mesh.triangles[i], mesh);
       labels.push_back(part_of[i / 3]);
     }
     mesh.triangles[i] = found->second;

@@ -71,18 +71,20 @@ class OffFile {
     return Ok{};
   }
 
-  Mesh take() {
+  LoadedMesh take() {
+    LoadedMesh loaded;
     makeFractions(colour_.values);
     for (Feature* f : {&normal_, &colour_, &texcoord_}) {
       if (!f->values.empty()) mesh_.features.push_back(std::move(*f));
     }
-    return std::move(mesh_);
-  }
-  const Origin& origin() const { return origin_; }
-  // What of the file is left out.
-  std::vector<std::string> notes() const {
-    if (coloured_faces_ == 0) return {};
-    return {fmt::format("left out: the colours of {} faces", coloured_faces_)};
+    completeFacetColours(mesh_.triangleCount(), facet_colours_);
+    if (unread_colours_ > 0)
+      loaded.notes.push_back(fmt::format("left out: the colours of {} faces{}", unread_colours_,
+                                         form_.colour ? ", since the vertices have colours" : ""));
+    loaded.mesh = std::move(mesh_);
+    loaded.facet_colours = std::move(facet_colours_);
+    loaded.origin = origin_;
+    return loaded;
   }
   MeshSize size() const {
     return {vertices_, faces_, std::size_t{form_.colour ? 3U : 0U} + (form_.texcoord ? 2U : 0U)};
@@ -144,8 +146,21 @@ class OffFile {
     return Ok{};
   }
 
-  // Adds a polygon as a triangle fan, which body() cuts anew if it is not convex. Numbers after the
-  // corners are the face's colour, which is ignored.
+  // Takes what follows a face's corners as the colour of the last `triangles`: red, green, blue and
+  // perhaps opacity. A single number is that of a colour in a table, which the file does not have.
+  void takeFaceColour(std::string_view line, std::size_t triangles) {
+    if (trimmed(line).empty()) return;
+    std::vector<float> colour;
+    if (form_.colour || !take(line, 3, colour)) {
+      ++unread_colours_;
+      return;
+    }
+    facet_colours_.resize(mesh_.triangles.size() - 3 * triangles, kNoColour);
+    for (std::size_t t = 0; t < triangles; ++t)
+      facet_colours_.insert(facet_colours_.end(), colour.begin(), colour.end());
+  }
+
+  // Adds a polygon as a triangle fan, which body() cuts anew if it is not convex.
   Result<Ok> addFace(std::string_view line, std::size_t i) {
     if (line.empty())
       return malformed(line_, fmt::format("the file ends after {} of {} faces", i, faces_));
@@ -165,7 +180,7 @@ class OffFile {
       before = v;
     }
     if (corners > 3) fans_.take(mesh_, corners);
-    coloured_faces_ += !line.empty();  // it ends with a word
+    takeFaceColour(line, corners > 2 ? corners - 2 : 0);
     return Ok{};
   }
 
@@ -174,7 +189,8 @@ class OffFile {
   Form form_;
   std::size_t vertices_ = 0, faces_ = 0;
   bool has_alpha_ = false;
-  std::size_t coloured_faces_ = 0;
+  std::size_t unread_colours_ = 0;    // of faces
+  std::vector<float> facet_colours_;  // up to the last face that has one
   Mesh mesh_;
   Fans fans_;
   Origin origin_{};  // of the positions
@@ -185,11 +201,7 @@ Result<LoadedMesh> read(std::string_view content, const std::string&) {
   OffFile file(content);
   if (const auto header = file.header(); !header) return header.error();
   if (const auto body = file.body(); !body) return body.error();
-  LoadedMesh loaded;
-  loaded.mesh = file.take();
-  loaded.origin = file.origin();
-  loaded.notes = file.notes();
-  return loaded;
+  return file.take();
 }
 
 std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
@@ -208,9 +220,10 @@ bool isOff(std::string_view content) {
 
 }  // namespace
 
-const MeshReader kOffReader = {"off",
-                               "ASCII: normals, colours and texture coordinates; polygons "
-                               "become triangles",
-                               read, size, isOff};
+const MeshReader kOffReader = {
+    "off",
+    "ASCII: normals, texture coordinates, colours of vertices or faces; polygons "
+    "become triangles",
+    read, size, isOff};
 
 }  // namespace merlin::render::mesh

@@ -12,6 +12,7 @@
 #include "daemon/base/child_work.h"
 #include "daemon/base/words.h"
 #include "render/mesh/io/openmesh/collector.h"
+#include "render/mesh/io/openmesh/stl_colours.h"
 #include "render/mesh/io/openmesh/stl_text.h"
 #include "render/mesh/io/reader.h"
 
@@ -176,8 +177,6 @@ std::optional<MeshFileSize> omSize(std::string_view content, const std::string&)
   return MeshFileSize{{counts->vertices, counts->faces, 0}, {}};
 }
 
-constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
-
 // The size of a binary file follows from its count of triangles. ASCII files begin with "solid",
 // but so do some binary files.
 bool isBinaryStl(std::string_view content) {
@@ -185,20 +184,15 @@ bool isBinaryStl(std::string_view content) {
          content.size() == kStlHeader + kStlTriangle * littleEndian(content, 80);
 }
 
-// What is lost of a binary file: the two bytes behind each triangle, which some programs fill.
-std::vector<std::string> lossesOf(std::string_view content) {
-  std::size_t filled = 0;
-  for (std::size_t at = kStlHeader + kStlTriangle; at <= content.size(); at += kStlTriangle)
-    filled += content[at - 2] != 0 || content[at - 1] != 0;
-  if (filled == 0) return {};
-  return {
-      fmt::format("left out: the attributes of {} triangles, which may be their colours", filled)};
-}
-
 Result<LoadedMesh> readBinaryStl(std::string_view content) {
   auto loaded = readBy(OpenMesh::IO::STLReader(), content, {0, littleEndian(content, 80)},
                        Options(Options::Binary));
-  if (loaded) loaded->notes = lossesOf(content);
+  if (!loaded) return loaded;
+  StlColours colours = stlColours(content);
+  loaded->facet_colours = std::move(colours.of_triangles);
+  if (colours.unread > 0)
+    loaded->notes.push_back(fmt::format(
+        "left out: the attributes of {} triangles, which are not colours", colours.unread));
   return loaded;
 }
 
@@ -238,9 +232,10 @@ bool isStl(std::string_view content) { return isBinaryStl(content) || isStlText(
 
 const MeshReader kOmReader = {"om", "OpenMesh's own format: normals, colours, texture coordinates",
                               readOm, omSize, isOm};
-const MeshReader kStlReader = {"stl",
-                               "ASCII and binary: triangles; corners at the same position "
-                               "become one vertex",
-                               readStl, stlSize, isStl};
+const MeshReader kStlReader = {
+    "stl",
+    "ASCII and binary: triangles, and their colours as Magics and VisCAM "
+    "write them; corners at the same position become one vertex",
+    readStl, stlSize, isStl};
 
 }  // namespace merlin::render::mesh

@@ -122,6 +122,7 @@ class Reader {
       return Error{Errc::kMalformed, row};
     completeTextures();
     cutFans();
+    takeFacetColours();
     mesh().features = grouped(std::move(mesh().features), mesh().vertexCount());
     noteLosses();
     return std::move(loaded_);
@@ -289,7 +290,8 @@ class Reader {
       if (uses.back() == FaceProperty::kNone) leaveOut(p.name, " (a face property)");
     }
     const bool textured =
-        std::ranges::any_of(uses, [](FaceProperty u) { return u > FaceProperty::kCorners; });
+        std::ranges::any_of(uses, [](FaceProperty u) { return u > FaceProperty::kColour; });
+    const bool coloured = std::ranges::find(uses, FaceProperty::kColour) != uses.end();
     for (std::uint64_t row = 0; row < e.count; ++row) {
       const std::size_t before = mesh().triangleCount();
       for (std::size_t i = 0; i < uses.size(); ++i) {
@@ -297,14 +299,18 @@ class Reader {
           return done;
       }
       if (textured) textureFace(before, uses);
+      if (coloured) colourFace(before);
     }
     return Ok{};
   }
 
-  enum class FaceProperty { kNone, kCorners, kTexcoord, kTexnumber };
+  enum class FaceProperty { kNone, kCorners, kColour, kTexcoord, kTexnumber };
 
   FaceProperty useOf(const Property& p) const {
     if (isCorners(p)) return FaceProperty::kCorners;
+    const PropertyMapping* const known = p.list ? nullptr : mappingOf(p.name);
+    if (known && std::string_view(known->feature) == "colour" && !textures_)
+      return FaceProperty::kColour;
     if (textures_ && p.list && p.name == "texcoord") return FaceProperty::kTexcoord;
     if (textures_ && !p.list && p.name == "texnumber") return FaceProperty::kTexnumber;
     return FaceProperty::kNone;
@@ -314,6 +320,7 @@ class Reader {
                               const Property& p) {
     switch (use) {
       case FaceProperty::kCorners: return readCorners(e, row, p);
+      case FaceProperty::kColour: return readFaceColour(e, row, p);
       case FaceProperty::kTexcoord: return readTexcoords(e, row, p);
       case FaceProperty::kTexnumber:
         if (!body_.next(p.type, face_number_)) return brokenAt(e, row, p);
@@ -321,6 +328,31 @@ class Reader {
       case FaceProperty::kNone: break;
     }
     return skipProperty(e, row, p);
+  }
+
+  Result<Ok> readFaceColour(const Element& e, std::uint64_t row, const Property& p) {
+    const PropertyMapping* const known = mappingOf(p.name);
+    double value = 0;
+    if (!body_.next(p.type, value)) return brokenAt(e, row, p);
+    face_colour_[known->offset] = static_cast<float>(value) * scaleOf(known, p.type);
+    return Ok{};
+  }
+
+  void colourFace(std::size_t first) {
+    std::vector<float>& all = loaded_.facet_colours;
+    all.resize(3 * first, kNoColour);  // of faces of another element
+    for (std::size_t t = first; t < mesh().triangleCount(); ++t)
+      all.insert(all.end(), face_colour_.begin(), face_colour_.end());
+  }
+
+  // Colours of the vertices are finer, and come before those of the faces.
+  void takeFacetColours() {
+    std::vector<float>& all = loaded_.facet_colours;
+    if (!all.empty() && mesh().find("colour")) {
+      all.clear();
+      leaveOut("colours", " (of the faces, since the vertices have colours)");
+    }
+    completeFacetColours(mesh().triangleCount(), all);
   }
 
   Result<Ok> readTexcoords(const Element& e, std::uint64_t row, const Property& p) {
@@ -458,7 +490,8 @@ class Reader {
   LoadedMesh loaded_;
   Fans fans_;
   FaceTextures* textures_;
-  std::vector<float> face_texcoords_;  // of this face
+  std::vector<float> face_texcoords_;   // of this face
+  std::array<float, 3> face_colour_{};  // of this face
   double face_number_ = -1;
   std::string left_out_, left_out_more_;  // names of properties and elements
   std::size_t left_out_count_ = 0, rounded_ = 0;

@@ -123,6 +123,13 @@ std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Head
   return corners > 2 * faces ? corners - 2 * faces : 0;
 }
 
+bool hasFacetColours(const ply::Header& header) {
+  return std::ranges::any_of(header.elements, [](const ply::Element& e) {
+    return e.name == "face" &&
+           std::ranges::find(e.properties, "red", &ply::Property::name) != e.properties.end();
+  });
+}
+
 std::optional<MeshFileSize> size(std::string_view content, const std::string& folder) {
   const auto header = ply::parseHeader(content);
   if (!header) return std::nullopt;
@@ -136,6 +143,8 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
   }
   const auto triangles = trianglesIn(content, *header);
   found.mesh.triangles = std::max(found.mesh.triangles, triangles.value_or(0));
+  if (hasFacetColours(*header))  // a vertex for each corner, if no two have the same colour
+    found.mesh.vertices = std::max(found.mesh.vertices, 3 * found.mesh.triangles);
   if (header->pictures.empty()) return found;
   constexpr std::size_t kTextured = 40;  // coordinates and the texture's number, of a triangle
   found.meanwhile = kTextured * found.mesh.triangles;
