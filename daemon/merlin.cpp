@@ -1,16 +1,10 @@
 // merlin: the command-line program; its subcommands are in daemon/cli.
-#include <algorithm>
 #include <csignal>
-#include <cstdio>
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
-#include "daemon/base/did_you_mean.h"
 #include "daemon/base/log.h"
-#include "daemon/base/printable_text.h"
 #include "daemon/cli/command.h"
-#include "daemon/cli/exit_status.h"
 #include "daemon/cli/parse_arguments.h"
 #include "daemon/cli/remote.h"
 
@@ -44,16 +38,6 @@ int runProgram(int argc, char** argv) {
     add(program, run);
   }
   cli::addCommandsByName(program, run, remote);
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (argc > 1 && argv[1][0] != '-' &&
-      std::find(names.begin(), names.end(), argv[1]) == names.end()) {
-    const std::string near = nearestWord(argv[1], names);
-    printError("merlin: \"{}\" is not a known command; {}\n", printable(argv[1]),
-               near.empty() ? fmt::format("commands are {}", fmt::join(names, ", "))
-                            : fmt::format("did you mean \"{}\"?", near));
-    return kExitBadInput;
-  }
   if (const auto status = parseArguments(app, argc, argv, page())) return *status;
   if (const auto possible = remote.check(); !possible) return cli::fail(possible.error());
   initLog(LogLevel::kWarning);

@@ -8,10 +8,38 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "daemon/base/printable_text.h"
 #include "drivers/port/port_address.h"
 
 namespace merlin::cli {
+
+namespace {
+
+// CLI11's check with a sentence of ours: "abc" is not a number from 1 to 9. Its own prints three
+// hundred digits for the greatest double.
+CLI::Validator worded(const CLI::Validator& validator, const std::string& wanted) {
+  return CLI::Validator(
+      [validator, wanted](std::string& value) {
+        const std::string kept = value;
+        bool valid = false;
+        try {
+          valid = validator(value).empty();
+        } catch (const CLI::ValidationError&) {  // of a unit that it does not know
+        }
+        return valid ? std::string() : fmt::format("\"{}\" is not {}", excerpt(kept), wanted);
+      },
+      validator.get_description());
+}
+
+template <typename T>
+CLI::Validator between(T low, T high, const char* what) {
+  return worded(CLI::Range(low, high), fmt::format("{} from {} to {}", what, low, high));
+}
+
+}  // namespace
 
 Argument Argument::required() { return Argument(option_->required()); }
 Argument Argument::typeName(const std::string& name) { return Argument(option_->type_name(name)); }
@@ -22,28 +50,37 @@ Argument Argument::expected(int least, int most) {
 Argument Argument::repeatable() { return Argument(option_->allow_extra_args(false)); }
 Argument Argument::separated(char by) { return Argument(option_->delimiter(by)); }
 Argument Argument::showDefault() { return Argument(option_->capture_default_str()); }
+
 Argument Argument::range(int low, int high) {
-  return Argument(option_->check(CLI::Range(low, high)));
+  return Argument(option_->check(between(low, high, "a whole number")));
 }
 Argument Argument::range(double low, double high) {
-  return Argument(option_->check(CLI::Range(low, high)));
+  return Argument(option_->check(between(low, high, "a number")));
 }
 Argument Argument::range(std::size_t low, std::size_t high) {
-  return Argument(option_->check(CLI::Range(low, high)));
+  return Argument(option_->check(between(low, high, "a whole number")));
 }
-Argument Argument::positive() { return Argument(option_->check(CLI::PositiveNumber)); }
-Argument Argument::nonNegative() { return Argument(option_->check(CLI::NonNegativeNumber)); }
+Argument Argument::positive() {
+  return Argument(option_->check(worded(CLI::PositiveNumber, "a number above 0")));
+}
+Argument Argument::nonNegative() {
+  return Argument(option_->check(worded(CLI::NonNegativeNumber, "a number of 0 or more")));
+}
 Argument Argument::seconds() {
-  return Argument(option_->type_name("SECONDS")->check(CLI::Range(0.1, 1e7)));
+  return Argument(option_->type_name("SECONDS")->check(between(0.1, 1e7, "a number of seconds")));
 }
 Argument Argument::baud() {
   return Argument(
       option_->check(CLI::IsMember(std::vector<int>(lineSpeeds().begin(), lineSpeeds().end()))));
 }
 Argument Argument::oneOf(std::vector<std::string> values) {
-  return Argument(option_->check(CLI::IsMember(std::move(values))));
+  const std::string wanted = fmt::format("one of {}", fmt::join(values, ", "));
+  return Argument(option_->check(worded(CLI::IsMember(std::move(values)), wanted)));
 }
-Argument Argument::size() { return Argument(option_->transform(CLI::AsSizeValue(false))); }
+Argument Argument::size() {
+  return Argument(option_->transform(
+      worded(CLI::AsSizeValue(false), "a number of bytes, such as 900M or 16G")));
+}
 Argument Argument::check(std::function<std::string(const std::string&)> fault) {
   return Argument(option_->check(CLI::Validator(
       [fault = std::move(fault)](const std::string& value) { return fault(value); }, "")));

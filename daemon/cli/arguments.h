@@ -36,7 +36,7 @@ class Argument {
   Argument seconds();  // a duration: 0.1 to 10 million
   Argument baud();     // a standard speed of serial lines
   Argument oneOf(std::vector<std::string> values);
-  Argument size();  // number of bytes, also with a suffix: 900M, 16G (powers of 1000)
+  Argument size();  // number of bytes, also with a suffix: 900M, 16G (powers of 1024)
   // Adds a check of each value: `fault` returns a message, or an empty string for a valid value.
   Argument check(std::function<std::string(const std::string&)> fault);
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/log.h"
-#include "daemon/base/printable_text.h"
+#include "daemon/cli/argument_faults.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/program_of.h"
 #include "daemon/manual/bash_completion.h"
@@ -41,11 +41,13 @@ inline std::optional<int> parseArguments(CLI::App& app, int argc, char** argv,
     app.parse(argc, argv);
     return std::nullopt;
   } catch (const CLI::ParseError& e) {
-    std::ostringstream help, why;
-    const int status = app.exit(e, help, why);
+    std::ostringstream help, ignored;
+    if (app.exit(e, help, ignored) != 0) {
+      printError("{}", cli::argumentFault(app, page.name, e));
+      return kExitBadInput;
+    }
     fmt::print("{}", help.str());
-    printError("{}", printable(why.str()));
-    return status == 0 ? kExitDone : kExitBadInput;
+    return kExitDone;
   }
 }
 

@@ -253,7 +253,7 @@ TEST_F(BadInput, AWriterThatIsKilledLeavesNothing) {
 }
 
 TEST_F(BadInput, UsageErrorsExitWithTwo) {
-  expectOutcome(run({kMerlin}), 2, {"subcommand"});
+  expectOutcome(run({kMerlin}), 2, {"needs a command"});
   expectOutcome(run({kMerlin, "dance"}), 2, {"dance"});
   expectOutcome(run({kMerlin, "snapshot"}), 2, {"-o"});
   expectOutcome(run({kMerlin, "emulate", "theremin"}), 2, {"theremin", "spaceball"});
@@ -287,6 +287,31 @@ TEST_F(BadInput, CommandsForADaemonThatIsNotThere) {
                 {"no merlind shows a wall as"});
   expectOutcome(run({kMerlin, "shm", "dump", "--instance", nobody}), 1, {"no merlind runs as"});
   EXPECT_FALSE(std::filesystem::exists(dir_ / "x.png"));
+}
+
+// The command that was given, the word that it did not know, and where help is.
+TEST_F(BadInput, ArgumentsThatNoCommandTakes) {
+  const std::string scan = kSource + "/config/models/ankylosaurus.ply";
+  expectOutcome(run({kMerlin}), 2, {"merlin: needs a command: status, watch, "});
+  expectOutcome(run({kMerlin, "mesh"}), 2, {"merlin mesh: needs a command: import, "});
+  expectOutcome(run({kMerlin, "shm", "dum"}), 2,
+                {"merlin shm: \"dum\" is not a command; did you mean dump?\nmerlin shm --help "});
+  expectOutcome(run({kMerlin, "qqqqqq"}), 2,
+                {"merlin: \"qqqqqq\" is not a command; commands are status, watch, "});
+  expectOutcome(run({kMerlin, "mesh", "info", scan, "--jsn"}), 2,
+                {"merlin mesh info: --jsn is not an option; did you mean --json?"});
+  expectOutcome(run({kMerlin, "blank", "now"}), 2,
+                {"merlin blank: \"now\" is one argument too many"});
+  expectOutcome(run({kMerlin, "snapshot"}), 2, {"merlin snapshot: -o is required\n"});
+  expectOutcome(run({kMerlin, "mesh", "export", scan, "-o", "x", "--error", "-1"}), 2,
+                {"merlin mesh export: --error: \"-1\" is not a number of 0 or more"});
+  expectOutcome(run({kMerlin, "watch", "--for", "x"}), 2,
+                {"--for: \"x\" is not a number of seconds from 0.1 to 10000000"});
+  expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", "x.mrm", "--memory", "5X"}), 2,
+                {"--memory: \"5X\" is not a number of bytes, such as 900M or 16G"});
+  expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", "x.mrm", "--threads", "x"}), 2,
+                {"merlin mesh reduce: --threads = x: that is not a number"});
+  expectOutcome(run({kMerlind, "--role", "none"}), 2, {"merlind: --role: "});
 }
 
 TEST_F(BadInput, MeshesThatCannotBeCompared) {

@@ -14,7 +14,8 @@ Result<LoadedSettings> loadPrinted(const std::string& file) {
 }
 
 void addConfig(Command app, Run& run) {
-  Command config = app.subcommand("config", "Configuration files of merlind");
+  Command config =
+      app.subcommand("config", "Show, compare, edit and migrate configuration files of merlind.");
   config.requireSubcommand();
   addConfigShow(config, run);
   addConfigDiff(config, run);

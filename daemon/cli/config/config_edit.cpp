@@ -152,8 +152,9 @@ void addConfigEdit(Command config, Run& run) {
       "edit",
       "Edit a copy of a configuration with $VISUAL or $EDITOR and check it. Findings are shown "
       "with "
-      "their lines, and it can be edited again; only a valid one takes the file's place, at once, "
-      "with its owner and mode. Then merlind, if it runs, can read it.\n"
+      "their lines, and it can be edited again; only a valid copy replaces the file, in one step "
+      "and with the same owner and mode. You are then asked whether a running merlind is to read "
+      "it.\n"
       "Example: sudo merlin config edit");
   command.option("file", *file, "The configuration file").typeName("FILE").showDefault();
   command.callback([file, &run] { run = [file] { return editFile(*file); }; });

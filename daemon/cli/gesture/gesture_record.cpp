@@ -19,7 +19,7 @@ namespace merlin::cli {
 namespace {
 
 constexpr Duration kHandPatience = std::chrono::seconds(3);       // longest time without a sample
-constexpr Duration kLongestGap = std::chrono::milliseconds(250);  // within a take
+constexpr Duration kLongestGap = std::chrono::milliseconds(250);  // between two samples of a take
 constexpr int kMostTries = 5;                                     // of a take
 constexpr double kBetweenFiles_s = 10;  // from the last take in the file to the first new one
 

@@ -150,10 +150,9 @@ void addImageImport(Command image, Run& run) {
   const auto options = std::make_shared<ImageImport>();
   Command command = image.subcommand(
       "import",
-      "Make a tiled pyramid, the form in which merlind shows pictures of any size, of a picture: "
-      "JPEG, PNG, TIFF, WebP, HDR, PPM, FITS and whatever else libvips reads. A program of its "
-      "own, "
-      "merlin-import, reads it in a sandbox without network, and with limited files and memory. "
+      "Convert a picture (JPEG, PNG, TIFF, WebP, HDR, PPM, FITS and whatever else libvips reads) "
+      "into a tiled pyramid, the form in which merlind shows pictures of any size. The program "
+      "merlin-import reads it in a sandbox without network, and with limited files and memory. "
       "The result appears as a whole, or not at all.\n"
       "Example: merlin image import photo.jpg -o photo.tif");
   command.option("in", options->input, "Picture").required().typeName("FILE");

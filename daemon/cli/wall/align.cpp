@@ -119,8 +119,8 @@ void addChoices(Command command, AlignOptions& options) {
   Command choices = command.group("What to do", "");
   choices
       .option("--by", options.by,
-              "Move the corner or point by so many pixels of the output: to the right and down; "
-              "negative ones to the left and up. Fractions count")
+              "Move the corner or point right by DX and down by DY pixels of the output; negative "
+              "values move it left and up. Fractions are allowed")
       .expected(2)
       .typeName("DX DY")
       .range(-state::kMostOffset, state::kMostOffset);

@@ -166,7 +166,8 @@ int dumpRepeatedly(const DumpOptions& options) {
 
 void addShm(Command app, Run& run) {
   const auto options = std::make_shared<DumpOptions>();
-  Command shm = app.subcommand("shm", "Shared memory of merlind, which other programs can read.");
+  Command shm =
+      app.subcommand("shm", "Print merlind's shared memory, which other programs can read too.");
   shm.requireSubcommand();
   Command command = shm.subcommand(
       "dump", "Print every field: name, value, unit.\nExample: merlin shm dump --json");
