@@ -15,11 +15,11 @@ constexpr const char* kScripts[] = {"visit",     "turning", "still", "grabbing",
                                     "alignment", "panel",   "pushes"};
 
 void describePerson(std::string& person, SettingsVisitor& v) {
-  v.text(
-      "person", person,
-      "Name of the person who uses the device or the hand, any text, also an empty one. What has "
-      "the same name belongs to one person; while one person acts on the wall, the input "
-      "of the others does not move what is shown (/people/turn_s).");
+  v.text("person", person,
+         "Name of the person who uses the device or the hand, any text, also an empty one. Devices "
+         "and hands with the same name belong to one person; while one person acts on the wall, "
+         "the input "
+         "of the others does not move what is shown (/people/turn_s).");
 }
 
 // A device without a driver has an empty name of it.
@@ -138,7 +138,8 @@ void describePostures(DevicesSettings& d, SettingsVisitor& v) {
   v.flag("drift", d.posture_drift,
          "Whether merlind follows the slow drift of the glove's sensors: from postures that it is "
          "sure of it learns by how much each sensor has moved, at most 0.3 of its range, and "
-         "subtracts that before it recognises. Forgotten when the glove is connected again.");
+         "subtracts that before it recognises. merlind forgets this when the glove is connected "
+         "again.");
 }
 
 void describeGestures(DevicesSettings& d, SettingsVisitor& v) {

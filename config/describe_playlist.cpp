@@ -6,8 +6,8 @@ void describePlaylist(PlaylistSettings& p, SettingsVisitor& v) {
   constexpr Range kADay{0, 86'400};
   v.number(
       "after_s", p.after_s, kADay,
-      "Time in seconds without a touch (of ball, hand, button, mouse or a command) after which "
-      "the playlist begins. 0: only the command `merlin playlist on` begins it.");
+      "Time in seconds without input (of ball, hand, button, touch surface, mouse or a command) "
+      "after which the playlist begins. 0: only the command `merlin playlist on` begins it.");
   v.number("hold_s", p.hold_s, {1, 86'400},
            "Time in seconds for which the playlist shows each content, and each slide.");
   v.number("turn_deg_per_s", p.turn_deg_per_s, {-90, 90},
@@ -17,10 +17,9 @@ void describePlaylist(PlaylistSettings& p, SettingsVisitor& v) {
   v.texts("contents", p.contents,
           "Names of the contents that the playlist shows, in this order. Empty: all contents of "
           "the configuration.");
-  v.number(
-      "dim_after_s", p.dim_after_s, kADay,
-      "Time in seconds without a touch after which the picture is dimmed, whether the playlist "
-      "has begun or not. 0: never.");
+  v.number("dim_after_s", p.dim_after_s, kADay,
+           "Time in seconds without input after which the picture is dimmed, whether the playlist "
+           "has begun or not. 0: never.");
   v.number("dim_to", p.dim_to, {0, 1},
            "Light of a dimmed picture, as a share of the full light, for outputs of gamma 2.2.");
 }

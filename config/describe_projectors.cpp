@@ -20,11 +20,11 @@ void describeProjectors(DevicesSettings& d, SettingsVisitor& v) {
                "digits: 1 (RGB), 2 (video), 3 (digital), 4 (storage) or 5 (network), then the "
                "number of the input from 1 to 9. Empty: the input stays.");
         v.number("warm_up_s", p.warm_up_s, {1, 3600},
-                 "Maximum time from switching the projector on until it says that it is on, in "
-                 "seconds. After that its health is failed.");
+                 "Maximum time, in seconds, that the projector may take to report that it is on. "
+                 "If it takes longer, its health becomes failed.");
         v.number("cool_down_s", p.cool_down_s, {1, 3600},
-                 "Maximum time from switching the projector off until it says that it is off, in "
-                 "seconds. After that its health is failed.");
+                 "Maximum time, in seconds, that the projector may take to report that it is off. "
+                 "If it takes longer, its health becomes failed.");
       });
   v.listOf<SwitchingTimes>(
       "projector_schedule", d.projector_schedule,
@@ -36,8 +36,8 @@ void describeProjectors(DevicesSettings& d, SettingsVisitor& v) {
                 "Days on which the projectors are switched on: mon, tue, wed, thu, fri, sat, sun.");
         v.text("on", t.on, "Local time at which the projectors are switched on: HH:MM.");
         v.text("off", t.off,
-               "Local time at which the projectors are switched off: HH:MM. If it is earlier than "
-               "on, it is that of the following day.");
+               "Local time at which the projectors are switched off: HH:MM. If this is earlier "
+               "than the time of `on`, it is a time of the following day.");
       });
 }
 

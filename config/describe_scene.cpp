@@ -19,8 +19,8 @@ void describeRenderer(render::frame::RenderSettings& r, SettingsVisitor& v) {
           "asynchronous: into pixel buffers, while the tiles after it are drawn. auto: "
           "asynchronous from a GPU, direct from a software renderer.");
   v.oneOf("correction", r.correction, render::frame::kCorrectionPlaceNames,
-          "Where corrections of outputs are computed: on the cpu, or by a shader on the gpu (in "
-          "software, if that is what draws). auto: by a shader if a GPU draws, otherwise on the "
+          "Where corrections of outputs are computed: on the cpu, or by a shader (gpu), which runs "
+          "in software where no GPU draws. auto: by a shader if a GPU draws, otherwise on the "
           "CPU.");
   v.integer("raster_threads", r.gl.raster_threads, {0, 16},
             "Number of rasterizer threads of Mesa's software renderer; 0: the drawing thread "

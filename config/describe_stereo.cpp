@@ -7,8 +7,9 @@ void describeHead(render::stereo::HeadSettings& h, SettingsVisitor& v) {
   v.text("tracker", h.tracker,
          "Name of the tracker whose receiver is on the viewer's head. Empty: the first tracker.");
   v.integer("station", h.station, {0, 4},
-            "Tracker station on the viewer's head, 1 to 4, which says where the eyes are; it also "
-            "works with mode off. While it is missing, the wall is drawn for the configured place "
+            "Tracker station on the viewer's head, 1 to 4, which says where the eyes are. Head "
+            "tracking also works with mode off. While the station sends no pose, the wall is drawn "
+            "for the configured place "
             "of the viewer. 0: the head is not tracked.");
   v.numbers("origin_m", h.origin_m, {-1000, 1000},
             "Place in the room, x, y, z in metres, where the viewer's eyes are when the station "

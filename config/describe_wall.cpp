@@ -70,12 +70,11 @@ void describeOperator(render::text::OperatorSettings& tile, SettingsVisitor& v) 
     v.flag("overlay", tile.overlay,
            "Whether rate, frame times, detail, content, posture, devices and messages are drawn "
            "over the picture. A tile of less than 320 x 240 pixels has no room for them.");
-    v.flag(
-        "panel", tile.panel,
-        "Whether there is a panel with buttons on the operator's tile (the first one of at least "
-        "320 x 240 pixels), worked by a mouse or a finger in a window, by a VNC client and by the "
-        "ball: kind of content, content, pan, tilt, zoom, rate and detail by hand, projectors, "
-        "lamp. The ball works it after the action operator_panel.");
+    v.flag("panel", tile.panel,
+           "Whether the operator's tile (the first one of at least 320 x 240 pixels) has a panel "
+           "with buttons for kind of content, content, pan, tilt, zoom, rate, detail, projectors "
+           "and lamp. A mouse or a finger in a window, a VNC client and, after the action "
+           "operator_panel, the ball work it.");
   });
 }
 

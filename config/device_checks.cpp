@@ -341,18 +341,17 @@ void checkStations(LoadedSettings& loaded) {
     if (fresh) continue;
     loaded.addFinding(
         handAt(i) + "/station",
-        fmt::format("is {}, the station that is worn on the hand at {} ({}/station); "
-                    "each hand needs its own",
-                    d.hands[i].station, handAt(first->second), handAt(first->second)));
+        fmt::format("is {}, the station of the hand {} too; each hand needs its own station",
+                    d.hands[i].station, handAt(first->second)));
   }
   checkNamed(head.tracker, SampleKind::kTracker, "/wall/stereo/head/tracker", loaded);
   checkStationComes(head.tracker, head.station, "/wall/stereo/head/station", loaded);
   const auto found = worn.find({trackerNamed(d, head.tracker), head.station});
   if (head.station == 0 || found == worn.end()) return;
-  loaded.addFinding("/wall/stereo/head/station",
-                    fmt::format("is {}, the station that is worn on the hand ({}/station); the "
-                                "head needs its own",
-                                head.station, handAt(found->second)));
+  loaded.addFinding(
+      "/wall/stereo/head/station",
+      fmt::format("is {}, the station of the hand {} too; the head needs its own station",
+                  head.station, handAt(found->second)));
 }
 
 }  // namespace

@@ -175,7 +175,8 @@ std::optional<Error> invalid(std::span<const LabelledHand> hands,
   };
   if (s.phi == Phi::kSignum)
     return error("phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
-  if (s.starts < 1 || s.passes < 1) return error("starts and passes must be at least 1");
+  if (s.starts < 1 || s.passes < 1)
+    return error(fmt::format("{} starts, {} passes; each must be at least 1", s.starts, s.passes));
   if (!(s.validation_share >= 0 && s.validation_share <= 0.5))
     return error(fmt::format("validation share {}; allowed: 0 to 0.5", s.validation_share));
   if (names.size() < 2 || names.size() > kCodes)

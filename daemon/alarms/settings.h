@@ -10,7 +10,7 @@ namespace merlin {
 
 struct AlarmSettings {
   std::vector<std::string> run;    // a program, as an absolute path, and its arguments
-  std::vector<std::string> kinds;  // of the events that start it (event_kinds.h); empty: all
+  std::vector<std::string> kinds;  // kinds of events that start the program (event_kinds.h); empty: all
   int most_per_hour = 12;          // times that it is started at most
   double time_limit_s = 30;        // after which it is ended
 };

@@ -55,10 +55,10 @@ inline constexpr CommandInfo kCommands[] = {
     {"notice", CommandOf::kWall, "TEXT|off",
      "Show a sentence over the picture for five seconds; off ends it.", Bindable::kNo, true},
     {"blank", CommandOf::kWall, "",
-     "Make all outputs black at once; a second call or the next touch shows the picture again.",
+     "Make all outputs black at once; a second call or the next input shows the picture again.",
      Bindable::kOnce, true},
     {"freeze", CommandOf::kWall, "",
-     "Freeze the picture: nothing moves it. A second call or the next touch ends it.",
+     "Freeze the picture: nothing moves it. A second call or the next input ends it.",
      Bindable::kOnce, true},
     {"playlist", CommandOf::kWall, "on|off|next",
      "Begin the playlist at once (on), keep it from beginning by itself (off), or show its next "
@@ -70,7 +70,7 @@ inline constexpr CommandInfo kCommands[] = {
      "degrees about X or Y move it by 1.5 radii down or to the right.",
      Bindable::kNo, false},
     {"operator_panel", CommandOf::kWall, "",
-     "Let the ball work the panel on the operator's tile, or what it moved before.",
+     "Switch the ball between the panel on the operator's tile and what it moved before.",
      Bindable::kOnce, true},
     {"operator_pointer", CommandOf::kWall, "X Y 0|1",
      "Move the pointer of the operator's panel to a pixel of the frame, with its button pressed "

@@ -50,7 +50,8 @@ bool allow(int rules, const std::string& path, std::uint64_t access) {
   return ::syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &beneath, 0) == 0;
 }
 
-// Files: the inputs, read-only; the folder; and what libraries read of the system.
+// Limits file access to the inputs (read-only), the folder, and the system files that libraries
+// read.
 bool limitFiles(const std::vector<std::string>& inputs, const std::string& folder) {
   landlock_ruleset_attr all{};
   all.handled_access_fs = kAll;

@@ -30,7 +30,7 @@ Result<std::string> newToken() {
   static_assert(kAlphabet.size() == 64);
   std::array<unsigned char, kCharacters> random{};
   if (::getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
-    return failed("random numbers for the token");
+    return failed("cannot get random numbers for the page's token");
   std::string token;
   for (const unsigned char byte : random) token += kAlphabet[byte % kAlphabet.size()];
   return token;

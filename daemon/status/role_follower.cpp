@@ -32,7 +32,8 @@ bool RoleFollower<Reader>::update(Timestamp now) {
   (void)topics_.connect("").ok();
   const auto connected =
       topics_.connect(std::string(header ? textIn(header->status_endpoint) : ""));
-  if (!connected) logWarning("the role {} cannot be followed: {}", role_, connected.error().what);
+  if (!connected)
+    logWarning("cannot receive the status of the role {}: {}", role_, connected.error().what);
   return true;
 }
 

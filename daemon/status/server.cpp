@@ -308,7 +308,7 @@ void StatusServer::admit() {
   if (!request.empty()) sendAll(sockets_->doorman, zapAnswer(request, doors_));
 }
 
-// A request of a REQ socket through a ROUTER: the connection's name, an empty part, the request.
+// A request arrives through the ROUTER as three parts: the connection's name, nothing, the request.
 // Anything else gets no answer.
 void StatusServer::answerNetwork() {
   const auto parts = receiveAll(sockets_->network);

@@ -1,5 +1,5 @@
 // Attendance: whether somebody works the wall, and what the wall shows if not: the playlist. Keeps
-// what the commands blank and freeze do, until the next touch.
+// what the commands blank and freeze do, until the next input.
 //
 // A touch is anything by which a visitor or an operator acts on the wall: a push of the ball, a
 // button, a finger that comes to a touch surface, moves on it or leaves it, a turn of a mouse's

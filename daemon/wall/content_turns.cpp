@@ -64,7 +64,7 @@ std::size_t ContentTurns::firstThere() const noexcept {
   return there == contents_.end() ? 0 : static_cast<std::size_t>(there - contents_.begin());
 }
 
-// Draws at a cost close to this one, that of the first content's initial view. The fastest of three
+// Draws the initial view at a cost close to `cost` and measures the time. The fastest of three
 // draws counts, since the first one fills caches.
 void ContentTurns::measureInitialView(const Eigen::Isometry3f& T_eye_content, std::size_t cost) {
   const std::size_t step = detail().stepWithin(cost);

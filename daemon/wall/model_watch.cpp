@@ -111,7 +111,8 @@ void ModelWatch::readAsked(Progress& progress) {
       offer(*std::move(ready));
       continue;
     }
-    report(faultEvent(fmt::format("what was asked for cannot be shown: {}", ready.error().what)));
+    report(faultEvent(
+        fmt::format("the content that was asked for cannot be shown: {}", ready.error().what)));
     ReadyModel nothing;
     nothing.place = asked.place;
     nothing.is_slide = asked.place != kNoPlace;

@@ -40,7 +40,7 @@ ProjectorsSeen together(const std::vector<ProjectorsSeen>& all);
 class OperatorPanel final : public render::panel::PanelSource {
  public:
   struct Parts {
-    const shm::WallSegment& wall;        // what is shown is read from its slots
+    const shm::WallSegment& wall;        // its slots say what the wall shows
     shm::SeqSlot<shm::WallPanel>& slot;  // where the panel's place is published
     std::string devices;                 // name of the devices' segment
     double rate_hz = 0;                  // of the configuration

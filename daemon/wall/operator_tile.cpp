@@ -8,7 +8,7 @@
 namespace merlin::wall {
 namespace {
 
-// Whether a device of this machine has a port, or another machine's are used.
+// Whether a device of this machine has a port or another machine's devices are used.
 bool expectsDevices(const Settings& settings) {
   const auto hasPort = [](const DeviceSettings& d) { return !d.line.port.empty(); };
   return !settings.wall.input.endpoint.empty() ||

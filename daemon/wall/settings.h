@@ -9,11 +9,11 @@
 namespace merlin {
 
 struct PlaylistSettings {
-  double after_s = 0;                 // time without a touch until it begins; 0: only by command
+  double after_s = 0;                 // time without input until it begins; 0: only by command
   double hold_s = 60;                 // time that each content is shown
   double turn_deg_per_s = 6;          // of a model about the vertical axis; of a panorama, its view
   std::vector<std::string> contents;  // names, in the order in which they are shown; empty: all
-  double dim_after_s = 0;             // time without a touch until the picture is dimmed; 0: never
+  double dim_after_s = 0;             // time without input until the picture is dimmed; 0: never
   double dim_to = 0.3;                // then, share of the full light
 };
 

@@ -110,7 +110,8 @@ Result<Ok> ShownFolder::make() {
   };
   const std::string& folder = settings_.folder;
   if (folder.empty())
-    return cannot(Errc::kUnsupported, "no content folder is set, and this user has none for state");
+    return cannot(Errc::kUnsupported,
+                  "no content folder is set, and this user has no state folder to put one in");
   std::error_code error;
   fs::create_directories(fs::path(folder).parent_path(), error);
   if (!makeForGroup(folder) && errno != EEXIST)

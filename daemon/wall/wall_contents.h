@@ -40,8 +40,9 @@ std::string namesOf(const std::vector<ContentEntry>& contents);
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
                                   const std::vector<std::string>& names);
 
-// The content of a file in the content folder, by its ending; a folder holds slides. `name`: of the
-// file, or SLIDES/FILE. Errors: those of openBelow(); kInvalidArgument (another ending).
+// The entry for a file in the content folder; the file's ending decides its kind, and a folder
+// becomes slides. `name`: of the file, or SLIDES/FILE. Errors: those of openBelow();
+// kInvalidArgument (another ending).
 Result<ContentEntry> contentBelow(const std::string& folder, const std::string& name);
 
 // A content that was read.

@@ -172,7 +172,8 @@ void WallLoop::noteRefusal(const ContentSource::Replacement& refused) {
   if (refused.request > 0) finishRequest(refused.request, refused.refused);
 }
 
-// The devices' input, without what does not count while the wall is black or frozen.
+// The part of the devices' input that counts: while the wall is black or frozen, not all of it
+// does.
 WallInput WallLoop::attendedInput(Timestamp now) {
   WallInput input = parts_.feed.read(now);
   input.scene.step = takeStep();

@@ -21,8 +21,8 @@ void describe(EvdevSettings& e, SettingsVisitor& v) {
   v.number("dead_zone", e.dead_zone, {0, 0.9},
            "Share of an axis's full deflection, to either side, that is treated as rest.");
   v.number("curve", e.curve, {1, 5},
-           "Exponent of the response to an axis's deflection: 1 is linear; the greater, the finer "
-           "are small deflections.");
+           "Exponent of the response to an axis's deflection. 1: linear; greater values make small "
+           "deflections finer.");
 }
 
 }  // namespace merlin

@@ -45,7 +45,7 @@ class InputDevice {
   std::vector<std::string> keyNames() const;
   // Where each axis of axisNames() stands. Allocates; for calibration.
   std::vector<AxisReading> readings() const;
-  // What choose() chose.
+  // The axes and keys that choose() selected.
   const AxisSources& sources() const noexcept { return sources_; }
   // "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east" for a person.
   std::string chosen() const;

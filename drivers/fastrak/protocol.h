@@ -113,7 +113,8 @@ inline constexpr std::array<int, 3> kDriverList = {2, 11, 0};
 
 struct Form {
   bool binary = true;
-  bool centimetres = true;  // unit of record.position, otherwise inches; scales item 18
+  bool centimetres =
+      true;  // positions are in centimetres, otherwise in inches; item 18 is scaled accordingly
 };
 
 // REQUIRES: isItem() is true of each item.

@@ -111,7 +111,8 @@ void describe(TrackerPlacement& placement, SettingsVisitor& v) {
       "the right, y up and z towards the person, as most motion capture and VR systems send "
       "them, beside a Fastrak: [3, -1, -2].");
   v.numbers("origin_m", placement.origin_m, {-100, 100},
-            "Place of the origin that is sent, in metres along the tracker's x, y and z.");
+            "Place, in the tracker's frame, of the point that the sender calls 0, 0, 0: x, y, z in "
+            "metres.");
 }
 
 }  // namespace merlin

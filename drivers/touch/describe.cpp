@@ -12,13 +12,13 @@ void describe(TouchSettings& t, SettingsVisitor& v) {
          "Whether a finger that moves to the right is reported as moving to the left.");
   v.flag("invert_y", t.orientation.invert_y,
          "Whether a finger that moves down is reported as moving up.");
-  v.number(
-      "aspect", t.aspect, {0, 10},
-      "Width of the surface divided by its height, as a person sees it. 0: from the "
-      "device's resolutions, or else from the ranges of its axes; 16:9 if these are equal, and "
-      "for a mouse.");
-  v.integer("mouse_counts", t.mouse_counts, {10, 100'000},
-            "Counts of a mouse's motion that make a drag over the whole height of the surface.");
+  v.number("aspect", t.aspect, {0, 10},
+           "Width of the surface divided by its height, as a person sees it. 0: computed from the "
+           "device's resolutions, or else from the ranges of its axes; 16:9 if only ranges are "
+           "known and they are equal, and for a mouse.");
+  v.integer(
+      "mouse_counts", t.mouse_counts, {10, 100'000},
+      "Number of counts that a mouse must move to drag over the whole height of the surface.");
 }
 
 }  // namespace merlin

@@ -37,12 +37,12 @@ void describe(VrpnPadSettings& s, SettingsVisitor& v) {
   v.number("rest", s.rest, {-1e6, 1e6}, "Value of a channel at rest, in the server's unit.");
   v.number("full", s.full, {-1e6, 1e6},
            "Value of a channel at full deflection in its positive direction, in the server's unit. "
-           "At full deflection the other way it is as far from the value at rest.");
+           "In the negative direction the value at full deflection is equally far from `rest`.");
   v.number("dead_zone", s.dead_zone, {0, 0.9},
            "Share of an axis's full deflection, to either side, that is treated as rest.");
   v.number("curve", s.curve, {1, 5},
-           "Exponent of the response to an axis's deflection: 1 is linear; the greater, the finer "
-           "are small deflections.");
+           "Exponent of the response to an axis's deflection. 1: linear; greater values make small "
+           "deflections finer.");
 }
 
 }  // namespace merlin

@@ -18,7 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kLongestName = 13;  // 15 have room; two are the eye's
+constexpr std::size_t kLongestName =
+    13;  // a tile's name has 15 characters; the eye's suffix takes two
 constexpr double kLargest_m = 1000;
 constexpr double kMostSeparation_m = 10;
 

@@ -247,11 +247,11 @@ TEST(DevicesConfig, AStationIsWornOnce) {
   EXPECT_EQ(worn(R"("station": 1)", R"("station": 3)"), "");
   EXPECT_EQ(worn(R"("tracker": "b", "station": 2)", R"("tracker": "b", "station": 1)"), "");
   EXPECT_EQ(worn(R"("tracker": "a", "station": 2)", R"("station": 0)"),
-            "f.json:1: /hands/1/station is 2, the station that is worn on the hand at /hands/0 "
-            "(/hands/0/station); each hand needs its own\n");
+            "f.json:1: /hands/1/station is 2, the station of the hand /hands/0 too; "
+            "each hand needs its own station\n");
   EXPECT_EQ(worn(R"("tracker": "b", "station": 1)", R"("tracker": "b", "station": 1)"),
-            "f.json:1: /wall/stereo/head/station is 1, the station that is worn on the hand "
-            "(/hands/1/station); the head needs its own\n");
+            "f.json:1: /wall/stereo/head/station is 1, the station of the hand "
+            "/hands/1 too; the head needs its own station\n");
   EXPECT_EQ(worn(R"("station": 1)", R"("tracker": "c", "station": 3)"),
             "f.json:1: /wall/stereo/head/tracker is \"c\", which is not the name of a tracker; "
             "/devices has a, b\n");

@@ -198,8 +198,8 @@ TEST(WallConfig, StereoIsCheckedWithTheRestOfTheWall) {
             "output show left.L and another one left.R (/wall/outputs/N/tiles)\n");
   EXPECT_EQ(wallIs("\n"
                    R"("stereo": {"head": {"station": 1}})"),
-            "f.json:2: /wall/stereo/head/station is 1, the station that is worn on the hand "
-            "(/hands/0/station); the head needs its own\n");
+            "f.json:2: /wall/stereo/head/station is 1, the station of the hand "
+            "/hands/0 too; the head needs its own station\n");
 }
 
 TEST(WallConfig, AnOverlayNeedsAnOperatorsTile) {

@@ -38,9 +38,10 @@ class Displays {
   Displays(const Displays&) = delete;
   Displays& operator=(const Displays&) = delete;
 
-  // Adds an output and returns its number. To be called before the first present() and step(). One
-  // of every connector (KmsSettings::isEvery()) is shown on each that has a display and that no
-  // other output names, up to kMostOfEvery; that there is none, or no card, is not a fault of it.
+  // Adds an output and returns its number. To be called before the first present() and step(). An
+  // output with the connector "*" (KmsSettings::isEvery()) is shown on each connector that has a
+  // display and that no other output names, up to kMostOfEvery. That there is no such connector, or
+  // no card, is not a fault of the output.
   std::size_t add(const KmsSettings& settings, int picture_width, int picture_height);
   static constexpr std::size_t kMostOfEvery = 16;
 

@@ -74,7 +74,7 @@ struct alignas(64) QuadricVertex {
   std::uint32_t degree;    // number of corners in its star
   std::uint32_t capacity;  // number of corners that its lines hold
   std::uint32_t node;      // number of its node in the log
-  float deviation;         // squared distance by which the vertices that it replaces may be off
+  float deviation;         // bound of the squared distance to the vertices that it replaces
   std::uint8_t flags;
   ShortVector witness;  // position of the witness (quadric_witness.h), relative to the vertex
 };
