@@ -7,6 +7,7 @@
 #include "drivers/port/plausible.h"
 #include "drivers/touch/device.h"
 #include "tests/support/count_allocations.h"
+#include "tests/support/evdev_records.h"
 #include "tests/support/fake_clock.h"
 #include "tests/support/fake_stream.h"
 #include "tests/support/recording_sink.h"
@@ -16,57 +17,36 @@ namespace {
 
 using Kind = EvdevRecord::Kind;
 
-std::string record(Kind kind, int code = 0, std::int32_t value = 0) {
-  EvdevRecord r;
-  r.kind = kind;
-  r.code = static_cast<std::uint16_t>(code);
-  r.value = value;
-  std::string out;
-  append(r, out);
-  return out;
-}
+using test::evdevNamed;
+using test::evdevRecord;
 
 std::string axis(int code, std::int32_t high, std::int32_t resolution = 0) {
-  EvdevRecord r;
-  r.kind = EvdevRecord::kAxis;
-  r.code = static_cast<std::uint16_t>(code);
-  r.high = high;
-  r.resolution = resolution;
-  std::string out;
-  append(r, out);
-  return out;
+  return evdevRecord(EvdevRecord::kAxis, code, 0, 0, high, resolution);
 }
 
-std::string named(Kind kind, int code, std::string_view text) {
-  EvdevRecord r;
-  r.kind = kind;
-  r.code = static_cast<std::uint16_t>(code);
-  std::copy(text.begin(), text.end(), r.text.begin());
-  std::string out;
-  append(r, out);
-  return out;
+std::string moved(int code, std::int32_t value) {
+  return evdevRecord(EvdevRecord::kMoved, code, value);
 }
-
-std::string moved(int code, std::int32_t value) { return record(EvdevRecord::kMoved, code, value); }
-std::string pressed(int code, int value) { return record(EvdevRecord::kPressed, code, value); }
-std::string shifted(int code, int by) { return record(EvdevRecord::kShifted, code, by); }
-const std::string kReady = record(EvdevRecord::kReady), kReport = record(EvdevRecord::kReport);
+std::string pressed(int code, int value) { return evdevRecord(EvdevRecord::kPressed, code, value); }
+std::string shifted(int code, int by) { return evdevRecord(EvdevRecord::kShifted, code, by); }
+const std::string kReady = evdevRecord(EvdevRecord::kReady),
+                  kReport = evdevRecord(EvdevRecord::kReport);
 
 // A frame of 800 mm by 400 mm with ten slots.
 std::string frame() {
-  return named(EvdevRecord::kName, 0, "made-up frame") + axis(ABS_X, 8000, 10) +
+  return evdevNamed(EvdevRecord::kName, 0, "made-up frame") + axis(ABS_X, 8000, 10) +
          axis(ABS_Y, 4000, 10) + axis(ABS_MT_SLOT, 9) + axis(ABS_MT_TRACKING_ID, 65535) +
          axis(ABS_MT_POSITION_X, 8000, 10) + axis(ABS_MT_POSITION_Y, 4000, 10) +
-         named(EvdevRecord::kKey, BTN_TOUCH, "TOUCH") + kReady;
+         evdevNamed(EvdevRecord::kKey, BTN_TOUCH, "TOUCH") + kReady;
 }
-std::string screen(const std::string& key = named(EvdevRecord::kKey, BTN_TOUCH, "TOUCH")) {
-  return named(EvdevRecord::kName, 0, "old screen") + axis(ABS_X, 4096) + axis(ABS_Y, 4096) + key +
-         kReady;
+std::string screen(const std::string& key = evdevNamed(EvdevRecord::kKey, BTN_TOUCH, "TOUCH")) {
+  return evdevNamed(EvdevRecord::kName, 0, "old screen") + axis(ABS_X, 4096) + axis(ABS_Y, 4096) +
+         key + kReady;
 }
 std::string mouse() {
-  return named(EvdevRecord::kName, 0, "mouse") + record(EvdevRecord::kRelative, REL_X) +
-         record(EvdevRecord::kRelative, REL_Y) + named(EvdevRecord::kKey, BTN_LEFT, "LEFT") +
-         kReady;
+  return evdevNamed(EvdevRecord::kName, 0, "mouse") + evdevRecord(EvdevRecord::kRelative, REL_X) +
+         evdevRecord(EvdevRecord::kRelative, REL_Y) +
+         evdevNamed(EvdevRecord::kKey, BTN_LEFT, "LEFT") + kReady;
 }
 
 class TouchTest : public testing::Test {
@@ -185,7 +165,7 @@ TEST_F(TouchTest, AScreenWithOnePositionHasOneFinger) {
 }
 
 TEST_F(TouchTest, APointerWithAPositionTouchesWhileItsLeftButtonIsPressed) {
-  connect(screen(named(EvdevRecord::kKey, BTN_LEFT, "LEFT")));
+  connect(screen(evdevNamed(EvdevRecord::kKey, BTN_LEFT, "LEFT")));
   after(pressed(BTN_LEFT, 1));
   EXPECT_EQ(sink_.touch.back().fingers, 1u);
 }
@@ -257,15 +237,15 @@ TEST_F(TouchTest, ASurfaceThatIsMountedOtherwiseIsTurned) {
 }
 
 TEST_F(TouchTest, WithoutResolutionsTheAspectIsThatOfTheRanges) {
-  connect(named(EvdevRecord::kName, 0, "x") + axis(ABS_X, 3000) + axis(ABS_Y, 1000) +
-          named(EvdevRecord::kKey, BTN_TOUCH, "TOUCH") + kReady);
+  connect(evdevNamed(EvdevRecord::kName, 0, "x") + axis(ABS_X, 3000) + axis(ABS_Y, 1000) +
+          evdevNamed(EvdevRecord::kKey, BTN_TOUCH, "TOUCH") + kReady);
   EXPECT_FLOAT_EQ(after(pressed(BTN_TOUCH, 1)).aspect, 3);
 }
 
 TEST_F(TouchTest, ADeviceThatIsNeitherIsRefusedWithTheWayOut) {
   device_.emplace(TouchSettings{}, clock_, sink_);
-  stream_.feed(named(EvdevRecord::kName, 0, "pad") + axis(ABS_X, 255) + axis(ABS_Y, 255) +
-               named(EvdevRecord::kKey, BTN_SOUTH, "SOUTH") + kReady);
+  stream_.feed(evdevNamed(EvdevRecord::kName, 0, "pad") + axis(ABS_X, 255) + axis(ABS_Y, 255) +
+               evdevNamed(EvdevRecord::kKey, BTN_SOUTH, "SOUTH") + kReady);
   const auto pad = device_->open(stream_);
   ASSERT_FALSE(pad);
   EXPECT_EQ(pad.error().code, Errc::kMalformed);
@@ -333,8 +313,8 @@ TEST_F(TouchTest, RandomEventsGiveNoSampleThatIsNotPlausible) {
           BTN_LEFT, BTN_TOUCH, ABS_MT_POSITION_Y};
       const auto value = random.below(2) ? static_cast<std::int32_t>(random.next())
                                          : static_cast<std::int32_t>(random.below(12)) - 1;
-      std::string bytes = record(static_cast<Kind>(6 + random.below(4)),
-                                 codes[random.below(std::size(codes))], value);
+      std::string bytes = evdevRecord(static_cast<Kind>(6 + random.below(4)),
+                                      codes[random.below(std::size(codes))], value);
       if (random.below(10) == 0)
         bytes[random.below(bytes.size())] = static_cast<char>(random.next());
       stream_.feed(bytes);

@@ -1,22 +1,37 @@
 // Records of an input device of the kernel, as the port evdev: carries them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "drivers/port/evdev_line.h"
 
 namespace merlin::test {
 
-// `low` and `high`: of an axis that is described.
+// `low`, `high` and `resolution`: of an axis that is described.
 inline std::string evdevRecord(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
-                               std::int32_t low = 0, std::int32_t high = 0) {
+                               std::int32_t low = 0, std::int32_t high = 0,
+                               std::int32_t resolution = 0) {
   EvdevRecord r;
   r.kind = kind;
   r.code = static_cast<std::uint16_t>(code);
   r.value = value;
   r.low = low;
   r.high = high;
+  r.resolution = resolution;
+  std::string out;
+  append(r, out);
+  return out;
+}
+
+// The name of the device, or of a key.
+inline std::string evdevNamed(EvdevRecord::Kind kind, int code, std::string_view text) {
+  EvdevRecord r;
+  r.kind = kind;
+  r.code = static_cast<std::uint16_t>(code);
+  std::copy(text.begin(), text.end(), r.text.begin());
   std::string out;
   append(r, out);
   return out;

@@ -14,9 +14,9 @@
 #include <unistd.h>
 
 #include "daemon/base/commands.h"
-#include "daemon/net/connection_server.h"
 #include "drivers/io/pty_master.h"
 #include "tests/support/evdev_records.h"
+#include "tests/support/free_port.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -119,12 +119,6 @@ class VrpnServer {
   }
 
  private:
-  // A TCP port that is free: the system has just assigned it, and it was closed again.
-  static int freePort() {
-    const auto probe = net::listenTcp("127.0.0.1", 0);
-    return probe ? net::portOf(probe->get()) : 0;
-  }
-
   const TempDir& dir_;
   int port_, starts_ = 0;
   std::optional<Merlind> server_;

@@ -10,8 +10,8 @@
 #include <unistd.h>
 #include <zmq.hpp>
 
-#include "daemon/net/connection_server.h"
 #include "daemon/status/client.h"
+#include "tests/support/free_port.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -19,11 +19,6 @@ namespace {
 
 using nlohmann::json;
 using std::chrono::seconds;
-
-int freePort() {
-  const auto listener = net::listenTcp("127.0.0.1", 0);
-  return listener ? net::portOf(listener->get()) : 0;
-}
 
 class NetworkCommands : public testing::Test {
  protected:

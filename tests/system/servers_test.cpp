@@ -19,6 +19,7 @@
 #include "daemon/base/sanitizer.h"
 #include "daemon/net/connection_server.h"
 #include "drivers/port/vrpn_line.h"
+#include "tests/support/free_port.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -40,12 +41,6 @@ UniqueFd connectTo(int port) {
   if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     fd.reset();
   return fd;
-}
-
-// A TCP port that is free: the system has just assigned it, and it was closed again.
-int freePort() {
-  const auto probe = net::listenTcp("127.0.0.1", 0);
-  return probe ? net::portOf(probe->get()) : 0;
 }
 
 MerlindOptions devicesThatServe(const Json& serve) {

@@ -14,7 +14,8 @@
 #include "daemon/base/commands.h"
 #include "daemon/net/connection_server.h"
 #include "drivers/io/pty_master.h"
-#include "drivers/port/evdev_line.h"
+#include "tests/support/evdev_records.h"
+#include "tests/support/free_port.h"
 #include "tests/support/vrpn_messages.h"
 #include "tests/support/vrpn_speaker.h"
 #include "tests/system/merlind.h"
@@ -88,35 +89,20 @@ TEST(TodaysDevices, ASpaceMouseOfSpacenavdIsTheBallAndComesBackWithIt) {
   EXPECT_GE(merlind.health("ball")->reconnects, 1u);
 }
 
-std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
-                   std::string_view name = {}) {
-  EvdevRecord r;
-  r.kind = kind;
-  r.code = static_cast<std::uint16_t>(code);
-  r.value = value;
-  if (kind == EvdevRecord::kAxis) {
-    r.low = -32768;
-    r.high = 32767;
-  }
-  std::copy(name.begin(), name.end(), r.text.begin());
-  std::string out;
-  append(r, out);
-  return out;
-}
-
 // A gamepad at the other end of a pseudo-terminal, which merlind opens as soon as it is there.
 class Gamepad {
  public:
   explicit Gamepad(const std::string& link) : line_(*io::PtyMaster::open(link)) {}
   void describe() {
-    std::string text = record(EvdevRecord::kName, 0, 0, "made-up pad");
-    for (const int code : {ABS_X, ABS_Y, ABS_RX, ABS_RY}) text += record(EvdevRecord::kAxis, code);
-    text += record(EvdevRecord::kKey, BTN_SOUTH, 0, "SOUTH");
-    text += record(EvdevRecord::kReady);
+    std::string text = evdevNamed(EvdevRecord::kName, 0, "made-up pad");
+    for (const int code : {ABS_X, ABS_Y, ABS_RX, ABS_RY})
+      text += evdevRecord(EvdevRecord::kAxis, code, 0, -32768, 32767);
+    text += evdevNamed(EvdevRecord::kKey, BTN_SOUTH, "SOUTH");
+    text += evdevRecord(EvdevRecord::kReady);
     (void)!::write(line_.fd(), text.data(), text.size());  // nobody may have opened it yet
   }
   void report(const std::string& events) {
-    const std::string bytes = events + record(EvdevRecord::kReport);
+    const std::string bytes = events + evdevRecord(EvdevRecord::kReport);
     EXPECT_EQ(::write(line_.fd(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
 
@@ -147,16 +133,16 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   EXPECT_STREQ(merlind.health("ball")->identity, "made-up pad, 4 axes, 1 keys");
   ASSERT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
-  pad.report(record(EvdevRecord::kMoved, ABS_RX, 32767));
+  pad.report(evdevRecord(EvdevRecord::kMoved, ABS_RX, 32767));
   EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 1; }));
   EXPECT_FLOAT_EQ(ballOf(merlind)->rotation[1], 1);
   // The stick is held, without another event: the model goes on turning.
   const std::uint32_t counter = ballOf(merlind)->counter;
   EXPECT_TRUE(eventually([&] { return ballOf(merlind)->counter > counter + 20; }));
   EXPECT_EQ(merlind.wall().moving, 1u);
-  pad.report(record(EvdevRecord::kMoved, ABS_RX, 0));
+  pad.report(evdevRecord(EvdevRecord::kMoved, ABS_RX, 0));
   EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
-  pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));  // ball.button.1: reset_view
+  pad.report(evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 1));  // ball.button.1: reset_view
   EXPECT_TRUE(eventually([&] {
     const auto actions = merlind.actions("ball");
     return actions && actions->sequence == 1;
@@ -174,7 +160,7 @@ TEST(TodaysDevices, KeysAreInputsByTheKernelsNames) {
                               {{"input", "ball.key.space"}, {"action", "reset_view"}}};
   Merlind merlind(dir, "", "keys", options);
   EXPECT_TRUE(isConnected(merlind, pad)) << merlind.process().output();
-  pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));
+  pad.report(evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 1));
   EXPECT_TRUE(eventually([&] {
     const auto actions = merlind.actions("ball");
     return actions && actions->begun[actionIndex("next_mode")] == 1;
@@ -185,12 +171,6 @@ TEST(TodaysDevices, KeysAreInputsByTheKernelsNames) {
            "it has no key.space, which a binding names; `merlin devices` lists the keys that it "
            "has";
   })) << merlind.health("ball")->reason;
-}
-
-// A TCP port that is free: the system has just assigned it, and it was closed again.
-int freePort() {
-  const auto probe = net::listenTcp("127.0.0.1", 0);
-  return probe ? net::portOf(probe->get()) : 0;
 }
 
 MerlindOptions vrpnServer(int port) {
@@ -295,13 +275,14 @@ TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAn
       return actions && actions->begun[action] == 1;
     });
   };
-  pad.report(record(EvdevRecord::kPressed, BTN_SOUTH, 1));
+  pad.report(evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 1));
   EXPECT_TRUE(begun(actionIndex("next_mode")));
-  pad.report(record(EvdevRecord::kMoved, ABS_RX, 32767));
+  pad.report(evdevRecord(EvdevRecord::kMoved, ABS_RX, 32767));
   EXPECT_TRUE(begun(actionIndex("reset_view"))) << "its pushed axis is an input too";
   EXPECT_TRUE(eventually([&] { return client.wall().moving == 1; }));
   EXPECT_FLOAT_EQ(client.devices()->ball("wand")->samples->newest()->rotation[1], 1);
-  pad.report(record(EvdevRecord::kMoved, ABS_RX, 0) + record(EvdevRecord::kPressed, BTN_SOUTH, 0));
+  pad.report(evdevRecord(EvdevRecord::kMoved, ABS_RX, 0) +
+             evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 0));
   EXPECT_TRUE(eventually([&] { return client.wall().moving == 0; }));
   EXPECT_EQ(client.devices()->ball("wand")->samples->newest()->buttons, 0u);
   server.process().kill(SIGKILL);

@@ -12,7 +12,7 @@
 #include "daemon/base/commands.h"
 #include "daemon/base/unique_fd.h"
 #include "drivers/io/pty_master.h"
-#include "drivers/port/evdev_line.h"
+#include "tests/support/evdev_records.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -60,17 +60,6 @@ std::optional<TrackerSample> newestPose(Merlind& merlind, std::size_t station) {
   return devices ? devices->tracker()->stations[station - 1]->newest() : std::nullopt;
 }
 
-std::string record(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0, int high = 0) {
-  EvdevRecord r;
-  r.kind = kind;
-  r.code = static_cast<std::uint16_t>(code);
-  r.value = value;
-  r.high = high;
-  std::string out;
-  append(r, out);
-  return out;
-}
-
 // The other end of a touch frame's line.
 class FrameLine {
  public:
@@ -102,19 +91,22 @@ TEST(TouchSystem, AFrameOfTheKernelTouches) {
                                    {ABS_MT_TRACKING_ID, 65535},
                                    {ABS_MT_POSITION_X, 1000},
                                    {ABS_MT_POSITION_Y, 500}})
-    description += record(EvdevRecord::kAxis, code, 0, high);
-  description += record(EvdevRecord::kReady);
+    description += evdevRecord(EvdevRecord::kAxis, code, 0, 0, high);
+  description += evdevRecord(EvdevRecord::kReady);
   Merlind merlind(dir, "", "frame",
                   devicesAlone(deviceEntry("frame", "touch", "pty:" + dir / "frame")));
   EXPECT_TRUE(line.opens(merlind, "frame", description)) << merlind.process().output();
-  const auto moved = [](int code, int value) { return record(EvdevRecord::kMoved, code, value); };
+  const auto moved = [](int code, int value) {
+    return evdevRecord(EvdevRecord::kMoved, code, value);
+  };
   say(moved(ABS_MT_SLOT, 0) + moved(ABS_MT_TRACKING_ID, 1) + moved(ABS_MT_POSITION_X, 250) +
       moved(ABS_MT_POSITION_Y, 250) + moved(ABS_MT_SLOT, 1) + moved(ABS_MT_TRACKING_ID, 2) +
-      moved(ABS_MT_POSITION_X, 750) + moved(ABS_MT_POSITION_Y, 250) + record(EvdevRecord::kReport));
+      moved(ABS_MT_POSITION_X, 750) + moved(ABS_MT_POSITION_Y, 250) +
+      evdevRecord(EvdevRecord::kReport));
   EXPECT_TRUE(fingersAre(merlind, "frame", 2));
   EXPECT_FLOAT_EQ(newestTouch(merlind, "frame")->position[1][0], 0.75F);
   EXPECT_FLOAT_EQ(newestTouch(merlind, "frame")->aspect, 2);
-  say(moved(ABS_MT_TRACKING_ID, -1) + record(EvdevRecord::kReport));
+  say(moved(ABS_MT_TRACKING_ID, -1) + evdevRecord(EvdevRecord::kReport));
   EXPECT_TRUE(fingersAre(merlind, "frame", 1));
 }
 
@@ -124,18 +116,18 @@ TEST(TouchSystem, FingersThatMoveTogetherAreAnInput) {
   const auto say = [&](const std::string& bytes) { line.say(bytes); };
   std::string description;
   for (const int code : {ABS_MT_SLOT, ABS_MT_TRACKING_ID, ABS_MT_POSITION_X, ABS_MT_POSITION_Y})
-    description += record(EvdevRecord::kAxis, code, 0, code == ABS_MT_SLOT ? 9 : 1000);
-  description += record(EvdevRecord::kReady);
+    description += evdevRecord(EvdevRecord::kAxis, code, 0, 0, code == ABS_MT_SLOT ? 9 : 1000);
+  description += evdevRecord(EvdevRecord::kReady);
   MerlindOptions options = devicesAlone(deviceEntry("touch", "touch", "pty:" + dir / "frame"));
   options.also["bindings"] = {{{"input", "touch.pinch"}, {"action", "reset_view"}},
                               {{"input", "touch.spread"}, {"action", "next_mode"}}};
   Merlind merlind(dir, "", "pinch", options);
   EXPECT_TRUE(line.opens(merlind, "touch", description)) << merlind.process().output();
   const auto finger = [](int slot, int id, int x) {
-    return record(EvdevRecord::kMoved, ABS_MT_SLOT, slot) +
-           record(EvdevRecord::kMoved, ABS_MT_TRACKING_ID, id) +
-           record(EvdevRecord::kMoved, ABS_MT_POSITION_X, x) +
-           record(EvdevRecord::kMoved, ABS_MT_POSITION_Y, 500);
+    return evdevRecord(EvdevRecord::kMoved, ABS_MT_SLOT, slot) +
+           evdevRecord(EvdevRecord::kMoved, ABS_MT_TRACKING_ID, id) +
+           evdevRecord(EvdevRecord::kMoved, ABS_MT_POSITION_X, x) +
+           evdevRecord(EvdevRecord::kMoved, ABS_MT_POSITION_Y, 500);
   };
   const auto begun = [&](std::uint32_t together, std::uint32_t apart) {
     return eventually([&] {
@@ -144,7 +136,7 @@ TEST(TouchSystem, FingersThatMoveTogetherAreAnInput) {
              actions->begun[actionIndex("next_mode")] == apart;
     });
   };
-  const std::string report = record(EvdevRecord::kReport);
+  const std::string report = evdevRecord(EvdevRecord::kReport);
   say(finger(0, 1, 300) + finger(1, 2, 700) + report);
   EXPECT_TRUE(fingersAre(merlind, "touch", 2));
   say(finger(0, 1, 450) + finger(1, 2, 550) + report);
@@ -168,17 +160,17 @@ TEST(TouchSystem, AMousesWheelMovesTheModelAndItsRightButtonActs) {
   options.also["bindings"] = {{{"input", "mouse.button.right"}, {"action", "next_mode"}}};
   Merlind merlind(dir, makeModel(dir, 5), "mouse", options);
   EXPECT_TRUE(eventually([&] {
-    say(record(EvdevRecord::kRelative, REL_X) + record(EvdevRecord::kRelative, REL_Y) +
-        record(EvdevRecord::kKey, BTN_LEFT) + record(EvdevRecord::kReady));
+    say(evdevRecord(EvdevRecord::kRelative, REL_X) + evdevRecord(EvdevRecord::kRelative, REL_Y) +
+        evdevRecord(EvdevRecord::kKey, BTN_LEFT) + evdevRecord(EvdevRecord::kReady));
     const auto health = merlind.health("mouse");
     return health && health->state == HealthState::kOk;
   })) << merlind.process().output();
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   ASSERT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
   const std::uint32_t resumed = merlind.wall().resumed;
-  say(record(EvdevRecord::kShifted, REL_WHEEL, 1) + record(EvdevRecord::kReport));
+  say(evdevRecord(EvdevRecord::kShifted, REL_WHEEL, 1) + evdevRecord(EvdevRecord::kReport));
   EXPECT_TRUE(eventually([&] { return merlind.wall().resumed > resumed; }));
-  say(record(EvdevRecord::kPressed, BTN_RIGHT, 1) + record(EvdevRecord::kReport));
+  say(evdevRecord(EvdevRecord::kPressed, BTN_RIGHT, 1) + evdevRecord(EvdevRecord::kReport));
   EXPECT_TRUE(eventually([&] {
     const auto actions = merlind.actions("mouse");
     return actions && actions->begun[actionIndex("next_mode")] == 1;
