@@ -333,19 +333,47 @@ Result<std::vector<GltfPrimitive>> checkFirst(const ModelFile& file) {
   return checkGltf(bytes->text());
 }
 
-// assimp makes a mesh of each primitive, and leaves out triangles with an index out of range.
-Result<Ok> checkTriangles(const std::vector<GltfPrimitive>& promised, const aiScene& scene) {
-  if (promised.size() != scene.mNumMeshes) return Ok{};
-  for (std::size_t i = 0; i < promised.size(); ++i) {
-    const GltfPrimitive& p = promised[i];
-    const aiMesh& mesh = *scene.mMeshes[i];
-    if (mesh.mNumFaces >= p.triangles) continue;
+// What is left of the primitives once each mesh has taken the one with as many triangles; `lossy`:
+// the meshes for which there was none. Both in the order of their triangles.
+std::vector<GltfPrimitive> unmatched(std::vector<GltfPrimitive> promised,
+                                     std::vector<const aiMesh*> meshes,
+                                     std::vector<const aiMesh*>& lossy) {
+  std::ranges::stable_sort(promised, {}, &GltfPrimitive::triangles);
+  std::ranges::stable_sort(meshes, {}, &aiMesh::mNumFaces);
+  std::vector<GltfPrimitive> left;
+  auto next = promised.begin();
+  for (const aiMesh* mesh : meshes) {
+    for (; next != promised.end() && next->triangles < mesh->mNumFaces; ++next)
+      left.push_back(*next);
+    if (next != promised.end() && next->triangles == mesh->mNumFaces)
+      ++next;
+    else
+      lossy.push_back(mesh);
+  }
+  left.insert(left.end(), next, promised.end());
+  return left;
+}
+
+// assimp makes a mesh of each primitive that a node shows, in the order in which it comes to them,
+// and leaves out triangles with an index out of range. So each of its meshes has to have as many
+// triangles as one of the file's primitives, each of which stands for one mesh.
+Result<Ok> checkTriangles(std::vector<GltfPrimitive> promised, const aiScene& scene) {
+  std::vector<const aiMesh*> meshes, lossy;
+  for (std::size_t i = 0; i < scene.mNumMeshes; ++i) {
+    if ((scene.mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0)
+      meshes.push_back(scene.mMeshes[i]);
+  }
+  const auto left = unmatched(std::move(promised), std::move(meshes), lossy);
+  for (const aiMesh* mesh : lossy) {
+    const auto of = std::ranges::upper_bound(left, std::uint64_t{mesh->mNumFaces}, {},
+                                             &GltfPrimitive::triangles);
+    if (of == left.end()) continue;
     return Error{
         Errc::kMalformed,
         fmt::format("glTF: mesh {}, primitive {}: {} of its {} triangles have an index beyond its "
                     "{} vertices",
-                    p.mesh, p.number, p.triangles - mesh.mNumFaces, p.triangles,
-                    mesh.mNumVertices)};
+                    of->mesh, of->number, of->triangles - mesh->mNumFaces, of->triangles,
+                    mesh->mNumVertices)};
   }
   return Ok{};
 }
@@ -374,7 +402,7 @@ std::string noteOf(const std::string& unit) {
 }  // namespace
 
 Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_triangles) {
-  const auto promised = checkFirst(file);
+  auto promised = checkFirst(file);
   if (!promised) return promised.error();
   Assimp::Importer importer;
   auto* const folder = new ModelFolder(file);  // the importer's from here on
@@ -390,7 +418,7 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
   }
   if (!scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
     return Error{Errc::kUnsupported, "holds no surface"};
-  if (const auto whole = checkTriangles(*promised, *scene); !whole) return whole.error();
+  if (const auto whole = checkTriangles(*std::move(promised), *scene); !whole) return whole.error();
   BuiltModel built = SceneReader(*scene, file, on_triangles).read();
   if (const std::string unit = namedUnit(file); !unit.empty()) built.notes.push_back(noteOf(unit));
   return built;

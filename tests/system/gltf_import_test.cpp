@@ -262,6 +262,20 @@ TEST_F(GltfImport, AnIndexOutOfRangeIsRefused) {
                 "its 3 vertices");
 }
 
+TEST_F(GltfImport, NodesMayShowMeshesInAnyOrder) {
+  writeText(dir_ / "two.bin", kTriangle.substr(0, 68) + shorts({0, 1, 2, 0, 2, 1}));
+  Json json = triangle("two.bin");
+  json["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", 68}, {"byteLength", 12}};
+  json["accessors"][1]["count"] = 6;
+  json["meshes"].push_back(json["meshes"][0]);
+  json["meshes"][1]["primitives"][0].erase("indices");  // one triangle, the first mesh has two
+  json["nodes"] = {{{"mesh", 1}}, {{"mesh", 0}, {"translation", {0, 0, 1}}}};
+  json["scenes"] = {{{"nodes", {0, 1}}}};
+  json["scene"] = 0;
+  const Json made = report(json.dump());
+  EXPECT_EQ(made["parts"], 2) << made;
+}
+
 TEST_F(GltfImport, OnlyMotionsThatAreThereAreSaidToBeLeftOut) {
   Json json = triangle("a.bin");
   json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
