@@ -53,6 +53,7 @@ Reloader::Reloader(std::string file, const DaemonOptions& options, Settings conf
     : file_(std::move(file)),
       options_(options),
       configured_(std::move(configured)),
+      named_(readNamedFiles(configured_)),
       running_(running),
       parts_(parts) {}
 
@@ -163,9 +164,10 @@ void Reloader::checkStart(LoadedSettings& loaded, const std::vector<SettingChang
   loaded.sortFindings();
 }
 
-Outcome Reloader::judge(LoadedSettings& loaded, reload::Plan& plan) const {
+Outcome Reloader::judge(LoadedSettings& loaded, const NamedFiles& named, reload::Plan& plan) const {
   if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return Outcome::kInvalid;
-  const auto changes = changesBetween(configured_, loaded.settings);
+  auto changes = changesBetween(configured_, loaded.settings);
+  for (SettingChange& change : changesBetween(named_, named)) changes.push_back(std::move(change));
   reload::Plan found = reload::planFor(changes, process());
   if (!found.restart.empty()) checkStart(loaded, changes);
   if (loaded.verdict() == LoadedSettings::Verdict::kInvalid || adjustsChange(loaded, changes))
@@ -178,7 +180,8 @@ Reloader::ReadFile Reloader::read() const {
   LoadedSettings loaded = readConfiguration(file_, options_, Reading::kAgain).loaded;
   ReadFile file;
   file.answer.file = file_;
-  file.answer.outcome = judge(loaded, file.answer.plan);
+  file.named = readNamedFiles(loaded.settings);
+  file.answer.outcome = judge(loaded, file.named, file.answer.plan);
   file.answer.findings = findingLines(file_, loaded);
   file.settings = std::move(loaded.settings);
   if (file.answer.outcome != Outcome::kDone || !options_.devices) return file;
@@ -226,6 +229,7 @@ void Reloader::swap(const ReadFile& file) {
          plan.has(Part::kBindings) || plan.has(Part::kHand), plan.has(Part::kCorrection)});
   }
   configured_ = file.settings;
+  named_ = file.named;
 }
 
 void Reloader::report(const reload::Answer& answer) {

@@ -18,6 +18,7 @@
 #include "daemon/base/watched_thread.h"
 #include "daemon/configuration.h"
 #include "daemon/devices/devices_role.h"
+#include "daemon/named_files.h"
 #include "daemon/reload/answer.h"
 #include "daemon/status/services.h"
 #include "daemon/wall/wall_role.h"
@@ -70,12 +71,13 @@ class Reloader {
   struct ReadFile {
     reload::Answer answer;
     Settings settings;
+    NamedFiles named;  // by `settings`
     devices::Trained trained;
   };
   ReadFile readGuarded() const;
   ReadFile read() const;
   void checkStart(LoadedSettings& loaded, const std::vector<SettingChange>& changes) const;
-  reload::Outcome judge(LoadedSettings& loaded, reload::Plan& plan) const;
+  reload::Outcome judge(LoadedSettings& loaded, const NamedFiles& named, reload::Plan& plan) const;
   reload::Readers process() const;
   Result<std::string> add(bool only_check, bool is_command);
   void read(const std::stop_token& stop, Progress& progress);
@@ -86,6 +88,7 @@ class Reloader {
   const std::string file_;
   const DaemonOptions options_;
   Settings configured_;  // changed by tend() while nothing is read
+  NamedFiles named_;     // by configured_; likewise
   Settings& running_;
   Parts parts_;
   std::mutex mutex_;  // guards all below but thread_

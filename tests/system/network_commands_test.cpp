@@ -106,6 +106,17 @@ TEST_F(NetworkCommands, AKeyThatIsNotListedGetsNoAnswer) {
   EXPECT_EQ(merlin("commander", {"status"}).status, 0) << "others are still answered";
 }
 
+// The list keeps its name, so no setting changes.
+TEST_F(NetworkCommands, AKeyThatWasTakenOffTheListGetsNoAnswerAfterAReload) {
+  ASSERT_EQ(merlin("commander", {"status"}).status, 0);
+  writeText(dir_ / "commanders", readText(dir_ / "server.public"));
+  const Outcome done = run({kMerlin, "reload", "--instance", daemon_->instance()});
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("/serve/commands_clients"), std::string::npos) << done.output;
+  EXPECT_EQ(merlin("commander", {"status"}).status, 1);
+  EXPECT_EQ(merlin("reader", {"status"}).status, 0);
+}
+
 // Whatever a listed client sends, it gets its answer or none, and the next one gets its own.
 TEST_F(NetworkCommands, MessagesOfAnyFormDoNotHurt) {
   const status::KeyPair own = *status::readKeyPair(file("commander"));

@@ -234,6 +234,19 @@ TEST_F(Reload, ForWhatOnlyAStartTakesItStartsAgainWithAllTheRest) {
   EXPECT_EQ(merlind_->process().kill(SIGTERM), 0) << merlind_->process().output();
 }
 
+TEST_F(Reload, AFileThatKeepsItsNameIsTakenOnceItsContentsChange) {
+  const std::string postures = dir_ / "own.json";
+  writeText(postures, readText(kSource + "/config/postures.json"));
+  start({{"postures", {{"file", postures}}}});
+  EXPECT_NE(reload().output.find("nothing changed"), std::string::npos);
+  writeText(postures, readText(postures) + "\n");
+  const Outcome done = reload();
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("/postures/file: "), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("with other contents"), std::string::npos) << done.output;
+  EXPECT_NE(reload().output.find("nothing changed"), std::string::npos);
+}
+
 TEST_F(Reload, WhatOtherProcessesReadIsSaid) {
   start();
   write({{"page", {{"port", 7999}}}, {"bindings", bindings("fly")}});
