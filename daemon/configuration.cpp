@@ -78,8 +78,21 @@ void checkSpnavSocket(LoadedSettings& loaded) {
   take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
 }
 
+// At a start the wall does without (StateKeeper); a reload refuses it.
+void checkStateWritable(Reading reading, const char* pointer, LoadedSettings& loaded) {
+  const std::string& path = loaded.settings.state_file;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  auto usable = checkFolder(folder.empty() ? "." : folder);
+  std::error_code error;
+  if (usable && std::filesystem::exists(path, error)) usable = checkWritable(path);
+  if (usable || reading == Reading::kAgain) return take(usable, pointer, loaded);
+  loaded.add(
+      {true, loaded.lineOf(pointer), pointer,
+       kCannot + usable.error().what + "; what people change is not kept until it can be written"});
+}
+
 // Checks that the state file can be written and that it is none of the files that are read.
-void checkStateFile(const std::string& configuration, LoadedSettings& loaded) {
+void checkStateFile(const std::string& configuration, Reading reading, LoadedSettings& loaded) {
   constexpr const char* kPointer = "/state_file";
   const std::string& path = loaded.settings.state_file;
   if (path.empty()) return;
@@ -94,10 +107,7 @@ void checkStateFile(const std::string& configuration, LoadedSettings& loaded) {
                               source.file));
   }
   wall::checkReplacesNothing(loaded, path, kPointer);
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  if (const auto usable = checkFolder(folder.empty() ? "." : folder); !usable)
-    return take(usable, kPointer, loaded);
-  if (std::filesystem::exists(path, error)) take(checkWritable(path), kPointer, loaded);
+  checkStateWritable(reading, kPointer, loaded);
 }
 
 // Checks that the host of the address is '*' or an IPv4 address, to which a socket can be bound.
@@ -207,7 +217,7 @@ Configuration readConfiguration(const std::string& file, const DaemonOptions& op
   checkNetworkCommands(options, loaded);
   if (options.wall) {
     checkInput(options, loaded);
-    checkStateFile(file, loaded);
+    checkStateFile(file, reading, loaded);
     if (reading == Reading::kStart) wall::checkRenderer(loaded);
     wall::checkOutputs(loaded, reading == Reading::kStart);
     wall::checkPlaylist(loaded);

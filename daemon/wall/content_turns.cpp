@@ -60,8 +60,10 @@ void ContentTurns::calibrate(const Eigen::Isometry3f& T_eye_content) {
 
 // If all are missing, the first place.
 std::size_t ContentTurns::firstThere() const noexcept {
-  const auto there = std::ranges::find(contents_, false, &ShownContent::missing);
-  return there == contents_.end() ? 0 : static_cast<std::size_t>(there - contents_.begin());
+  for (std::size_t place = 0; place < listed_; ++place) {
+    if (!contents_[place].missing) return place;
+  }
+  return 0;
 }
 
 // Draws the initial view at a cost close to `cost` and measures the time. The fastest of three
@@ -162,7 +164,9 @@ bool ContentTurns::showRequested() {
 // The cost of the new content's initial view is not known; the governor learns it while the content
 // is shown.
 bool ContentTurns::replace(const ContentSource::Replacement& fresh) {
+  const bool nothing_shown = contents_[asked_].missing;
   contents_[fresh.place] = fresh.content;
+  if (nothing_shown) request(fresh.place);
   fresh.content.painter->setSizeDivisor(size_divisor_);
   initial_[fresh.place].drawing_s = 0;
   return fresh.place == index_;

@@ -115,7 +115,8 @@ class ContentTurns {
   // The place that was asked for last.
   std::size_t asked() const noexcept { return asked_; }
 
-  // Replaces the content of a place; returns true if that is the one shown.
+  // Replaces the content of a place; returns true if that is the one shown. It is requested if all
+  // were missing so far.
   bool replace(const ContentSource::Replacement& fresh);
 
   // Sets the size divisor of every content's painter. The costs of initial views are known only for

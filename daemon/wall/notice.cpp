@@ -23,6 +23,15 @@ Result<Ok> Notice::show(const std::string& text) {
   return Ok{};
 }
 
+Result<Ok> Notice::stand(const std::string& text, Timestamp now) {
+  constexpr Duration kAhead = std::chrono::seconds(1);  // so that the plate does not blink
+  {
+    const std::lock_guard lock(mutex_);
+    if (now < until_ - (text_ == text ? kAhead : Duration{})) return Ok{};
+  }
+  return show(text);
+}
+
 void Notice::tend(Timestamp now) {
   std::string text;
   {

@@ -23,6 +23,10 @@ class Notice {
   // kInvalidArgument (not 1 to kMostBytes bytes of text), those of NoticeOverlay::show().
   Result<Ok> show(const std::string& text);
 
+  // Shows the sentence for as long as this is called ten times a second, while no client shows
+  // another. Thread-safe. Errors: those of show().
+  Result<Ok> stand(const std::string& text, Timestamp now);
+
   // Writes shared memory when the sentence changes; to be called ten times a second, on one thread.
   void tend(Timestamp now);
 

@@ -32,6 +32,18 @@ bool isNamed(const WallSettings& wall, std::size_t i, std::size_t count) {
   return i >= before && !wall.contents[i - before].name.empty();
 }
 
+// What becomes of a content that cannot be read. `any`: whether another can; `is_start`: of
+// merlind.
+const char* consequence(bool any, bool is_start) {
+  if (is_start) {
+    return any ? "; the wall is shown without it until it can be read"
+               : "; the wall is shown without any content until one can be read";
+  }
+  return any ? "; a reload refuses it, a start shows the wall without it until it can be read"
+             : "; a reload refuses it, a start shows the wall without any content until one can be "
+               "read";
+}
+
 // Keeps in memory what it has read, or only what cannot be read.
 std::vector<WallContent> readEach(LoadedSettings& loaded, bool keep) {
   std::vector<WallContent> contents;
@@ -56,12 +68,8 @@ std::vector<WallContent> readEach(LoadedSettings& loaded, bool keep) {
   }
   for (const WallContent& content : contents) {
     if (content.fault.empty()) continue;
-    const char* const then =
-        !any   ? ""
-        : keep ? "; the wall is shown without it until it can be read"
-               : "; a reload refuses it, a start shows the wall without it until it can be read";
-    loaded.add({any, loaded.lineOf(content.entry.pointer), content.entry.pointer,
-                kCannot + content.fault + then});
+    loaded.add({keep || any, loaded.lineOf(content.entry.pointer), content.entry.pointer,
+                kCannot + content.fault + consequence(any, keep)});
   }
   return contents;
 }

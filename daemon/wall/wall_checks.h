@@ -11,9 +11,9 @@
 namespace merlin::wall {
 
 // Reads the contents in the order in which they are shown: see contentsOf(). Adds a finding for
-// each that names no file, cannot be read, or lacks the feature that /wall/render/show names. If
-// another can be read, one that cannot (its disk may not be there yet) is only an adjustment, and
-// in the result as missingContent(). Otherwise the result is complete only if no finding was added.
+// each that names no file, cannot be read, or lacks the feature that /wall/render/show names. One
+// that cannot be read (its disk may not be there yet) is only an adjustment, and in the result as
+// missingContent(), also if it is so of all. The result is complete unless a finding is none.
 // O(size of the models' files).
 std::vector<WallContent> readContents(LoadedSettings& loaded);
 

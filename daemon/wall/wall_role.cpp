@@ -230,10 +230,25 @@ std::size_t WallRole::firstContent() {
   return 0;
 }
 
+// While no content can be read: only the background is drawn, or a file that somebody shows.
+void WallRole::tellIfEmpty(Timestamp now) {
+  const std::vector<std::string> faults = missing_.faults();
+  const bool is_empty = std::ranges::none_of(faults, &std::string::empty);
+  if (std::exchange(told_empty_, is_empty) && !is_empty) (void)notice_.show("off");
+  const auto shown = segment_->interaction.read();
+  if (!is_empty || (shown && shown->content >= firstNumber() + entries_.size())) return;
+  const std::string why =
+      fmt::format("{} cannot be shown; it is shown as soon as it can be read: {}",
+                  oneLine(entries_.front().path), oneLine(faults.front()));
+  (void)notice_.stand(
+      std::string(wholeCharacters(std::string_view(why).substr(0, Notice::kMostBytes))), now);
+}
+
 // The state stores an empty path for the first content, so that the configuration decides which
 // one it is. A file that is not in the configuration is not stored.
 void WallRole::tend(Timestamp now) {
   signals_->tend(now);
+  tellIfEmpty(now);
   notice_.tend(now);
   if (aligner_->showsCard()) attendance_.attend();
   const auto shown = segment_->interaction.read();

@@ -150,6 +150,7 @@ class WallRole {
   Result<Ok> showEntry(const ContentEntry& entry, std::uint32_t request);
   std::optional<std::size_t> lastShown() const;
   std::size_t firstContent();
+  void tellIfEmpty(Timestamp now);
   void run(const std::stop_token& stop, Progress& progress);
   void addOwn(WallParts& parts);
   void beginCorrecting(const render::frame::DrawContexts& contexts);
@@ -180,6 +181,7 @@ class WallRole {
   std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
   std::unique_ptr<SignalTaps> signals_;
   std::optional<std::uint32_t> kept_content_;  // content that the state was last updated for
+  bool told_empty_ = false;                    // of the thread of tend()
   render::testcard::CardOverlay cards_;
   MessageBoard board_;
   Attendance attendance_;

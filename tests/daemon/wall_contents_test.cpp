@@ -81,6 +81,32 @@ TEST_F(WallContentsTest, OneThatIsMissingIsPassedOver) {
   EXPECT_EQ(stats().late, 0u);
 }
 
+// Has one other content for one place, when it is told to.
+class OneReplacement final : public ContentSource {
+ public:
+  OneReplacement(std::size_t place, ShownContent content) : fresh_({place, content}) {}
+  std::optional<Replacement> take(bool, const Eigen::Isometry3f&) override {
+    return due ? std::exchange(fresh_, std::nullopt) : std::nullopt;
+  }
+  bool due = false;
+
+ private:
+  std::optional<Replacement> fresh_;
+};
+
+TEST_F(WallContentsTest, WhereAllAreMissingTheFirstThatComesIsShown) {
+  for (ShownContent& content : contents_) content.missing = true;
+  OneReplacement fresh(1, {&detail_, &dear_});
+  replacements_ = &fresh;
+  std::vector<std::uint32_t> shown;
+  run(3, [&](Timestamp) {
+    fresh.due = feed_.begins.size() >= 30;
+    if (feed_.begins.size() % 30 == 29) shown.push_back(interaction().content);
+  });
+  EXPECT_EQ(shown.front(), 0u);
+  EXPECT_EQ(shown.back(), 1u);
+}
+
 // Two who ask at the same time: neither takes the other's answer for its own.
 TEST_F(WallContentsTest, WhatBecameOfEachRequestIsPublishedForAWhile) {
   std::map<std::uint32_t, std::string> seen;
@@ -136,19 +162,6 @@ TEST_F(WallContentsTest, ThePreviousOneIsTheOneThatTheNextOneCameFrom) {
   EXPECT_EQ(shown, (std::vector<std::uint32_t>{0, 1, 0, 1, 3, 1}))
       << "in a circle without the one that is missing; before the file comes what was shown before";
 }
-
-// Has one other content for one place, when it is told to.
-class OneReplacement final : public ContentSource {
- public:
-  OneReplacement(std::size_t place, ShownContent content) : fresh_({place, content}) {}
-  std::optional<Replacement> take(bool, const Eigen::Isometry3f&) override {
-    return due ? std::exchange(fresh_, std::nullopt) : std::nullopt;
-  }
-  bool due = false;
-
- private:
-  std::optional<Replacement> fresh_;
-};
 
 TEST_F(WallContentsTest, AReplacedOneIsDrawnFromTheNextFrameAndTheOldOneNeverAgain) {
   OneReplacement fresh(0, {&detail_, &dear_});

@@ -22,23 +22,21 @@ class BadInput : public testing::Test {
   TempDir dir_;
 };
 
-TEST_F(BadInput, AMissingModel) {
-  Merlind m(dir_, "/no/such/model.mrm", "missing", {.emulate = false});
-  EXPECT_EQ(m.process().wait(), 2);
-  EXPECT_NE(m.process().output().find("/no/such/model.mrm: No such file or directory"),
-            std::string::npos)
-      << m.process().output();
-  EXPECT_TRUE(m.leftInSharedMemory().empty());
-}
-
-TEST_F(BadInput, AModelThatIsNone) {
+TEST_F(BadInput, AModelThatIsNoneIsSaidAndShownOnceItIsThere) {
   writeText(dir_ / "model.mrm", std::string(500, 'x'));
   Merlind m(dir_, dir_ / "model.mrm", "none", {.emulate = false});
-  EXPECT_EQ(m.process().wait(), 2);
+  ASSERT_TRUE(m.process().saysEventually("ready")) << m.process().output();
   EXPECT_NE(m.process().output().find("is not an .mrm file (make one with: merlin mesh reduce"),
             std::string::npos)
       << m.process().output();
-  EXPECT_TRUE(m.leftInSharedMemory().empty());
+  const auto status = [&] {
+    return nlohmann::json::parse(
+        run({kMerlin, "status", "--json", "--instance", m.instance()}).output, nullptr, false);
+  };
+  EXPECT_TRUE(status().contains("missing_contents")) << status();
+  std::filesystem::rename(makeModel(dir_, 5), dir_ / "model.mrm");
+  EXPECT_TRUE(m.process().saysEventually("model.mrm can be read now")) << m.process().output();
+  EXPECT_TRUE(eventually([&] { return !status().contains("missing_contents"); })) << status();
 }
 
 TEST_F(BadInput, ATruncatedScan) {

@@ -53,6 +53,16 @@ class CheckConfig : public testing::Test {
     EXPECT_EQ(findings, findingsOf(started.output, config));
   }
 
+  void expectAdjusted(const json& patch, const std::string& pointer, const std::string& what) {
+    SCOPED_TRACE(patch.dump());
+    const std::string config = file(patch);
+    const Outcome checked = run({kMerlind, "--check-config", config});
+    EXPECT_EQ(checked.status, 1) << checked.output;
+    const std::string findings = findingsOf(checked.output, config);
+    EXPECT_NE(findings.find(": " + pointer + " "), std::string::npos) << checked.output;
+    EXPECT_NE(findings.find(what), std::string::npos) << checked.output;
+  }
+
   TempDir dir_;
   std::string model_ = makeModel(dir_, 2);
 };
@@ -100,23 +110,34 @@ TEST_F(CheckConfig, SaysThatAnAlarmsProgramCannotBeExecuted) {
   EXPECT_EQ(checked.output.find("/alarms/3"), std::string::npos) << checked.output;
 }
 
-TEST_F(CheckConfig, RefusesModelsThatCannotBeRead) {
+TEST_F(CheckConfig, ModelsThatCannotBeReadAreLeftOut) {
   const auto model = [](const std::string& path) { return json{{"wall", {{"model", path}}}}; };
   expectRefused(model(""), "/wall/model", "names no .mrm file");
-  expectRefused(model("none.mrm"), "/wall/model", "none.mrm: No such file");
-  expectRefused(model("."), "/wall/model", "is not a regular file");
+  const std::string none = "; the wall is shown without any content until one can be read";
+  expectAdjusted(model("none.mrm"), "/wall/model", "none.mrm: No such file or directory" + none);
+  expectAdjusted(model("."), "/wall/model", "is not a regular file" + none);
   ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
   // Must not block on opening the pipe.
-  expectRefused(model("pipe"), "/wall/model", "is not a regular file");
+  expectAdjusted(model("pipe"), "/wall/model", "is not a regular file" + none);
   const json damaged = json::array({{{"model", "c.json"}}});
-  expectRefused({{"wall", {{"model", ""}, {"contents", damaged}}}}, "/wall/contents/0/model",
-                "c.json: is ");
+  expectAdjusted({{"wall", {{"model", ""}, {"contents", damaged}}}}, "/wall/contents/0/model",
+                 "c.json: is ");
   const Outcome beside =
       run({kMerlind, "--check-config", file({{"wall", {{"contents", damaged}}}})});
   EXPECT_EQ(beside.status, 1) << "beside a model that can be read; " << beside.output;
   EXPECT_NE(beside.output.find("the wall is shown without it until it can be read"),
             std::string::npos)
       << beside.output;
+}
+
+TEST_F(CheckConfig, AStateFileThatCannotBeWrittenKeepsNoWallDark) {
+  const std::string kept = "; what people change is not kept until it can be written";
+  std::filesystem::create_directory(dir_ / "folder");
+  expectAdjusted({{"state_file", "folder"}}, "/state_file", kept);
+  ASSERT_EQ(::mkfifo((dir_ / "fifo").c_str(), 0600), 0);
+  expectAdjusted({{"state_file", "fifo"}}, "/state_file", kept);
+  writeText(dir_ / "plain", "");
+  expectAdjusted({{"state_file", "plain/state.json"}}, "/state_file", kept);
 }
 
 TEST_F(CheckConfig, RefusesFilesThatCannotBeWritten) {

@@ -196,6 +196,8 @@ Result<Json> askStatus(const DaemonAddress& daemon) {
   if (!roles) return roles.error();
   Json both = Json::object();
   for (const FoundRole& role : *roles) {
+    const auto allowed = checkMayAsk(role.endpoints.command);
+    if (!allowed) return allowed.error();
     const auto answer = status::ask(role.commands(), "status", kPatience);
     if (!answer) return answer.error();
     mergeStatus(both, *answer);
