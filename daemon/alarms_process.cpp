@@ -132,6 +132,8 @@ class Alarm {
     if (program_) {
       const auto ended = program_->ended(now);
       if (!ended) return;
+      for (const std::string& line : program_->written())
+        logInfo("the alarm {} wrote: {}", settings_.run.front(), line);
       if (!ended->empty()) logWarning("the alarm {} {}", settings_.run.front(), *ended);
       program_.reset();
     }

@@ -1,8 +1,11 @@
 #include "daemon/alarms/child_program.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -12,6 +15,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "daemon/base/printable_text.h"
 
 namespace merlin::alarms {
 namespace {
@@ -27,8 +32,21 @@ Result<UniqueFd> fileOf(const std::string& text) {
   return Error{Errc::kIo, fmt::format("the event's file: {}", std::strerror(errno))};
 }
 
-// In the child, which may only call what signal handlers may: our signals are not its.
-[[noreturn]] void become(const std::vector<char*>& arguments, int input, pid_t parent) {
+struct Pipe {
+  UniqueFd from, to;
+};
+
+Result<Pipe> makePipe() {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
+  return Pipe{UniqueFd(ends[0]), UniqueFd(ends[1])};
+}
+
+// In the child, which may only call what signal handlers may: our signals are not its. `failure`:
+// where the errno of execve() goes; closed by it otherwise.
+[[noreturn]] void become(const std::vector<char*>& arguments, int input, int output, int failure,
+                         pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
@@ -37,8 +55,27 @@ Result<UniqueFd> fileOf(const std::string& text) {
   for (int s = 1; s < NSIG; ++s) ::signal(s, SIG_DFL);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::dup2(input, STDIN_FILENO);
+  ::dup2(output, STDOUT_FILENO);
+  ::dup2(output, STDERR_FILENO);
   ::execv(arguments[0], arguments.data());
+  const int why = errno;
+  (void)!::write(failure, &why, sizeof why);
   ::_exit(127);
+}
+
+// Waits until the child has become the program, or has said why it cannot: then its errno, else 0.
+int failureOf(const UniqueFd& end) {
+  int why = 0;
+  ssize_t got = 0;
+  do got = ::read(end.get(), &why, sizeof why);
+  while (got < 0 && errno == EINTR);
+  return got == static_cast<ssize_t>(sizeof why) ? why : 0;
+}
+
+const char* reasonOf(int failure) {
+  if (failure == ENOEXEC) return "it is no program; a script begins with a line such as #!/bin/sh";
+  if (failure == ENOENT) return "the interpreter that its first line names is not there";
+  return std::strerror(failure);
 }
 
 }  // namespace
@@ -62,21 +99,33 @@ Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
   std::vector<char*> arguments;
   for (const std::string& a : run) arguments.push_back(const_cast<char*>(a.c_str()));
   arguments.push_back(nullptr);
+  auto failures = makePipe(), output = makePipe();
+  if (!failures) return failures.error();
+  if (!output) return output.error();
+  ::fcntl(output->from.get(), F_SETFL, O_NONBLOCK);
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
-  if (pid == 0) become(arguments, file->get(), parent);
+  if (pid == 0) become(arguments, file->get(), output->to.get(), failures->to.get(), parent);
   if (pid < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
   ::setpgid(pid, pid);  // here too: whoever comes first
-  return ChildProgram(pid, deadline);
+  failures->to.reset();
+  if (const int failure = failureOf(failures->from); failure != 0) {
+    ::waitpid(pid, nullptr, 0);
+    return Error{Errc::kNotFound,
+                 fmt::format("{}: cannot be executed: {}", run.front(), reasonOf(failure))};
+  }
+  return ChildProgram(pid, std::move(output->from), deadline);
 }
 
-ChildProgram::ChildProgram(ChildProgram&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), deadline_(other.deadline_), too_long_(other.too_long_) {}
+ChildProgram::ChildProgram(ChildProgram&& other) noexcept { *this = std::move(other); }
 
 ChildProgram& ChildProgram::operator=(ChildProgram&& other) noexcept {
   std::swap(pid_, other.pid_);
+  std::swap(output_, other.output_);
   std::swap(deadline_, other.deadline_);
   std::swap(too_long_, other.too_long_);
+  std::swap(kept_, other.kept_);
+  std::swap(left_out_, other.left_out_);
   return *this;
 }
 
@@ -88,8 +137,34 @@ ChildProgram::~ChildProgram() {
 
 void ChildProgram::kill() noexcept { ::kill(-pid_, SIGKILL); }
 
+// Whoever writes without end is kept waiting by the pipe, not by us.
+void ChildProgram::readOutput() {
+  constexpr int kMostReads = 16;
+  std::array<char, 65536> bytes;  // NOLINT: filled by read
+  for (int i = 0; i < kMostReads; ++i) {
+    const ssize_t got = ::read(output_.get(), bytes.data(), bytes.size());
+    if (got <= 0) return;
+    const auto count = static_cast<std::size_t>(got);
+    const std::size_t keep = std::min(count, kMostKept - kept_.size());
+    kept_.append(bytes.data(), keep);
+    left_out_ += count - keep;
+  }
+}
+
+std::vector<std::string> ChildProgram::written() const {
+  std::vector<std::string> lines;
+  for (std::string_view rest = wholeCharacters(kept_); !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    if (end > 0) lines.push_back(oneLine(rest.substr(0, end)));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  if (left_out_ > 0) lines.push_back(fmt::format("... and {} bytes more, left out", left_out_));
+  return lines;
+}
+
 std::optional<std::string> ChildProgram::ended(Timestamp now) {
   if (pid_ < 0) return std::nullopt;
+  readOutput();
   if (now >= deadline_ && !too_long_) {
     too_long_ = true;
     kill();
@@ -98,6 +173,7 @@ std::optional<std::string> ChildProgram::ended(Timestamp now) {
   if (::waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
   kill();  // what it left behind
   pid_ = -1;
+  readOutput();
   if (too_long_) return "took longer than its time limit, and was ended";
   if (WIFSIGNALED(status)) return fmt::format("was ended by signal {}", WTERMSIG(status));
   if (WEXITSTATUS(status) != 0) return fmt::format("ended with status {}", WEXITSTATUS(status));

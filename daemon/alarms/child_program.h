@@ -1,8 +1,10 @@
 // ChildProgram: a program that gets a text as its input and has a limited time.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
@@ -17,12 +19,14 @@ namespace merlin::alarms {
 // kNotFound (there is no such file, it is none, or may not be executed).
 Result<Ok> checkProgram(const std::string& path);
 
-// Thread-bound. Never waits, except for the destructor, which ends the program.
+// Thread-bound. Waits in start(), until the program is loaded, and in the destructor, which ends
+// it.
 class ChildProgram {
  public:
   // Starts the program `run[0]` with the arguments behind it, in a process group of its own, with
-  // `input` as its standard input; its output goes where ours goes. Errors: kNotFound (there is no
-  // such program, or it cannot be executed), kIo. The process may have several threads.
+  // `input` as its standard input. Errors: kNotFound (there is no
+  // such program, or it cannot be executed, which a script without an interpreter tells), kIo. The
+  // process may have several threads.
   static Result<ChildProgram> start(const std::vector<std::string>& run, const std::string& input,
                                     Timestamp deadline);
   ChildProgram(ChildProgram&& other) noexcept;
@@ -35,13 +39,23 @@ class ChildProgram {
   // 0. Ends it and all that it started once the deadline has passed.
   std::optional<std::string> ended(Timestamp now);
 
+  // What it wrote so far, to standard output or error: the lines of the first kMostKept bytes, each
+  // safe to print; then, if there was more, how many bytes were left out.
+  std::vector<std::string> written() const;
+  static constexpr std::size_t kMostKept = 2048;
+
  private:
-  ChildProgram(pid_t pid, Timestamp deadline) : pid_(pid), deadline_(deadline) {}
+  ChildProgram(pid_t pid, UniqueFd output, Timestamp deadline)
+      : pid_(pid), output_(std::move(output)), deadline_(deadline) {}
   void kill() noexcept;
+  void readOutput();
 
   pid_t pid_ = -1;  // -1: it has ended
+  UniqueFd output_;
   Timestamp deadline_{};
   bool too_long_ = false;
+  std::string kept_;          // of its output
+  std::size_t left_out_ = 0;  // bytes of it
 };
 
 }  // namespace merlin::alarms

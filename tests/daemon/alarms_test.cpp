@@ -2,6 +2,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "daemon/alarms/alarm_queue.h"
@@ -190,6 +191,35 @@ TEST(ChildProgram, SaysHowItFailed) {
   const auto missing = ChildProgram::start({"/no/such/program"}, "", inAnHour());
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, Errc::kNotFound);
+}
+
+TEST(ChildProgram, OfWhatItWritesTheBeginningIsKept) {
+  auto little = ChildProgram::start({"/bin/sh", "-c", "echo one; printf 't\\033wo\\n\\nthree' >&2"},
+                                    "", inAnHour());
+  ASSERT_TRUE(little);
+  EXPECT_EQ(outcome(*little), "");
+  EXPECT_EQ(little->written(), (std::vector<std::string>{"one", "t\\x1bwo", "three"}));
+  auto much = ChildProgram::start({"/bin/sh", "-c", "yes | head -c 3000000"}, "", inAnHour());
+  ASSERT_TRUE(much);
+  EXPECT_EQ(outcome(*much), "");
+  const std::vector<std::string> lines = much->written();
+  EXPECT_EQ(lines.size(), ChildProgram::kMostKept / 2 + 1);
+  EXPECT_EQ(lines.back(), "... and 2997952 bytes more, left out");
+}
+
+TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
+  const TempDir dir;
+  const auto whatOf = [&](const std::string& text) {
+    test::writeText(dir / "script", text);
+    EXPECT_EQ(::chmod((dir / "script").c_str(), 0755), 0);
+    const auto started = ChildProgram::start({dir / "script"}, "", inAnHour());
+    return started ? std::string("started") : started.error().what;
+  };
+  const std::string begin = (dir / "script") + ": cannot be executed: ";
+  EXPECT_EQ(whatOf("echo\n"),
+            begin + "it is no program; a script begins with a line such as #!/bin/sh");
+  EXPECT_EQ(whatOf("#!/no/such/sh\n"),
+            begin + "the interpreter that its first line names is not there");
 }
 
 TEST(ChildProgram, IsEndedWithAllThatItStartedWhenItsTimeIsOver) {
