@@ -165,18 +165,18 @@ Result<std::string> instanceOf(std::uint32_t pid) {
                fmt::format("process {} is not a merlind that reads devices or draws a wall", pid)};
 }
 
+Result<Ok> checkMayAsk(std::string_view endpoint) {
+  if (!endpoint.starts_with(kIpc)) return Ok{};
+  return checkAllowed(std::string(endpoint.substr(kIpc.size())));
+}
+
 Result<std::string> askRole(const std::string& instance, const std::string& role,
                             const RoleRequest& request) {
   const auto roles = findRoles(instance);
   if (!roles) return roles.error();
   for (const FoundRole& found : *roles) {
     if (found.role != role) continue;
-    // ZeroMQ would try again until the patience is over.
-    const std::string_view endpoint = found.endpoints.command;
-    if (endpoint.starts_with(kIpc)) {
-      const auto allowed = checkAllowed(std::string(endpoint.substr(kIpc.size())));
-      if (!allowed) return allowed.error();
-    }
+    if (const auto allowed = checkMayAsk(found.endpoints.command); !allowed) return allowed.error();
     return status::ask(found.endpoints.command, request.command, request.patience,
                        request.argument);
   }

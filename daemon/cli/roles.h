@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/base/clock.h"
@@ -69,6 +70,10 @@ struct RoleRequest {
   std::string command, argument = {};
   Duration patience = std::chrono::seconds(5);  // maximum time to wait for the answer
 };
+
+// Whether this user may write to the socket of an endpoint: ZeroMQ would try again until the
+// patience is over. Of another machine's nothing is checked. Errors: those of checkAllowed().
+Result<Ok> checkMayAsk(std::string_view endpoint);
 
 // Sends a command to the role and returns the answer as JSON. Errors: those of findRoles(),
 // checkAllowed() and status::ask(); kIo if this daemon does not run the role.

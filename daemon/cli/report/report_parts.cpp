@@ -116,10 +116,23 @@ void collectVersions(const ReportSubject& subject, PartFolder& folder) {
   if (!packages) folder.lacks("packages.txt: " + packages.error().what);
 }
 
+// A role that crashed a moment ago does not answer; the other's part is kept.
 void collectStatus(const ReportSubject& subject, PartFolder& folder) {
-  const auto status = askStatus(subject.instance);
-  folder.put("status.json", status ? Result<std::string>(status->dump(2) + "\n")
-                                   : Result<std::string>(status.error()));
+  const auto roles = findRoles(subject.instance);
+  if (!roles) return folder.put("status.json", Result<std::string>(roles.error()));
+  nlohmann::ordered_json both = nlohmann::ordered_json::object();
+  std::string fault;
+  for (const FoundRole& role : *roles) {
+    const auto answer = askRole(subject.instance, role.role, {"status"});
+    if (answer)
+      mergeStatus(both, *answer);
+    else
+      fault = fmt::format("the role {}: {}", role.role, answer.error().what);
+  }
+  if (both.empty()) return folder.put("status.json", Result<std::string>(Error{Errc::kIo, fault}));
+  addLostRoles(subject.instance, both);
+  folder.put("status.json", Result<std::string>(both.dump(2) + "\n"));
+  if (!fault.empty()) folder.lacks("status.json: " + fault);
 }
 
 // Keeps what the program has said, also of a failure.

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "daemon/cli/roles.h"
 #include "daemon/cli/wall/status_text.h"
 
 namespace merlin::cli {
@@ -60,7 +61,8 @@ void StatusPoller::beginRound(Timestamp now) {
     role.fault.clear();
     role.asked_events = false;
     if (!role.sender->isReady()) continue;
-    const auto sent = role.sender->send(role.at, "status", "", now);
+    const auto allowed = checkMayAsk(endpoint);
+    const auto sent = allowed ? role.sender->send(role.at, "status", "", now) : allowed;
     if (!sent) role.fault = sent.error().what;
   }
 }

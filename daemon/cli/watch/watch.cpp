@@ -43,7 +43,11 @@ int watchLines(const WatchOptions& options) {
   const auto roles = findRoles(options.instance);
   if (!roles) return fail(roles.error());
   std::vector<std::string> endpoints;
-  for (const FoundRole& role : *roles) endpoints.push_back(role.endpoints.status);
+  for (const FoundRole& role : *roles) {
+    const auto allowed = checkMayAsk(role.endpoints.status);
+    if (!allowed) return fail(allowed.error());
+    endpoints.push_back(role.endpoints.status);
+  }
   const SystemClock clock;
   const Timestamp began = clock.now();
   nlohmann::ordered_json both = nlohmann::ordered_json::object();
