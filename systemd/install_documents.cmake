@@ -7,7 +7,8 @@ foreach(folder config daemon drivers nn render systemd)
 endforeach()
 file(GLOB found RELATIVE "${source}" "${source}/config/*.png" "${source}/config/*.json"
   "${source}/daemon/shm/read_merlin.*")
-list(APPEND files ${found} daemon/shm/layout.h daemon/status/read_status.py daemon/status/status.schema.json
+list(APPEND files ${found} daemon/base/field_table.h daemon/shm/channel.h daemon/shm/layout.h daemon/shm/seq_slot.h
+  drivers/port/samples.h daemon/status/read_status.py daemon/status/status.schema.json
   drivers/cyberglove/CALIBRATION-LICENSE.txt)
 foreach(path ${files})
   cmake_path(GET path PARENT_PATH folder)

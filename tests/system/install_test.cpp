@@ -187,6 +187,15 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
   EXPECT_EQ(readText(root_ + "/etc/merlin/merlin.json"), "{\"instance\": \"mine\"}");
 }
 
+// As its first lines say, with nothing but what is installed.
+TEST_F(Install, TheExampleInCppIsCompiledFromThePackage) {
+  ASSERT_EQ(install().status, 0);
+  const std::string documents = root_ + "/usr/share/doc/merlin";
+  const Outcome compiled = run({"g++", "-std=c++20", "-fsyntax-only", "-I" + documents,
+                                documents + "/daemon/shm/read_merlin.cpp"});
+  EXPECT_EQ(compiled.status, 0) << compiled.output;
+}
+
 // All texts that the first group of `pattern` matches.
 std::set<std::string> namedIn(const std::string& text, const char* pattern) {
   const std::regex named(pattern);
