@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,10 +16,23 @@ namespace {
 
 bool isLamp(std::string_view action) { return action.starts_with("lamp_"); }
 
+// What one of them does, the other one undoes.
+constexpr std::pair<std::string_view, std::string_view> kOpposites[] = {
+    {"next_content", "previous_content"}, {"projector_on", "projector_off"}, {"video_a", "video_b"},
+    {"align_left", "align_right"},        {"align_up", "align_down"},
+};
+
+bool areOpposites(std::string_view a, std::string_view b) {
+  return std::ranges::any_of(kOpposites, [&](const auto& pair) {
+    return pair == std::pair(a, b) || pair == std::pair(b, a);
+  });
+}
+
 // Whether no single moment may trigger both: a hand does one thing at a time, and the lamp has one
 // state.
 bool exclude(std::string_view a, std::string_view b) {
-  return a == b || (isHeldAction(a) && isHeldAction(b)) || (isLamp(a) && isLamp(b));
+  return a == b || (isHeldAction(a) && isHeldAction(b)) || (isLamp(a) && isLamp(b)) ||
+         areOpposites(a, b);
 }
 
 bool atLeave(const Binding& b) { return b.when == When::kLeave; }

@@ -27,6 +27,11 @@ TEST(BindingsConfig, BindingsThatConflictAreNamedBoth) {
   EXPECT_EQ(bindingsAre(fist + ",\n" + R"({"input": "posture.fist", "action": "fly"})"),
             "f.json:2: /bindings/1 conflicts with /bindings/0 (line 1): "
             "\"posture.fist\" would both grab and fly when held, which exclude each other\n");
+  EXPECT_EQ(
+      bindingsAre(R"({"input": "axis.x+", "action": "previous_content"},)"
+                  R"({"input": "ball.axis.x+", "action": "next_content"})"),
+      "f.json:1: /bindings/1 conflicts with /bindings/0 (line 1): \"ball.axis.x+\" would both "
+      "previous_content and next_content when entered, which exclude each other\n");
   const std::string fist_left =
       R"({"input": "posture.fist", "action": "reset_view", "on": "leave"})";
   EXPECT_EQ(bindingsAre(fist + "," + fist_left), "");
