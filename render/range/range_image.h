@@ -66,6 +66,7 @@ struct RangeImage {
 
   std::size_t pixels() const noexcept { return width * height; }
   bool join_ends = true;  // false: a full turn has a seam, as a texture needs it
+  std::string unit{};     // of the ranges, "m"; empty: not known
 
   // Whether the last column's neighbour is the first: a spinning scanner's full turn.
   bool wraps() const noexcept {

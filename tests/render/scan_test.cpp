@@ -66,6 +66,23 @@ Mesh wall() {
   return mesh;
 }
 
+// Before, ranges of a model without a unit came back as metres.
+TEST(ScanFile, KeepsTheUnitOfTheModelOrNone) {
+  const TempDir dir;
+  range::RangeImage image;
+  image.width = image.height = 2;
+  image.range = {1, 2, 3, 4};
+  image.geometry.horizontal_rad = image.geometry.vertical_rad = 0.1;
+  for (const bool metres : {true, false}) {
+    image.unit = metres ? "m" : "";
+    ASSERT_TRUE(range::writeRange(dir / "a.pgm", image).ok());
+    const auto read = range::readRange(dir / "a.pgm", {});
+    ASSERT_TRUE(read) << read.error().what;
+    EXPECT_EQ(read->in_metres, metres);
+    EXPECT_EQ(read->image.unit, image.unit);
+  }
+}
+
 TEST(Ray, FromInsideAClosedSurfaceMeetsItEvenAtItsCornersAndEdges) {
   const Mesh mesh = sphere(3);
   const compare::TriangleTree tree(mesh);

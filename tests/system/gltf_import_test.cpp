@@ -150,6 +150,8 @@ TEST_F(GltfImport, ASimulatedScannerTakesWhatAnImportReads) {
   const Outcome done = taken(dir_ / "a.gltf");
   ASSERT_EQ(done.status, 0) << done.output;
   EXPECT_NE(done.output.find("\"returns\":64"), std::string::npos) << done.output;
+  const Outcome info = run({kMerlin, "mesh", "info", scan, "--json"});
+  EXPECT_NE(info.output.find("\"unit\":\"m\""), std::string::npos) << info.output;
   const Outcome image = taken(scan);
   EXPECT_EQ(image.status, 2);
   EXPECT_NE(image.output.find("is an input"), std::string::npos) << image.output;

@@ -57,6 +57,7 @@ struct Model {
   // Of the file's coordinates, in which --camera and the written camera transform are.
   render::mesh::Origin origin{};
   std::string about;  // of a model (.mrm)
+  std::string unit;   // of the coordinates; empty: not known
 };
 
 // Reads whatever merlin mesh import makes a mesh of without any option.
@@ -79,7 +80,8 @@ Result<Model> readByContent(const MeshScan& options) {
   if (!model) return model.error();
   return Model{std::move(model->loaded.mesh),
                model->cloud ? model->cloud->origin : model->loaded.origin,
-               {}};
+               {},
+               kind->unit()};
 }
 
 // A model's coordinates stay its own, though an origin was taken from those of its file.
@@ -87,7 +89,8 @@ Result<Model> readModel(const MeshScan& options) {
   if (!options.model.ends_with(".mrm")) return readByContent(options);
   const auto model = render::lod::readMrm(options.model);
   if (!model) return model.error();
-  return Model{render::lod::extract(*model, 0), {}, model->arrays().about};
+  const std::string about = model->arrays().about;
+  return Model{render::lod::extract(*model, 0), {}, about, valueIn(about, "unit")};
 }
 
 // The scanner's pose relative to the origin.
@@ -183,6 +186,7 @@ Result<scan::Scan> scanModel(MeshScan& options) {
                   "all of its returns were lost (--drop-outs, "
                   "--max-incidence, --noise)"});
   addFacts(*model, scanned->image);
+  scanned->image.unit = model->unit;
   for (std::size_t k = 0; k < 3; ++k)
     scanned->image.geometry.T_world_scanner[4 * k + 3] += model->origin[k];
   return scanned;

@@ -93,6 +93,7 @@ std::string headerText(const RangeImage& image, const std::vector<FeatureFile>& 
   cards.add("NAXIS2", fmt::format("{}", image.height));
   cards.addText("ROWORDER", "TOP-DOWN");
   cards.addText("CREATOR", "MERLIN");
+  if (!image.unit.empty()) cards.addText("BUNIT", image.unit);
   addGeometry(cards, headerOf(image));
   for (std::size_t i = 0; i < features.size(); ++i)
     cards.addText(fmt::format("FEAT{}", i + 1), features[i].name + "=" + features[i].file);

@@ -133,6 +133,7 @@ ImageHeader headerOf(const RangeImage& image) {
     header.origin = g.origin;
     return header;
   }
+  header.unit = image.unit;
   header.angles_deg = {g.horizontal_rad / kDegree, g.vertical_rad / kDegree};
   header.beams = g.beams;
   if (g.T_world_scanner != kIdentity) header.camera = g.T_world_scanner;

@@ -150,6 +150,8 @@ bool writePgm(const RangeImage& image, int bits, const WriteBytes& write,
   const double largest = bits == 8 ? 255 : 65535;
   const Ends ends = endsOf(image.range);
   ImageHeader header = headerOf(image);
+  // Without a unit, ranges between a minimum and a maximum would be read as metres.
+  if (header.unit.empty() && image.geometry.scanner != Scanner::kElevation) header.unit = "unknown";
   // The nearest range is stored as 1, since 0 is no return.
   const double span = std::max(double{ends.high} - ends.low, 1e-6 * std::abs(ends.high) + 1e-30);
   const double step = span / (largest - 1);

@@ -140,6 +140,8 @@ std::string elevationOnly(const RangeOptions& options, Scanner scanner) {
 }
 
 bool isInMetres(const ImageHeader& header) {
+  if (!header.unit.empty() && !header.scale && header.scanner != Scanner::kElevation)
+    return header.unit == "m";
   return header.scale || (header.minimum && header.maximum) || header.unit == "m" ||
          header.scanner == Scanner::kElevation;
 }
@@ -163,6 +165,7 @@ Result<LoadedRange> loadStored(StoredImage stored, const RangeOptions& options) 
                              *stored.header.columns, stored.width)};
   setRanges(stored, image);
   loaded.in_metres = isInMetres(stored.header);
+  image.unit = loaded.in_metres ? "m" : "";
   image.planes = std::move(stored.planes);
   loaded.features = std::move(stored.header.features);
   loaded.notes = std::move(stored.notes);
