@@ -10,7 +10,6 @@ namespace merlin::render::image {
 namespace {
 
 constexpr std::size_t kMostLevels = 32;
-constexpr std::int64_t kMostCoarsest = 16;  // tiles of the coarsest level
 constexpr std::string_view kWayOut = "make a new one: merlin image import IN -o OUT.tif";
 
 constexpr std::uint64_t kJpeg = 7, kDeflate = 8, kOldDeflate = 32946;

@@ -22,6 +22,7 @@ namespace merlin::render::image {
 
 // Side of the tiles in which a pyramid is read, whatever the file's own tiles are [px].
 inline constexpr int kTileSide = 256;
+inline constexpr std::int64_t kMostCoarsest = 16;  // tiles of the coarsest level
 inline constexpr std::size_t kTileBytes = std::size_t{4} * kTileSide * kTileSide;
 
 // What `merlin image import --panorama` writes as the description of the file.

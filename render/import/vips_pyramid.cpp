@@ -169,6 +169,16 @@ void evaluated(VipsImage* /*image*/, VipsProgress* progress, void* data) {
               progress->npels);
 }
 
+// Levels are halved until a side is one pixel. Of a picture that is long and thin the coarsest
+// would still be too long for whoever reads it. 0: it is not too thin; else the pixels that its
+// shorter side needs.
+int neededSide(const ImportedPicture& size) {
+  const std::int64_t longest = std::max(size.width, size.height);
+  int needed = 1;
+  while (longest / needed > image::kMostCoarsest * image::kTileSide) needed *= 2;
+  return std::min(size.width, size.height) < needed ? needed : 0;
+}
+
 int save(VipsImage* image, const std::string& out, const PyramidOptions& options) {
   const bool lossy = options.quality > 0;
   return vips_tiffsave(
@@ -200,6 +210,13 @@ Result<ImportedPicture> importPicture(const std::string& in, const std::string& 
     reports.progress(done + (1 - done) * share, pixels);
   };
   const ImportedPicture size{vips_image_get_width(image.get()), vips_image_get_height(image.get())};
+  if (const int needed = neededSide(size); needed > 0)
+    return Error{
+        Errc::kUnsupported,
+        fmt::format("{}: {} x {} pixels are too thin for a pyramid, whose levels are halved "
+                    "until one fits a screen: the shorter side needs {} pixels; add a "
+                    "border, or cut the picture into shorter ones",
+                    in, size.width, size.height, needed)};
   if (!toSrgb(image) || !mark(image, options.panorama)) return broken(in);
   vips_image_set_progress(image.get(), TRUE);
   g_signal_connect(image.get(), "eval", G_CALLBACK(&evaluated),

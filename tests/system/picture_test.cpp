@@ -171,6 +171,20 @@ TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
   EXPECT_EQ(filesIn(dir.path()), 5U);
 }
 
+TEST(ImageImport, APictureThatIsTooThinForAPyramidIsRefusedBeforeTheWork) {
+  const TempDir dir;
+  writePpm(dir / "thin.ppm", 9000, 2, [](int x, int) { return plain(x % 256, 0, 0); });
+  const Outcome refused = import(dir / "thin.ppm", dir / "o.tif");
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("thin.ppm: 9000 x 2 pixels are too thin for a pyramid"),
+            std::string::npos)
+      << refused.output;
+  EXPECT_NE(refused.output.find("the shorter side needs 4 pixels"), std::string::npos);
+  writePpm(dir / "four.ppm", 9000, 4, [](int x, int) { return plain(x % 256, 0, 0); });
+  const Outcome made = import(dir / "four.ppm", dir / "o.tif");
+  EXPECT_EQ(made.status, 0) << made.output;
+}
+
 TEST(ImageImport, CtrlCLeavesNoHalfFile) {
   const TempDir dir;
   writePpm(dir / "in.ppm", 9000, 6000,
