@@ -157,7 +157,10 @@ std::int64_t facesIn(Indices corners, Per per) {
 Result<Ok> checkFaces(Indices corners, const Values& values, Indices indices) {
   const std::int64_t faces = facesIn(corners, values.per);
   if (indices.empty()) {
-    if (!values.as_coordinates || faces <= values.there) return Ok{};
+    if (!values.as_coordinates && faces > 0)  // Coin reads behind an empty array
+      return malformed(fmt::format("it has no {}, which its MaterialBinding needs for its {} faces",
+                                   values.indices, faces));
+    if (faces <= values.there) return Ok{};
     return malformed(
         fmt::format("it has {} faces, and there are {} {}", faces, values.there, values.what));
   }

@@ -252,6 +252,21 @@ TEST(ReadMesh, CoordinatesOfAMapKeepTheirDigitsByAnOrigin) {
       << floats->notes[0];
 }
 
+TEST(ReadMesh, AFeatureThatIsNoNumberBecomesZeroWithANote) {
+  const TempDir dir;
+  writeText(
+      dir / "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float quality\nelement face 1\n"
+      "property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+      "0 0 0 nan\n1 0 0 2\n0 1 0 inf\n3 0 1 2 6 0 0 1 0 0 1\n");
+  const auto loaded = mesh::readMesh(dir / "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.find("quality")->values, (Floats{0, 2, 0}));
+  ASSERT_EQ(loaded->notes.size(), 1U);
+  EXPECT_EQ(loaded->notes[0], "2 values of features were not numbers; 0 stands there");
+}
+
 // The note is about meshes that floats make visibly coarse, not about large coordinates.
 TEST(ReadMesh, FloatsAreSaidToBeCoarseWhereTheMeshIsSmallForItsDistance) {
   const TempDir dir;

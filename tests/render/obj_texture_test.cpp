@@ -92,6 +92,16 @@ TEST_F(TexturedObj, TakesColoursFromThePicture) {
       << "blue below on the left, white, red, green";
 }
 
+TEST_F(TexturedObj, KeepsItsOwnColoursBesideThePicture) {
+  writePngFile(dir_ / "four.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.mtl", "newmtl skin\nmap_Kd four.png\n");
+  const auto loaded = read(
+      "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n"
+      "vt 0.25 0.25\nvt 0.75 0.25\nvt 0.75 0.75\nusemtl skin\nf 1/1 2/2 3/3\n");
+  EXPECT_EQ(loaded.mesh.find("colour")->values, (Floats{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  EXPECT_FALSE(loaded.mesh.texture.empty());
+}
+
 // Two columns of squares; the seam runs from the middle of the lower border to the centre vertex,
 // where it ends.
 TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {

@@ -93,6 +93,34 @@ TEST_F(OpenMeshReader, PolygonsBecomeFansAndColoursFeatures) {
   EXPECT_NEAR(colour->values[9], 0.2, 1e-6);
 }
 
+TEST_F(OpenMeshReader, ColoursBehindTheVerticesOfAnOffFileAreTakenAlsoWithoutTheC) {
+  const auto coloured = read("a.off",
+                             "# of another program\nOFF\n3 1 0\n0 0 0 255 0 0 255\n"
+                             "1 0 0 0 255 0 255\n0 1 0 0 0 51 255\n3 0 1 2\n");
+  ASSERT_TRUE(coloured) << coloured.error().what;
+  ASSERT_TRUE(coloured->mesh.find("colour"));
+  EXPECT_EQ(coloured->mesh.find("colour")->values,
+            (std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 51.0F / 255}));
+  EXPECT_TRUE(coloured->notes.empty());
+  for (const char* last : {"0 1 0 0 0 -1", "0 1 0", "0 1 0 0 0"}) {
+    const auto others = read("a.off", std::string("OFF\n3 1 0\n0 0 0 1 0 0\n1 0 0 0 1 0\n") + last +
+                                          "\n3 0 1 2 0 0 255\n");
+    ASSERT_TRUE(others) << others.error().what;
+    EXPECT_EQ(others->mesh.find("colour")->values, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}))
+        << "the face's";
+    EXPECT_EQ(others->notes,
+              std::vector<std::string>{"left out: what follows the coordinates of the vertices"});
+  }
+}
+
+TEST_F(OpenMeshReader, AFileIsKnownBehindCommentsAndWithContinuedLines) {
+  test::writeText(dir_ / "a.ply",
+                  "# of another program\n\nOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_TRUE(mesh::isMeshFile(dir_ / "a.ply"));
+  test::writeText(dir_ / "b.ply", "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\r\n3\n");
+  EXPECT_TRUE(mesh::isMeshFile(dir_ / "b.ply")) << "an OBJ file with a line in two parts";
+}
+
 TEST_F(OpenMeshReader, AFaceThatIsNotConvexIsCutWithinItself) {
   const auto arrow = read("arrow.off", "OFF\n4 1 4\n0 0 0\n2 2 0\n0 1 0\n-2 2 0\n4 1 2 3 0\n");
   ASSERT_TRUE(arrow) << arrow.error().what;

@@ -171,6 +171,12 @@ TEST_F(CoinImport, AColourThatIsNotThereIsRefused) {
       inventor(two + "MaterialBinding { value PER_FACE_INDEXED } IndexedTriangleStripSet { "
                      "coordIndex [ 0, 1, 2, 3, -1 ] materialIndex [ 0 ] }"),
       "IndexedTriangleStripSet: its materialIndex has 1 entries, and it has 2 faces");
+  for (const char* binding : {"PER_FACE_INDEXED", "PER_PART_INDEXED"})
+    expectRefused(inventor(two + fmt::format("MaterialBinding {{ value {} }} IndexedFaceSet {{ "
+                                             "coordIndex [ 0, 1, 2, -1, 0, 2, 3, -1 ] }}",
+                                             binding)),
+                  "IndexedFaceSet: it has no materialIndex, which its MaterialBinding needs for "
+                  "its 2 faces");
 }
 
 // As Coin draws them; what lies in memory behind the last would be another colour at each run.

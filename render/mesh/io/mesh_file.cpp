@@ -152,6 +152,20 @@ class WrittenFiles {
 
 }  // namespace
 
+void replaceNonNumbers(LoadedMesh& loaded) {
+  std::size_t replaced = 0;
+  for (Feature& f : loaded.mesh.features) {
+    for (float& value : f.values) {
+      if (std::isfinite(value)) continue;
+      value = 0;
+      ++replaced;
+    }
+  }
+  if (replaced > 0)
+    loaded.notes.push_back(
+        fmt::format("{} values of features were not numbers; 0 stands there", replaced));
+}
+
 bool isUsual(const Feature& f) {
   return (f.name == "normal" && f.dimension == 3) || (f.name == "colour" && f.dimension == 3) ||
          (f.name == "texcoord" && f.dimension == 2);
@@ -205,6 +219,7 @@ Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path)
   auto loaded = reader.read(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
   *file = MappedFile();  // unmap it: it is as large as the mesh
+  replaceNonNumbers(*loaded);
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   if (!loaded->facet_colours.empty()) {
     colourByFacets(std::exchange(loaded->facet_colours, {}), loaded->mesh);

@@ -2,9 +2,9 @@
 //
 //   read     .ply   ASCII and binary, both byte orders; every scalar vertex property becomes a
 //                   feature; the texture image that a comment "TextureFile" names
-//            .obj   colours; texture coordinates, and vertex colours from the texture images (PNG,
-//                   JPEG) of its materials
-//            .off   ASCII only: normals, colours, texture coordinates
+//            .obj   colours; texture coordinates; where vertices have no colours, those of the texture
+//                   images (PNG, JPEG) of its materials
+//            .off   ASCII only: normals, colours of vertices or faces, texture coordinates
 //            .om, .stl   through OpenMesh: normals, colours, texture coordinates; faces that
 //                   OpenMesh's half-edge meshes cannot hold (non-manifold edges) are kept
 //   written  .ply   binary little-endian, every feature: normal as nx ny nz, colour as red green

@@ -31,6 +31,10 @@ struct MeshReader {
 
 extern const MeshReader kPlyReader, kObjReader, kOffReader, kOmReader, kStlReader;
 
+// Features' values that are no numbers become 0, which a note counts, as in a cloud of points.
+// Done by readMeshAs(), and before by a reader that needs a valid mesh.
+void replaceNonNumbers(LoadedMesh& loaded);
+
 // As readMesh(), but with `reader`, whatever the file's ending.
 Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path);
 

@@ -101,11 +101,12 @@ bool isObj(std::string_view content) {
   constexpr std::size_t kLooked = std::size_t{1} << 16;
   const bool all = content.size() <= kLooked;
   content = content.substr(0, kLooked);
-  bool vertex = false;
+  bool vertex = false, continued = false;
   while (!content.empty() && (all || content.find('\n') != std::string_view::npos)) {
     std::string_view line = takeUncommented(content);
+    const bool goes_on = std::exchange(continued, trimmed(line).ends_with('\\'));
     const std::string_view word = takeWord(line);
-    if (!canBeObjLine(word)) return false;
+    if (!goes_on && !canBeObjLine(word)) return false;
     vertex = vertex || word == "v";
   }
   return vertex;

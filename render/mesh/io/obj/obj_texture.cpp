@@ -111,14 +111,14 @@ class Dresser {
   }
 
   std::array<float, 3> colourOf(const Wedge& w) const {
+    if (own_) {  // they stay beside the texture, as those of a PLY file do
+      const float* c = &own_->values[3 * std::size_t{w.vertex}];
+      return {c[0], c[1], c[2]};
+    }
     const ObjMaterial& material = materials_[w.material];
     const auto [u, v] = texcoordOf(w);
     if (material.picture && w.texcoord != kNoTexcoord && std::isfinite(u) && std::isfinite(v))
       return material.picture->at(u, v, material.wrap(), material.wrap());
-    if (own_) {
-      const float* c = &own_->values[3 * std::size_t{w.vertex}];
-      return {c[0], c[1], c[2]};
-    }
     return material.diffuse.value_or(std::array<float, 3>{1, 1, 1});
   }
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -57,6 +59,7 @@ class OffFile {
     if (vertices_ > bytes_ || faces_ > bytes_)
       return malformed(line_, fmt::format("declares {} vertices and {} faces in a file of {} bytes",
                                           vertices_, faces_, bytes_));
+    guessColours();
     return Ok{};
   }
 
@@ -73,6 +76,8 @@ class OffFile {
 
   LoadedMesh take() {
     LoadedMesh loaded;
+    if (wrong_guess_)
+      loaded.notes.push_back("left out: what follows the coordinates of the vertices");
     makeFractions(colour_.values);
     for (Feature* f : {&normal_, &colour_, &texcoord_}) {
       if (!f->values.empty()) mesh_.features.push_back(std::move(*f));
@@ -91,6 +96,29 @@ class OffFile {
   }
 
  private:
+  // Many programs write colours of vertices without the C. They are taken for colours until a
+  // vertex lacks them or has a negative one.
+  void guessColours() {
+    if (form_.colour || form_.texcoord || vertices_ == 0) return;
+    const auto here = std::pair(rest_, line_);
+    std::string_view ahead = nextLine();
+    std::tie(rest_, line_) = here;
+    std::size_t words = 0;
+    while (!takeWord(ahead).empty()) ++words;
+    const std::size_t known = form_.normal ? 6 : 3;
+    guessed_ = form_.colour = words == known + 3 || words == known + 4;
+  }
+
+  bool takeGuess(std::string_view& line) {
+    if (takeColour(line) &&
+        std::all_of(colour_.values.end() - 3, colour_.values.end(), [](float c) { return c >= 0; }))
+      return true;
+    guessed_ = form_.colour = false;
+    wrong_guess_ = true;
+    colour_.values.clear();
+    return true;
+  }
+
   // The next line that is neither blank nor a comment; empty at the end of the file.
   std::string_view nextLine() {
     while (!rest_.empty()) {
@@ -139,7 +167,7 @@ class OffFile {
     if (line.empty())
       return malformed(line_, fmt::format("the file ends after {} of {} vertices", i, vertices_));
     const bool whole = takePosition(line) && (!form_.normal || take(line, 3, normal_.values)) &&
-                       (!form_.colour || takeColour(line)) &&
+                       (!form_.colour || (guessed_ ? takeGuess(line) : takeColour(line))) &&
                        (!form_.texcoord || take(line, 2, texcoord_.values));
     if (!whole)
       return malformed(line_, fmt::format("vertex {}: a number is missing or malformed", i));
@@ -189,8 +217,9 @@ class OffFile {
   Form form_;
   std::size_t vertices_ = 0, faces_ = 0;
   bool has_alpha_ = false;
-  std::size_t unread_colours_ = 0;    // of faces
-  std::vector<float> facet_colours_;  // up to the last face that has one
+  bool guessed_ = false, wrong_guess_ = false;  // that the vertices have colours, without the C
+  std::size_t unread_colours_ = 0;              // of faces
+  std::vector<float> facet_colours_;            // up to the last face that has one
   Mesh mesh_;
   Fans fans_;
   Origin origin_{};  // of the positions
@@ -210,12 +239,15 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
   return MeshFileSize{file.size()};
 }
 
+// Comments may come before the first word.
 bool isOff(std::string_view content) {
-  const std::string_view line = content.substr(0, std::min<std::size_t>(content.find('\n'), 64));
-  const std::size_t from = line.find_first_not_of(" \t");
-  if (from == std::string_view::npos) return false;
-  const std::string_view word = line.substr(from, line.find_first_of(" \t\r", from) - from);
-  return formOf(word).has_value();
+  constexpr std::size_t kLooked = 4096;
+  content = content.substr(0, kLooked);
+  while (!content.empty()) {
+    std::string_view line = trimmed(takeUncommented(content));
+    if (!line.empty()) return formOf(takeWord(line)).has_value();
+  }
+  return false;
 }
 
 }  // namespace

@@ -309,10 +309,11 @@ class Reader {
   FaceProperty useOf(const Property& p) const {
     if (isCorners(p)) return FaceProperty::kCorners;
     const PropertyMapping* const known = p.list ? nullptr : mappingOf(p.name);
-    if (known && std::string_view(known->feature) == "colour" && !textures_)
+    const bool pictures = textures_ && !textures_->pictures.empty();
+    if (known && std::string_view(known->feature) == "colour" && !pictures)
       return FaceProperty::kColour;
     if (textures_ && p.list && p.name == "texcoord") return FaceProperty::kTexcoord;
-    if (textures_ && !p.list && p.name == "texnumber") return FaceProperty::kTexnumber;
+    if (pictures && !p.list && p.name == "texnumber") return FaceProperty::kTexnumber;
     return FaceProperty::kNone;
   }
 
@@ -503,7 +504,6 @@ Result<LoadedMesh> parse(std::string_view bytes, FaceTextures* textures) {
   auto header = parseHeader(bytes);
   if (!header) return header.error();
   if (textures) textures->pictures = header->pictures;
-  if (header->pictures.empty()) textures = nullptr;
   return Reader(bytes, std::move(*header), textures).read();
 }
 

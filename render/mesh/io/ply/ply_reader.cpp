@@ -73,8 +73,15 @@ void setCoordinates(std::vector<std::array<float, 2>> corners, Mesh& mesh) {
 Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   ply::FaceTextures faces;
   auto loaded = ply::parse(content, &faces);
-  if (!loaded || faces.pictures.empty()) return loaded;
+  if (!loaded) return loaded;
+  replaceNonNumbers(*loaded);
   Mesh& mesh = loaded->mesh;
+  if (faces.pictures.empty()) {  // a picture may be given beside the file
+    if (faces.corners.empty()) return loaded;
+    if (const auto valid = validate(mesh); !valid) return valid.error();
+    setCoordinates(faces.corners, mesh);
+    return loaded;
+  }
   if (faces.corners.empty() && !findOf(mesh, "texcoord", 2)) return loaded;
   if (faces.numbers.empty() && faces.pictures.size() > 1) {
     loaded->notes.push_back(
