@@ -2,8 +2,8 @@
 //
 //   read     .ply   ASCII and binary, both byte orders; every scalar vertex property becomes a
 //                   feature; the texture image that a comment "TextureFile" names
-//            .obj   colours; texture coordinates; where vertices have no colours, those of the texture
-//                   images (PNG, JPEG) of its materials
+//            .obj   colours of the vertices, or where they have none, those of the texture images
+//                   (PNG, JPEG) of its materials; texture coordinates
 //            .off   ASCII only: normals, colours of vertices or faces, texture coordinates
 //            .om, .stl   through OpenMesh: normals, colours, texture coordinates; faces that
 //                   OpenMesh's half-edge meshes cannot hold (non-manifold edges) are kept
