@@ -1,6 +1,7 @@
 #include "daemon/wall/wall_role.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -237,9 +238,13 @@ void WallRole::tellIfEmpty(Timestamp now) {
   if (std::exchange(told_empty_, is_empty) && !is_empty) (void)notice_.show("off");
   const auto shown = segment_->interaction.read();
   if (!is_empty || (shown && shown->content >= firstNumber() + entries_.size())) return;
+  // A tile has room for about fifty letters: the folder is left out.
+  const std::string& path = entries_.front().path;
+  std::string_view reason = faults.front();
+  if (reason.starts_with(path + ": ")) reason.remove_prefix(path.size() + 2);
   const std::string why =
-      fmt::format("{} cannot be shown; it is shown as soon as it can be read: {}",
-                  oneLine(entries_.front().path), oneLine(faults.front()));
+      fmt::format("{}: {}; shown once it can be read",
+                  oneLine(std::filesystem::path(path).filename().string()), oneLine(reason));
   (void)notice_.stand(
       std::string(wholeCharacters(std::string_view(why).substr(0, Notice::kMostBytes))), now);
 }

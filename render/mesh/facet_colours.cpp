@@ -17,8 +17,8 @@ namespace {
 struct Corner {
   std::uint32_t vertex;
   std::array<std::uint32_t, 3> colour;
-  std::uint32_t corner;  // index into the triangles
-  auto operator<=>(const Corner&) const = default;
+  std::uint32_t corner;                             // index into the triangles
+  auto operator<=>(const Corner&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14
 };
 
 std::vector<Corner> sortedCorners(std::span<const float> colours, const Mesh& mesh) {

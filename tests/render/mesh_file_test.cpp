@@ -154,6 +154,22 @@ TEST(ReadMesh, ColoursOfFacesBecomeThoseOfTheirCorners) {
                                       "colours)"}));
 }
 
+// A picture may be given on the command line (mesh import --texture).
+TEST(ReadMesh, TextureCoordinatesOfFacesNeedNoPictureInTheFile) {
+  const TempDir dir;
+  writeText(dir / "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            "property list uchar float texcoord\nend_header\n"
+            "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 0.5 0 0 0.25\n");
+  const auto loaded = mesh::readMesh(dir / "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->notes.size(), 0u);
+  const mesh::Feature* const texcoord = loaded->mesh.find("texcoord");
+  ASSERT_TRUE(texcoord);
+  EXPECT_EQ(texcoord->values, (std::vector<float>{0, 0, 0.5F, 0, 0, 0.25F}));
+}
+
 TEST(WriteMesh, IsDoneWholeOrNotAtAll) {
   const TempDir dir;
   const auto refused = mesh::writeMesh(dir / "none/a.ply", test::cube());

@@ -78,7 +78,7 @@ TEST_F(Bench, WallWithoutMerlindOrModelOrConfigurationHasNoFigures) {
   expectNoFigures({wall, "--bin", "/nonexistent", "--config", kDemo}, "wall",
                   {"/nonexistent/merlind", "no such program"});
   expectNoFigures({wall, "--bin", kBin, "--config", demoOn(dir_ / "none.mrm")}, "wall",
-                  {"merlind --role all", "it ended before it was ready", "none.mrm"});
+                  {"merlind --role all", "it shows none of its contents", "none.mrm"});
   expectNoFigures({wall, "--bin", kBin, "--config", "/nonexistent.json"}, "wall",
                   {"/nonexistent.json is not there"});
 }

@@ -56,6 +56,7 @@ std::shared_ptr<const Picture> noPicture() {
   TilePixels black(image::kTileBytes);
   for (std::size_t i = 3; i < black.size(); i += 4) black[i] = 255;
   picture->coarsest.push_back(std::move(black));
+  picture->is_nothing = true;
   return picture;
 }
 

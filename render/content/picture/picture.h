@@ -23,6 +23,7 @@ struct Picture {
   std::shared_ptr<const image::PyramidFile> file;
   PictureKind kind = PictureKind::kPlane;
   std::vector<TilePixels> coarsest;  // the tiles of the coarsest level, row by row: 16 at most
+  bool is_nothing = false;           // nothing is drawn of it
 };
 
 // Opens a pyramid and decodes its coarsest level: a few milliseconds. Errors: those of
@@ -32,7 +33,7 @@ Result<std::shared_ptr<const Picture>> openPicture(const std::string& path, Show
 Result<std::shared_ptr<const Picture>> makePicture(std::shared_ptr<const image::PyramidFile> file,
                                                    ShowAs as);
 
-// A black picture of one pixel, for a wall that has nothing to show yet.
+// A picture of one pixel that is not drawn, for a wall that has nothing to show yet.
 std::shared_ptr<const Picture> noPicture();
 
 // Reads a tile for drawing as `kind`: beyond the right edge of a panorama its left edge goes on.

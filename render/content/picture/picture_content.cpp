@@ -190,6 +190,7 @@ void PictureContent::addPieces(std::span<const ContentView> views) {
     }
     list_.views[tile] = views[i];
     list_.pieces[tile].clear();
+    if (picture_->is_nothing) continue;
     for (const TilePlace& leaf : leaves_[i]) addPiece(leaf, list_.pieces[tile]);
     // By texture: see PictureRenderer.
     std::ranges::stable_sort(list_.pieces[tile], {},
