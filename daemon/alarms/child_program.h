@@ -24,9 +24,8 @@ Result<Ok> checkProgram(const std::string& path);
 class ChildProgram {
  public:
   // Starts the program `run[0]` with the arguments behind it, in a process group of its own, with
-  // `input` as its standard input. Errors: kNotFound (there is no
-  // such program, or it cannot be executed, which a script without an interpreter tells), kIo. The
-  // process may have several threads.
+  // `input` as its standard input. Errors: kNotFound (there is no such program, or it cannot be
+  // executed, as a script without an interpreter), kIo. The process may have several threads.
   static Result<ChildProgram> start(const std::vector<std::string>& run, const std::string& input,
                                     Timestamp deadline);
   ChildProgram(ChildProgram&& other) noexcept;

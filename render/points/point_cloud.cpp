@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "render/mesh/non_numbers.h"
 
 namespace merlin::render::points {
 namespace {
@@ -45,17 +48,8 @@ Result<Ok> keepFinite(PointCloud& cloud) {
     cloud.notes.push_back(
         fmt::format("{} points without finite coordinates are left out", points - left));
   }
-  std::size_t replaced = 0;
-  for (mesh::Feature& f : cloud.features) {
-    for (float& value : f.values) {
-      if (std::isfinite(value)) continue;
-      value = 0;
-      ++replaced;
-    }
-  }
-  if (replaced > 0)
-    cloud.notes.push_back(
-        fmt::format("{} values of features were not numbers; 0 stands there", replaced));
+  if (std::string note = mesh::replaceNonNumbers(cloud.features); !note.empty())
+    cloud.notes.push_back(std::move(note));
   return Ok{};
 }
 

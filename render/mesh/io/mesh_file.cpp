@@ -16,6 +16,7 @@
 #include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/writer.h"
+#include "render/mesh/non_numbers.h"
 
 namespace merlin::render::mesh {
 namespace {
@@ -153,17 +154,8 @@ class WrittenFiles {
 }  // namespace
 
 void replaceNonNumbers(LoadedMesh& loaded) {
-  std::size_t replaced = 0;
-  for (Feature& f : loaded.mesh.features) {
-    for (float& value : f.values) {
-      if (std::isfinite(value)) continue;
-      value = 0;
-      ++replaced;
-    }
-  }
-  if (replaced > 0)
-    loaded.notes.push_back(
-        fmt::format("{} values of features were not numbers; 0 stands there", replaced));
+  if (std::string note = replaceNonNumbers(loaded.mesh.features); !note.empty())
+    loaded.notes.push_back(std::move(note));
 }
 
 bool isUsual(const Feature& f) {
