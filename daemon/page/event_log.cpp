@@ -14,6 +14,7 @@ namespace merlin::page {
 namespace {
 
 constexpr std::size_t kKept = 500, kSent = 200, kLongest = 1000;
+constexpr std::size_t kTime = 27, kUsual = 160;  // characters of a time and of a usual sentence
 
 std::string utcNow() {
   timespec now{};
@@ -30,6 +31,14 @@ std::string cut(std::string_view text) {
 
 }  // namespace
 
+EventLog::EventLog(std::uint64_t first) : next_(first) {
+  for (std::size_t i = 0; i < kKept; ++i) {
+    LoggedEvent& event = events_.emplace_back();
+    event.time_utc.reserve(kTime);
+    event.what.reserve(kUsual);
+  }
+}
+
 void EventLog::addDocument(const std::string& role, const std::string& document) {
   const auto parsed = parseJson(document);
   if (!parsed) return;
@@ -41,18 +50,21 @@ void EventLog::addDocument(const std::string& role, const std::string& document)
     if (key == "what") event.what = cut(value.text);
     if (key == "severity") event.severity = severityOf(value.text);
   }
-  if (!event.what.empty()) keep(std::move(event));
+  if (!event.what.empty()) keep(event);
 }
 
 void EventLog::add(const std::string& role, const std::string& kind, const std::string& what) {
   keep({.role = role, .time_utc = utcNow(), .kind = kind, .what = cut(what)});
 }
 
-void EventLog::keep(LoggedEvent event) {
+// The oldest event's memory becomes the newest's: strings are copied into what it has reserved.
+void EventLog::keep(const LoggedEvent& event) {
   const std::lock_guard lock(mutex_);
-  event.number = next_++;
-  events_.push_back(std::move(event));
-  if (events_.size() > kKept) events_.pop_front();
+  LoggedEvent kept = std::move(events_.front());
+  events_.pop_front();
+  kept = event;
+  kept.number = next_++;
+  events_.push_back(std::move(kept));
 }
 
 std::vector<LoggedEvent> EventLog::after(std::uint64_t number) const {

@@ -20,12 +20,13 @@ struct LoggedEvent {
   Severity severity = Severity::kFault;
 };
 
-// Thread-safe. Keeps 500 events.
+// Thread-safe. Keeps 500 events, in memory that is taken at the start: a page that has run for
+// hours is as large as one that has just started, unless its events are longer than is usual.
 class EventLog {
  public:
-  // `first`: number of the first event. If it is the time of the start, in milliseconds, numbers
-  // grow over restarts, so that a client with a number of an earlier run gets everything.
-  explicit EventLog(std::uint64_t first) : next_(first) {}
+  // `first`: number of the first event, 1 or more. If it is the time of the start, in milliseconds,
+  // numbers grow over restarts, so that a client with a number of an earlier run gets everything.
+  explicit EventLog(std::uint64_t first);
 
   // Adds what a role published as `event`. What is malformed is left out; long texts are cut.
   void addDocument(const std::string& role, const std::string& document);
@@ -40,10 +41,11 @@ class EventLog {
   std::string since(std::uint64_t since) const;
 
  private:
-  void keep(LoggedEvent event);
+  void keep(const LoggedEvent& event);
 
   mutable std::mutex mutex_;
-  std::deque<LoggedEvent> events_;  // guarded by mutex_, as is next_
+  // Always 500, the oldest first; number 0: none yet. Guarded by mutex_, as is next_.
+  std::deque<LoggedEvent> events_;
   std::uint64_t next_;
 };
 

@@ -17,7 +17,6 @@
 
 #include "daemon/json/json_tree.h"
 #include "daemon/page/documents.h"
-#include "daemon/page/event_log.h"
 #include "daemon/page/frame_history.h"
 #include "daemon/page/gate.h"
 #include "daemon/page/host_names.h"
@@ -365,24 +364,6 @@ TEST(PageSettings_, AWrongAddressOrNameIsAFinding) {
   EXPECT_TRUE(isLoopback("127.0.0.1"));
   EXPECT_TRUE(isLoopback("127.1.2.3"));
   EXPECT_FALSE(isLoopback("0.0.0.0"));
-}
-
-TEST(PageEvents, AreNumberedAndBounded) {
-  EventLog log(1000);
-  log.addDocument("wall", R"({"time_utc":"2026-11-24T07:00:00Z","kind":"wall","what":"a \"b\""})");
-  log.addDocument("wall", "{");
-  log.addDocument("wall", R"({"what":5})");
-  EXPECT_EQ(log.since(0),
-            "{\"next\":1001,\"events\":[{\"number\":1000,\"role\":\"wall\",\"time_utc\":"
-            "\"2026-11-24T07:00:00Z\",\"kind\":\"wall\",\"what\":\"a \\\"b\\\"\"}]}\n");
-  EXPECT_EQ(log.since(1000), "{\"next\":1001,\"events\":[]}\n");
-  EXPECT_EQ(log.since(~std::uint64_t{0}), "{\"next\":1001,\"events\":[]}\n");
-  for (int i = 0; i < 2000; ++i) log.add("page", "server", std::string(5000, 'x'));
-  const auto all = parseJson(log.since(0));
-  ASSERT_TRUE(all) << all.error().what;
-  EXPECT_EQ(all->members[0].value.number, 3001);
-  EXPECT_EQ(all->members[1].value.items.size(), 200U);
-  EXPECT_LT(log.since(0).size(), 300'000U);
 }
 
 TEST(PageFrames, OfTheWallsTraceAreReadOnceAndForgottenOnARestart) {
