@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <assimp/Importer.hpp>
@@ -326,10 +327,10 @@ class SceneReader {
 
 bool isGltf(const ModelFile& file) { return file.format == "gltf" || file.format == "glb"; }
 
-Result<std::vector<GltfPrimitive>> checkFirst(const ModelFile& file) {
-  if (!isGltf(file)) return std::vector<GltfPrimitive>();
+Result<GltfPromise> checkFirst(const ModelFile& file) {
+  if (!isGltf(file)) return GltfPromise{};
   const auto bytes = MappedFile::open(file.path);
-  if (!bytes) return std::vector<GltfPrimitive>();  // assimp says so
+  if (!bytes) return GltfPromise{};  // assimp says so
   return checkGltf(bytes->text());
 }
 
@@ -390,6 +391,24 @@ std::string namedUnit(const ModelFile& file) {
   return named.empty() ? "millimeter" : named;  // what 3MF says of a model that names none
 }
 
+// Empty if there are none.
+std::string noteOf(const std::set<std::string>& own_attributes) {
+  constexpr std::size_t kNamed = 8;
+  if (own_attributes.empty()) return {};
+  std::string names;
+  std::size_t named = 0;
+  for (const std::string& name : own_attributes) {
+    if (named++ == kNamed) break;
+    names += (named > 1 ? ", " : "") + name;
+  }
+  if (own_attributes.size() > kNamed)
+    names += fmt::format(" and {} others", own_attributes.size() - kNamed);
+  return fmt::format(
+      "left out: values of the vertices that glTF does not define ({}); a PLY file "
+      "keeps such values as features",
+      names);
+}
+
 // Where coordinates are not made metres, what a person can do about it.
 std::string noteOf(const std::string& unit) {
   const double metres = metresPer(unit);
@@ -418,8 +437,11 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
   }
   if (!scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
     return Error{Errc::kUnsupported, "holds no surface"};
-  if (const auto whole = checkTriangles(*std::move(promised), *scene); !whole) return whole.error();
+  if (const auto whole = checkTriangles(std::move(promised->primitives), *scene); !whole)
+    return whole.error();
   BuiltModel built = SceneReader(*scene, file, on_triangles).read();
+  if (std::string note = noteOf(promised->own_attributes); !note.empty())
+    built.notes.push_back(std::move(note));
   if (const std::string unit = namedUnit(file); !unit.empty()) built.notes.push_back(noteOf(unit));
   return built;
 }

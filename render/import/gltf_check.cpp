@@ -145,7 +145,7 @@ std::uint64_t promisedTriangles(const json& accessors, const json& primitive,
 }
 
 Result<Ok> checkMesh(const json& accessors, std::size_t number, const json& mesh,
-                     std::vector<GltfPrimitive>& all) {
+                     GltfPromise& all) {
   const auto primitives = arrayOf(mesh, "primitives");
   if (!primitives) return primitives.error();
   for (std::size_t p = 0; p < (*primitives)->size(); ++p) {
@@ -155,16 +155,17 @@ Result<Ok> checkMesh(const json& accessors, std::size_t number, const json& mesh
     if (!attributes || !attributes->is_object()) return malformed(where + " has no attributes");
     for (const auto& [name, index] : attributes->items()) {
       if (const auto good = checkAttribute(accessors, where, name, index); !good) return good;
+      if (name.starts_with('_')) all.own_attributes.insert(oneLine(excerpt(name)));
     }
-    all.push_back({number, p, promisedTriangles(accessors, primitive, *attributes)});
+    all.primitives.push_back({number, p, promisedTriangles(accessors, primitive, *attributes)});
   }
   return Ok{};
 }
 
 }  // namespace
 
-Result<std::vector<GltfPrimitive>> checkGltf(std::string_view file) {
-  std::vector<GltfPrimitive> all;
+Result<GltfPromise> checkGltf(std::string_view file) {
+  GltfPromise all;
   const auto text = textOf(file);
   if (!text) return text.error();
   if (!*text) return all;

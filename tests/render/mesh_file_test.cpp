@@ -193,8 +193,11 @@ TEST(ReadMesh, GoesByTheEndingInSmallOrLargeLetters) {
     const auto refused = mesh::readMesh(dir / name);
     ASSERT_FALSE(refused) << name;
     EXPECT_EQ(refused.error().code, Errc::kUnsupported) << name;
-    EXPECT_EQ(refused.error().what,
-              dir / name + ": meshes are read from .ply, .obj, .off, .om and .stl");
+    EXPECT_EQ(
+        refused.error().what,
+        dir / name +
+            ": is no mesh that is read here, which are .ply, .obj, .off, .om and .stl; merlin mesh "
+            "import reads other formats and writes a model");
   }
 }
 

@@ -338,8 +338,9 @@ TEST_F(BadInput, MeshCommands) {
                 {"none.ply: No such file or directory"});
   expectOutcome(run({kMerlin, "mesh", "info", dir_ / "empty.ply"}), 2,
                 {"empty.ply: line 1: a PLY file starts with"});
-  expectOutcome(run({kMerlin, "mesh", "info", dir_ / "a.xyz"}), 2,
-                {"a.xyz: meshes are read from .ply, .obj, .off, .om and .stl"});
+  expectOutcome(
+      run({kMerlin, "mesh", "info", dir_ / "a.xyz"}), 2,
+      {"a.xyz: is no mesh that is read here, which are .ply, .obj, .off, .om and .stl; merlin"});
   const std::string scan = kSource + "/config/models/ankylosaurus.ply";
   expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", dir_ / "o.mrm", "--weight", "colour"}),
                 2, {"--weight colour: is not FEATURE=NUMBER"});

@@ -284,6 +284,18 @@ TEST_F(GltfImport, OnlyMotionsThatAreThereAreSaidToBeLeftOut) {
   EXPECT_EQ(report(json.dump())["notes"], (Json{"left out: morph targets; this is the rest pose"}));
 }
 
+TEST_F(GltfImport, ValuesThatGltfDoesNotDefineAreSaidToBeLeftOut) {
+  Json json = triangle("a.bin");
+  Json& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["_CONFIDENCE"] = 0;
+  attributes["_thermal"] = 0;
+  EXPECT_EQ(report(json.dump())["notes"],
+            (Json{"left out: values of the vertices that glTF does not define (_CONFIDENCE, "
+                  "_thermal); a PLY file keeps such values as features"}));
+  for (char c = 'a'; c < 'i'; ++c) attributes[std::string("_") + c] = 0;
+  EXPECT_NE(report(json.dump())["notes"].dump().find("_f, _g and 2 others)"), std::string::npos);
+}
+
 TEST_F(GltfImport, FaultsOfItsJsonAreSaid) {
   const std::string text = triangle("a.bin").dump();
   expectRefused(text.substr(0, text.size() - 9), "glTF: its JSON is damaged or cut");

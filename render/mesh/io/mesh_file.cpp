@@ -194,8 +194,11 @@ std::optional<MeshFileSize> meshFileSize(const std::string& path) {
 
 Result<LoadedMesh> readMesh(const std::string& path) {
   if (const MeshReader* const reader = readerFor(path)) return readMeshAs(*reader, path);
-  return Error{Errc::kUnsupported,
-               fmt::format("{}: meshes are read from {}", path, readableEndings())};
+  return Error{
+      Errc::kUnsupported,
+      fmt::format("{}: is no mesh that is read here, which are {}; merlin mesh import reads other "
+                  "formats and writes a model",
+                  path, readableEndings())};
 }
 
 bool isMeshFile(const std::string& path) { return readerForContent(path) != nullptr; }
