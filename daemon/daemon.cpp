@@ -133,6 +133,7 @@ Result<Ok> Daemon::makeRoles() {
                                      threads_, clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
+    if (!wall_->uncorrected().empty()) services_.failed("correction", wall_->uncorrected());
     if (keeper_->state().playlist_off) wall_->attendance().switchPlaylist(false);
   }
   connectRoles();

@@ -152,7 +152,8 @@ void checkFits(LoadedSettings& loaded, const render::correct::MeasuredCorrection
                           measured.width, measured.height, size->width, size->height)});
 }
 
-// At a start a damaged file makes one output look wrong, which is better than a dark wall.
+// At a start a damaged file, or one without that region, makes one output look wrong, which is
+// better than a dark wall.
 void checkMeasured(LoadedSettings& loaded, std::size_t index, bool is_start) {
   const render::correct::CorrectionSettings correction =
       loaded.settings.wall.outputs[index].correction;
@@ -160,11 +161,11 @@ void checkMeasured(LoadedSettings& loaded, std::size_t index, bool is_start) {
   const std::string at = fmt::format("/wall/outputs/{}/correction", index);
   const auto measured = render::correct::readMeasured(correction.mpcdi, correction.mpcdi_region);
   if (measured) return checkFits(loaded, *measured, index, at + "/mpcdi");
+  const bool no_region = measured.error().code == Errc::kInvalidArgument;
+  const std::string where = at + (no_region ? "/mpcdi_region" : "/mpcdi");
   const std::string what = kCannot + measured.error().what;
-  if (measured.error().code == Errc::kInvalidArgument)
-    return loaded.addFinding(at + "/mpcdi_region", what);
-  if (!is_start) return loaded.addFinding(at + "/mpcdi", what);
-  loaded.add({true, loaded.lineOf(at + "/mpcdi"), at + "/mpcdi",
+  if (!is_start) return loaded.addFinding(where, what);
+  loaded.add({true, loaded.lineOf(where), where,
               what + "; the output is shown without its measured warp and blend"});
 }
 

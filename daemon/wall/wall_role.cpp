@@ -172,10 +172,10 @@ void WallRole::makeCorrections() {
         output, *render::out::pictureSize(output, settings_.wall.tiles),
         parts.value_or(render::correct::SignalParts{}), team_, shader_pass_, unreadable);
     if (!unreadable.empty())
-      model_watch_.report(faultEvent(
-          fmt::format("output {} is shown without its measured warp and blend: {}; mend the file "
-                      "and restart the wall",
-                      output.shownName(), unreadable)));
+      uncorrected_ += fmt::format(
+          "{}output {} is shown without its measured warp and blend: {}; mend the file and restart "
+          "the wall",
+          uncorrected_.empty() ? "" : "; ", output.shownName(), unreadable);
     std::vector<std::unique_ptr<render::frame::Correction>> links;
     if (!output.tiles.empty())
       links.push_back(std::make_unique<render::frame::TileArrangement>(plan_, output.tiles));

@@ -95,6 +95,9 @@ class WallRole {
   std::optional<Pace::Limits> holdLimits() const;
   Aligner& aligner() { return *aligner_; }
   SignalTaps& signals() { return *signals_; }
+  // Which outputs are shown without the correction that was measured for them, and why; empty:
+  // none. The same as long as the wall runs.
+  const std::string& uncorrected() const noexcept { return uncorrected_; }
   // For its thread-safe members; null: there is no panel on the operator's tile.
   OperatorPanel* panel() { return operator_tile_.panel(); }
   // For its thread-safe members.
@@ -179,6 +182,7 @@ class WallRole {
   std::optional<RendererReport> renderer_;
   // By output number; null if the output is sent the frame itself.
   std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
+  std::string uncorrected_;
   std::unique_ptr<SignalTaps> signals_;
   std::optional<std::uint32_t> kept_content_;  // content that the state was last updated for
   bool told_empty_ = false;                    // of the thread of tend()

@@ -119,6 +119,26 @@ TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
   EXPECT_EQ(cut.pixels, without.pixels);
 }
 
+TEST_F(Correction, AnMpcdiRegionThatIsNotThereCostsOneOutputItsCorrectionAndTheStatusSaysSo) {
+  ASSERT_EQ(
+      run({kMerlin, "wall", "mpcdi", "export", mpcdi_, "-c", file("by_hand", kCorrection)}).status,
+      0);
+  json config = json::parse(readText(file("other", {{"mpcdi", mpcdi_}, {"mpcdi_region", "zz"}})));
+  const std::string instance = privateName("region");
+  config["instance"] = instance;
+  writeText(dir_ / "other.json", config.dump(1));
+  Process wall({kMerlind, "--config", dir_ / "other.json"});
+  EXPECT_TRUE(eventually([&] {
+    const Outcome status = run({kMerlin, "status", "--json", "--instance", instance});
+    const json now = json::parse(status.output, nullptr, false);
+    if (!now.is_object() || !now.contains("services")) return false;
+    const json service = now["services"].value("correction", json::object());
+    return service.value("health", "") == "failed" &&
+           service.value("reason", "").find("has no region \"zz\"") != std::string::npos;
+  }));
+  EXPECT_EQ(wall.kill(SIGTERM), 0) << wall.output();
+}
+
 // It is used nevertheless: only a person can see whether it fits.
 TEST_F(Correction, AnMpcdiRegionOfAnotherOutputIsUsedAndSaid) {
   const std::string config = file("by_hand", kCorrection);

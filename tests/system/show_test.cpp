@@ -158,6 +158,36 @@ TEST_F(ShowFile, WhatCannotBeShownIsSaidHereAndOnTheWall) {
       << alone.output;
 }
 
+TEST_F(ShowFile, ATestCardThatCoversTheContentIsNoted) {
+  const auto card = [&](const std::string& name) {
+    EXPECT_EQ(run({kMerlin, "wall", "testcard", name, "--instance", wall_->instance()}).status, 0);
+    EXPECT_TRUE(eventually([&] { return wall_->status()["testcard"] == (name != "off"); }));
+  };
+  EXPECT_EQ(run(command({"model"})).output, "");
+  card("grid");
+  const Outcome covered = run(command({"model"}));
+  EXPECT_EQ(covered.status, 0);
+  EXPECT_NE(covered.output.find("a test card covers it; to end that: merlin wall testcard off"),
+            std::string::npos)
+      << covered.output;
+  card("off");
+}
+
+TEST_F(ShowFile, AFileOrAFolderWithoutASlashIsNoted) {
+  const fs::path before = fs::current_path();
+  fs::current_path(dir_->path());
+  fs::create_directory("holiday");
+  const Outcome folder = run(command({"holiday"}));
+  writeText("monday", "");
+  const Outcome file = run(command({"monday"}));
+  fs::current_path(before);
+  EXPECT_NE(folder.output.find("a folder holiday is here: merlin show ./holiday"),
+            std::string::npos)
+      << folder.output;
+  EXPECT_NE(file.output.find("a file monday is here: merlin show ./monday"), std::string::npos)
+      << file.output;
+}
+
 TEST_F(ShowFile, PanoramaIsRefusedForWhatIsNoPictureThatIsImported) {
   if (!fs::exists(MERLIN_BIN_DIR "/merlin-import")) GTEST_SKIP() << "this build has no imports";
   writeText(*dir_ / "sky.ppm", "P6\n64 32\n255\n" + std::string(64 * 32 * 3, '\x90'));

@@ -108,6 +108,15 @@ Result<Ok> ask(const ShowOptions& options, const RoleRequest& request) {
   return Ok{};
 }
 
+// A test card stays when another content is chosen: who adjusts projectors is not interrupted.
+void noteTestCard(const ShowOptions& options) {
+  const auto segment =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
+  const auto idle = segment ? (*segment)->idle.read() : std::nullopt;
+  if (idle && idle->testcard != 0)
+    printNote("a test card covers it; to end that: merlin wall testcard off");
+}
+
 // Has the wall say how far it is, about once a second. A wall that does not answer holds nobody up.
 class WallNotices {
  public:
@@ -245,10 +254,16 @@ int showName(const ShowOptions& options) {
   if (const auto good = checkPanorama(options, "the name of a content"); !good)
     return fail(good.error());
   const auto shown = ask(options, {"show", options.what()});
-  if (shown) return kExitDone;
+  if (shown) {
+    noteTestCard(options);
+    return kExitDone;
+  }
   std::error_code error;
-  if (fs::exists(options.what(), error))
-    printNote(fmt::format("a file {0} is here: merlin show ./{0}", options.what()));
+  if (fs::exists(options.what(), error)) {
+    printNote(fmt::format("a {0} {1} is here: merlin show ./{1}",
+                          fs::is_directory(options.what(), error) ? "folder" : "file",
+                          options.what()));
+  }
   return fail(shown.error());
 }
 

@@ -27,12 +27,14 @@ AlignedPicture pictureOf(const Json& json) {
       json.at("height"),
       json.at("pending"),
       {},
-      json.at("points").size(),
+      {},
       {offsetOf(json.at("seen").at("right")), offsetOf(json.at("seen").at("down"))}};
   for (std::size_t i = 0; i < picture.corners.size(); ++i) {
     const Json& corner = json.at("corners").at(state::kCornerNames[i]);
     picture.corners[i] = {offsetOf(corner.at("configured")), offsetOf(corner.at("moved"))};
   }
+  for (const Json& point : json.at("points"))
+    picture.points.push_back({point.at("column"), point.at("row"), offsetOf(point.at("moved"))});
   return picture;
 }
 
@@ -94,8 +96,12 @@ std::vector<std::string> alignmentLines(const AlignAnswer& answer) {
       }
       lines.push_back(std::move(line));
     }
-    if (output.moved_points > 0)
-      lines.push_back(fmt::format("  {} points of its mesh are moved", output.moved_points));
+    for (const AlignedPoint& point : output.points) {
+      lines.push_back(
+          fmt::format("  {:<13} moved {:+g} {:+g}  (in the configuration: {:+.6f} {:+.6f})",
+                      fmt::format("point {} {}", point.column, point.row), point.moved.x,
+                      point.moved.y, point.moved.x / output.width, point.moved.y / output.height));
+    }
   }
   lines.push_back(
       fmt::format("steps that can be undone: {}, redone: {}", answer.undo, answer.redo));

@@ -14,12 +14,16 @@ namespace merlin::cli {
 struct AlignedCorner {
   state::Offset configured, moved;  // [px]
 };
+struct AlignedPoint {  // of the mesh
+  int column = 0, row = 0;
+  state::Offset moved;  // [px]
+};
 struct AlignedPicture {
   std::string name;
   int width = 0, height = 0;
   bool pending = false;
-  std::array<AlignedCorner, 4> corners;  // in the order of state::kCornerNames
-  std::size_t moved_points = 0;          // of its mesh
+  std::array<AlignedCorner, 4> corners;   // in the order of state::kCornerNames
+  std::vector<AlignedPoint> points = {};  // those that are moved
   state::SeenAxes axes{};
 };
 struct AlignAnswer {
@@ -49,7 +53,7 @@ class AlignedWall {
 // Reads the answer. Errors: kMalformed.
 Result<AlignAnswer> readAlignAnswer(const std::string& text);
 
-// A line for each output and corner, for people.
+// A line for each output, corner and moved point, for people.
 std::vector<std::string> alignmentLines(const AlignAnswer& answer);
 
 }  // namespace merlin::cli

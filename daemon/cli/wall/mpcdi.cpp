@@ -106,8 +106,9 @@ void addExport(Command mpcdi, Run& run) {
                        "MPCDI file (profile "
                        "2d), with a region for each output that has a correction. What was moved "
                        "by merlin wall align is not in it: write the corners that merlin wall "
-                       "align --list prints into the configuration, then merlin wall align "
-                       "--reset --output NAME.\n"
+                       "align --list prints into the configuration and add what it prints of moved "
+                       "points to those of the mesh there, then merlin wall align --reset --output "
+                       "NAME.\n"
                        "Example: merlin wall mpcdi export wall.mpcdi -c /etc/merlin/merlin.json");
   command.option("file", options->file, "The MPCDI file").required().typeName("FILE.mpcdi");
   command.option("-c,--config", options->config, "The configuration").required().typeName("CONFIG");

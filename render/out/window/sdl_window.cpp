@@ -23,8 +23,9 @@ std::string displayName() {
 }
 
 void setHints() {
-  // Others of SDL's drivers would take a console's display, or show nothing.
-  SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,wayland");
+  // Others of SDL's drivers would take a console's display, or show nothing. Without that folder
+  // there is no Wayland, and its library would write so at each attempt.
+  SDL_SetHint(SDL_HINT_VIDEODRIVER, std::getenv("XDG_RUNTIME_DIR") ? "x11,wayland" : "x11");
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");  // llvmpipe would take the wall's processors
   SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");
