@@ -187,7 +187,7 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
                  "the long one did.");
         v.number("repeat_s", b.repeat_s, {0, 60},
                  "Time after which an action that happens once happens again while the input is "
-                 "held, in seconds. 0: it does not.");
+                 "held, in seconds: 0.05 or more. 0: it does not.");
       });
 }
 

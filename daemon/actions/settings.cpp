@@ -14,6 +14,9 @@
 namespace merlin {
 namespace {
 
+// A shorter one would do hundreds of steps before a person lets go.
+constexpr double kShortestRepeat_s = 0.05;
+
 bool isLamp(std::string_view action) { return action.starts_with("lamp_"); }
 
 // What one of them does, the other one undoes.
@@ -58,6 +61,9 @@ void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) 
                                                 "of \"{}\"",
                                                 b.with, b.input)});
   }
+  if (b.repeat_s > 0 && b.repeat_s < kShortestRepeat_s)
+    faults.push_back({at + "/repeat_s", fmt::format("is {}; allowed are 0 and {} to 60", b.repeat_s,
+                                                    kShortestRepeat_s)});
   if (b.repeat_s > 0 && (isHeldAction(b.action) || atLeave(b)))
     faults.push_back({at + "/repeat_s", "repeats only what happens once, as its input begins"});
 }
@@ -109,9 +115,14 @@ bool overlap(const std::string& a, const std::string& b) {
   return !first || !second || first->overlaps(*second);
 }
 
-// Whether the bindings need the same two inputs, named in either order.
+// Whether one event can be the second input of both, or neither has one.
+bool needSameSecond(const Binding& a, const Binding& b) {
+  return a.with.empty() == b.with.empty() && (a.with.empty() || overlap(a.with, b.with));
+}
+
+// Whether the bindings need the same two inputs, named in the other order.
 bool areSameChord(const Binding& a, const Binding& b) {
-  return !a.with.empty() && a.with == b.input && a.input == b.with;
+  return !a.with.empty() && !b.with.empty() && overlap(a.with, b.input) && overlap(a.input, b.with);
 }
 
 // The bindings before one, by what their inputs have in common with others.
@@ -131,7 +142,7 @@ class BindingsBefore {
       return exclude(all_[k].action, b.action) && overlap(mine, its);
     };
     for (const std::size_t k : by_input_[keyOf(b.input, b)]) {
-      const bool same_time = all_[k].with == b.with && all_[k].after_s == b.after_s;
+      const bool same_time = needSameSecond(all_[k], b) && all_[k].after_s == b.after_s;
       if ((same_time || isHeldAction(b.action)) && meets(k, b.input, all_[k].input)) return k;
     }
     // A chord before it has its input as the second one.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -58,6 +60,7 @@ unsigned weekdayBits(const std::vector<std::string>& names) {
 SettingFaults validate(const std::vector<PjlinkSettings>& projectors) {
   SettingFaults faults;
   std::set<std::string> names{"panel"};
+  std::map<std::pair<std::string, std::string>, std::string> owners;  // by host and port
   if (projectors.size() > kMostProjectors)
     faults.push_back(
         {"", fmt::format("has {} projectors; allowed are {}", projectors.size(), kMostProjectors)});
@@ -73,10 +76,16 @@ SettingFaults validate(const std::vector<PjlinkSettings>& projectors) {
           {at + "/name", fmt::format("is \"{}\", the name of {}", p.name,
                                      p.name == "panel" ? "the projectors at the panel's line"
                                                        : "another projector")});
-    if (!projectorAddress(p.address))
+    const auto address = projectorAddress(p.address);
+    if (!address)
       faults.push_back({at + "/address", fmt::format("is \"{}\"; allowed is HOST or HOST:PORT, "
                                                      "PORT 1 to 65535",
                                                      excerpt(p.address))});
+    else if (const auto [first, fresh] = owners.try_emplace({address->host, address->port}, p.name);
+             !fresh)
+      faults.push_back(
+          {at + "/address", fmt::format("is \"{}\", the address of the projector \"{}\" too",
+                                        excerpt(p.address), excerpt(first->second))});
     if (!p.input.empty() && !isInput(p.input))
       faults.push_back(
           {at + "/input", fmt::format("is \"{}\"; allowed are two digits: 1 (RGB), 2 (video), 3 "

@@ -199,7 +199,12 @@ Result<Examples> examplesOf(std::span<const LabelledStroke> strokes) {
       examples.of[stroke.gesture].push_back(stroke.features);
     }
   }
-  if (examples.of.empty() || examples.of.size() > kMostGestures)
+  if (examples.of.empty())
+    return Error{
+        Errc::kInvalidArgument,
+        "no gesture in it: in no take that has a gesture's name the hand moved far and fast "
+        "enough for a stroke; record it again with brisk movements"};
+  if (examples.of.size() > kMostGestures)
     return Error{Errc::kInvalidArgument,
                  fmt::format("{} gestures; allowed: 1 to {}", examples.of.size(), kMostGestures)};
   for (const auto& [name, own] : examples.of) {

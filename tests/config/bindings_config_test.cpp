@@ -66,6 +66,19 @@ TEST(BindingsConfig, ChordsThatConflictAreFoundInEitherOrder) {
       << "button 1 is held like a shift key";
 }
 
+TEST(BindingsConfig, AChordIsTheSameWithAndWithoutItsDevice) {
+  const auto chords = [](const char* input, const char* with, const char* action) {
+    return bindingsAre(fmt::format(
+        R"({{"input": "button.6", "with": "button.7", "action": "next_mode"}},
+           {{"input": "{}", "with": "{}", "action": "{}"}})",
+        input, with, action));
+  };
+  const std::string twice = "would next_mode twice when entered";
+  EXPECT_NE(chords("ball.button.6", "ball.button.7", "next_mode").find(twice), std::string::npos);
+  EXPECT_NE(chords("ball.button.7", "ball.button.6", "next_mode").find(twice), std::string::npos);
+  EXPECT_EQ(chords("ball.button.6", "ball.button.8", "next_mode"), "");
+}
+
 TEST(BindingsConfig, ActionsThatNothingCouldDoAreFound) {
   const std::string bindings =
       R"("bindings": [{"input": "posture.a", "action": "snapshot"},

@@ -432,6 +432,8 @@ TEST(BindingSettings, ChordsAndTimesFitTheirInput) {
     EXPECT_EQ(pointers(bad), "/0/with ") << with;
   }
   EXPECT_EQ(pointers({"ball.button.1", "grab", When::kHold, "", 0, 0.2}), "/0/repeat_s ");
+  EXPECT_EQ(pointers({"ball.button.1", "next_mode", When::kEnter, "", 0, 1e-9}), "/0/repeat_s ");
+  EXPECT_EQ(pointers({"ball.button.1", "next_mode", When::kEnter, "", 0, 0.05}), "");
   EXPECT_EQ(pointers({"ball.button.1", "next_mode", When::kLeave, "", 0, 0.2}), "/0/repeat_s ");
   EXPECT_EQ(pointers({"panel.button", "next_mode", When::kEnter, "", 0.5, 0}), "/0 ");
   EXPECT_TRUE(validate({{"ball.button.1", "next_mode", When::kEnter, "", 0, 0},

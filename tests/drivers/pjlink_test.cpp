@@ -432,6 +432,11 @@ TEST(PjlinkSettings, FaultsAreNamed) {
             "/2/address is \"10.0.0.7:99999\"; allowed is HOST or HOST:PORT, PORT 1 to 65535\n"
             "/3/name is \"panel\", the name of the projectors at the panel's line\n"
             "/3/address is \"\"; allowed is HOST or HOST:PORT, PORT 1 to 65535\n");
+  const auto twice = validate(std::vector<PjlinkSettings>{
+      {.name = "left", .address = "10.0.0.7"}, {.name = "right", .address = "10.0.0.7:4352"}});
+  ASSERT_EQ(twice.size(), 1U);
+  EXPECT_EQ(twice[0].pointer + " " + twice[0].what,
+            "/1/address is \"10.0.0.7:4352\", the address of the projector \"left\" too");
   text.clear();
   const std::vector<SwitchingTimes> times = {{kDaily, "09:00", "17:00"},
                                              {{}, "9:00", "24:00"},
