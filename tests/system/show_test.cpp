@@ -170,6 +170,9 @@ TEST_F(ShowFile, ATestCardThatCoversTheContentIsNoted) {
   EXPECT_NE(covered.output.find("a test card covers it; to end that: merlin wall testcard off"),
             std::string::npos)
       << covered.output;
+  writeScan("hill", 40, "\x10\x10\xF0");
+  const Outcome file = run(scan("hill"));
+  EXPECT_NE(file.output.find("a test card covers it"), std::string::npos) << file.output;
   card("off");
 }
 

@@ -254,10 +254,7 @@ int showName(const ShowOptions& options) {
   if (const auto good = checkPanorama(options, "the name of a content"); !good)
     return fail(good.error());
   const auto shown = ask(options, {"show", options.what()});
-  if (shown) {
-    noteTestCard(options);
-    return kExitDone;
-  }
+  if (shown) return kExitDone;
   std::error_code error;
   if (fs::exists(options.what(), error)) {
     printNote(fmt::format("a {0} {1} is here: merlin show ./{1}",
@@ -280,7 +277,9 @@ int show(ShowOptions& options) {
                     (ending && fs::exists(options.what(), error)) ||
                     (ending && (options.image.panorama || !options.meshOption().empty()));
   if (options.mesh.memory > 0) options.image.memory = options.mesh.memory;
-  return file ? showFile(options) : showName(options);
+  const int status = file ? showFile(options) : showName(options);
+  if (status == kExitDone) noteTestCard(options);
+  return status;
 }
 
 }  // namespace
