@@ -1,6 +1,7 @@
 #include "tests/bench/demo_daemon.h"
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include <fcntl.h>
@@ -37,6 +38,15 @@ std::string endOf(const std::string& output) {
   if (end == std::string::npos) return "it said nothing";
   const std::size_t begin = end + 1 > kMost ? end + 1 - kMost : 0;
   return "it said: " + output.substr(begin, end + 1 - begin);
+}
+
+// The first line that contains `words`, or an empty text. What follows it differs from run to run.
+std::string lineWith(const std::string& output, std::string_view words) {
+  const std::size_t found = output.find(words);
+  if (found == std::string::npos) return {};
+  const std::size_t before = output.rfind('\n', found);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return output.substr(begin, output.find('\n', found) - begin);
 }
 
 // Opens a segment, which exists once merlind is ready. Returns the error, or an empty text.
@@ -81,8 +91,8 @@ DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
          endOf(process_->output()));
   }
   // It runs without contents too, and then there is nothing to measure.
-  if (process_->output().find("is left out until it can be read") != std::string::npos)
-    fail("it shows none of its contents; " + endOf(process_->output()));
+  const std::string left_out = lineWith(process_->output(), "is left out until it can be read");
+  if (!left_out.empty()) fail("it shows none of its contents; it said: " + left_out);
   std::string fault = open(devices_, instance_, "devices");
   if (fault.empty() && role == "all") fault = open(wall_, instance_, "wall");
   if (!fault.empty()) fail(fault);
