@@ -1,8 +1,6 @@
 #include "daemon/emulator_children.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
@@ -12,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/clock.h"
 #include "daemon/devices/device_places.h"
 #include "drivers/emulate/names.h"
@@ -30,10 +29,10 @@ Result<std::string> merlinProgram() {
                            program.string())};
 }
 
-pid_t spawn(const std::vector<std::string>& arguments) {
+Result<pid_t> spawn(const std::vector<std::string>& arguments) {
   const pid_t parent = ::getpid();
-  const pid_t pid = ::fork();
-  if (pid != 0) return pid;
+  auto child = startChild();
+  if (!child || *child != 0) return child;
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -105,17 +104,18 @@ Result<EmulatorChildren> EmulatorChildren::start(Settings& settings,
     const std::string link = placeLine(device, settings.instance, run_directory);
     std::vector<std::string> command = emulateCommand(*program, settings, device, link);
     command.insert(command.end(), {"--epoch-ns", epoch});
-    const pid_t pid = spawn(command);
-    if (pid < 0)
-      return Error{Errc::kIo, fmt::format("cannot start an emulator: {}", std::strerror(errno))};
-    started.children_.push_back({{device.name, line.driver}, pid});
+    const auto child = spawn(command);
+    if (!child)
+      return Error{child.error().code,
+                   fmt::format("the emulator of {}: {}", device.name, child.error().what)};
+    started.children_.push_back({{device.name, line.driver}, *child});
   }
   return started;
 }
 
 EmulatorChildren::~EmulatorChildren() {
   for (const Child& child : children_) ::kill(child.pid, SIGTERM);
-  for (const Child& child : children_) ::waitpid(child.pid, nullptr, 0);
+  for (const Child& child : children_) waitForChild(child.pid);
 }
 
 std::vector<EmulatorChildren::Emulated> EmulatorChildren::takeEnded() {

@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/printable_text.h"
 
 namespace merlin::alarms {
@@ -30,17 +31,6 @@ Result<UniqueFd> fileOf(const std::string& text) {
       ::lseek(file.get(), 0, SEEK_SET) == 0;
   if (good) return file;
   return Error{Errc::kIo, fmt::format("the event's file: {}", std::strerror(errno))};
-}
-
-struct Pipe {
-  UniqueFd from, to;
-};
-
-Result<Pipe> makePipe() {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0)
-    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
-  return Pipe{UniqueFd(ends[0]), UniqueFd(ends[1])};
 }
 
 // In the child, which may only call what signal handlers may: our signals are not its. `failure`:
@@ -104,17 +94,17 @@ Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
   if (!output) return output.error();
   ::fcntl(output->from.get(), F_SETFL, O_NONBLOCK);
   const pid_t parent = ::getpid();
-  const pid_t pid = ::fork();
-  if (pid == 0) become(arguments, file->get(), output->to.get(), failures->to.get(), parent);
-  if (pid < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
-  ::setpgid(pid, pid);  // here too: whoever comes first
+  const auto child = startChild();
+  if (!child) return child.error();
+  if (*child == 0) become(arguments, file->get(), output->to.get(), failures->to.get(), parent);
+  ::setpgid(*child, *child);  // here too: whoever comes first
   failures->to.reset();
   if (const int failure = failureOf(failures->from); failure != 0) {
-    ::waitpid(pid, nullptr, 0);
+    waitForChild(*child);
     return Error{Errc::kNotFound,
                  fmt::format("{}: cannot be executed: {}", run.front(), reasonOf(failure))};
   }
-  return ChildProgram(pid, std::move(output->from), deadline);
+  return ChildProgram(*child, std::move(output->from), deadline);
 }
 
 ChildProgram::ChildProgram(ChildProgram&& other) noexcept { *this = std::move(other); }
@@ -132,7 +122,7 @@ ChildProgram& ChildProgram::operator=(ChildProgram&& other) noexcept {
 ChildProgram::~ChildProgram() {
   if (pid_ < 0) return;
   kill();
-  ::waitpid(pid_, nullptr, 0);
+  waitForChild(pid_);
 }
 
 void ChildProgram::kill() noexcept { ::kill(-pid_, SIGKILL); }

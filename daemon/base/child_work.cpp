@@ -3,15 +3,14 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <string_view>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/unique_fd.h"
 
 namespace merlin {
@@ -61,18 +60,14 @@ std::string readAll(int fd) {
 
 Result<std::string> inChild(const std::function<Result<std::string>()>& work,
                             const std::string& ended, std::chrono::seconds limit) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
-  UniqueFd from(ends[0]), to(ends[1]);
-  const pid_t child = ::fork();
-  if (child < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
-  if (child == 0) runChild(work, to.get(), limit);
-  to.reset();
-  std::string bytes = readAll(from.get());
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  auto pipe = makePipe();
+  if (!pipe) return pipe.error();
+  const auto child = startChild();
+  if (!child) return child.error();
+  if (*child == 0) runChild(work, pipe->to.get(), limit);
+  pipe->to.reset();
+  std::string bytes = readAll(pipe->from.get());
+  const int status = waitForChild(*child);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || bytes.empty())
     return Error{Errc::kMalformed, ended};
   const int code = static_cast<unsigned char>(bytes[0]);

@@ -15,6 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
+
 namespace merlin::cli {
 namespace {
 
@@ -102,14 +104,12 @@ Result<ImportChild> ImportChild::start(const std::vector<std::string>& arguments
   if (!program) return program.error();
   std::vector<std::string> all = {*program};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
-  UniqueFd from(ends[0]), to(ends[1]);
-  const pid_t pid = ::fork();
-  if (pid < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
-  if (pid == 0) execute(all, to.get());
-  return ImportChild(pid, std::move(from));
+  auto pipe = makePipe();
+  if (!pipe) return pipe.error();
+  const auto child = startChild();
+  if (!child) return child.error();
+  if (*child == 0) execute(all, pipe->to.get());
+  return ImportChild(*child, std::move(pipe->from));
 }
 
 ImportChild::ImportChild(ImportChild&& other) noexcept
@@ -120,8 +120,7 @@ ImportChild::ImportChild(ImportChild&& other) noexcept
 ImportChild::~ImportChild() {
   if (pid_ <= 0) return;
   ::kill(pid_, SIGKILL);
-  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  waitForChild(pid_);
 }
 
 // Takes what is there; false at the end.
@@ -133,10 +132,7 @@ bool ImportChild::read() {
 }
 
 Result<std::string> ImportChild::ended() {
-  int status = 0;
-  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  pid_ = -1;
+  const int status = waitForChild(std::exchange(pid_, -1));
   if (report_.result()) return *report_.result();
   if (WIFSIGNALED(status)) {
     return Error{Errc::kMalformed,

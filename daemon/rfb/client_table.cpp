@@ -1,16 +1,14 @@
 #include "daemon/rfb/client_table.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
-#include <cstring>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/log.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/rfb/client_process.h"
@@ -47,7 +45,7 @@ ClientTable::ClientTable(int places, Serve serve) : serve_(std::move(serve)) {
 
 ClientTable::~ClientTable() {
   for (const Client& client : clients_) ::kill(client.pid, SIGKILL);
-  for (const Client& client : clients_) ::waitpid(client.pid, nullptr, 0);
+  for (const Client& client : clients_) waitForChild(client.pid);
 }
 
 void ClientTable::add(UniqueFd client, Timestamp now) {
@@ -68,27 +66,20 @@ void ClientTable::add(UniqueFd client, Timestamp now) {
 }
 
 void ClientTable::start(UniqueFd client, const net::Peer& peer, Timestamp now) {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) {
-    logSentAway(peer, std::strerror(errno), now);
-    return;
-  }
-  UniqueFd report(ends[0]), to_parent(ends[1]);
+  auto report = makePipe();
+  if (!report) return logSentAway(peer, report.error().what, now);
   const pid_t parent = ::getpid();
-  const pid_t pid = ::fork();
-  if (pid < 0) {
-    logSentAway(peer, std::strerror(errno), now);
-    return;
-  }
-  if (pid == 0) {
+  const auto child = startChild();
+  if (!child) return logSentAway(peer, child.error().what, now);
+  if (*child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(kExitFailed);  // the parent ended before prctl()
     clients_.clear();                                 // closes the other clients' pipes
-    report.reset();
+    report->from.reset();
     unblockSignals();
-    ::_exit(runGuarded("merlin-rfb", [&] { return serve_(client.get(), to_parent.get()); }));
+    ::_exit(runGuarded("merlin-rfb", [&] { return serve_(client.get(), report->to.get()); }));
   }
-  clients_.push_back({pid, std::move(report), {peer, now, now, false}});
+  clients_.push_back({*child, std::move(report->from), {peer, now, now, false}});
 }
 
 void ClientTable::appendTo(std::vector<pollfd>& set) const {
@@ -117,7 +108,7 @@ void ClientTable::read(int fd, Timestamp now) {
 void ClientTable::end(std::size_t index, const std::string& reason, Timestamp now) {
   Client& client = clients_[index];
   ::kill(client.pid, SIGKILL);
-  ::waitpid(client.pid, nullptr, 0);
+  waitForChild(client.pid);
   if (client.occupant.established)
     logInfo("{}: {}", net::peerName(client.occupant.peer), reason);
   else
@@ -128,9 +119,7 @@ void ClientTable::end(std::size_t index, const std::string& reason, Timestamp no
 // The process has closed its end of the pipe: it ends, or has ended.
 void ClientTable::remove(std::size_t index, Timestamp now) {
   const Client& client = clients_[index];
-  int status = 0;
-  ::waitpid(client.pid, &status, 0);
-  const std::string how = howItEnded(status, client.occupant.established);
+  const std::string how = howItEnded(waitForChild(client.pid), client.occupant.established);
   if (client.occupant.established)
     logInfo("{}: {}", net::peerName(client.occupant.peer), how);
   else

@@ -1,5 +1,4 @@
 // merlin config edit: a person edits a copy, which takes the file's place only once it is valid.
-#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/cli/config/config.h"
 #include "daemon/cli/config/edited_file.h"
 #include "daemon/cli/exit_status.h"
@@ -53,17 +53,15 @@ class KeyboardSignalsIgnored {
 Result<Ok> runEditor(const std::string& editor, const std::string& file) {
   const std::string line = editor + " \"$1\"";
   const KeyboardSignalsIgnored ignored;
-  const pid_t child = ::fork();
-  if (child < 0) return Error{Errc::kIo, "the editor cannot be started: no process is left"};
-  if (child == 0) {
+  const auto child = startChild();
+  if (!child) return child.error();
+  if (*child == 0) {
     ::signal(SIGINT, SIG_DFL);
     ::signal(SIGQUIT, SIG_DFL);
     ::execl("/bin/sh", "sh", "-c", line.c_str(), "sh", file.c_str(), nullptr);
     ::_exit(127);
   }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = waitForChild(*child);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Ok{};
   return Error{Errc::kIo,
                fmt::format("the editor \"{}\" (from VISUAL or EDITOR) failed{}", editor,

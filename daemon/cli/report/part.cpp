@@ -17,6 +17,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/base/unique_fd.h"
@@ -176,17 +177,15 @@ void PartFolder::copy(const std::string& from, std::size_t most) {
 Result<PartResult> runPart(const PartSettings& part, int stop, const sigset_t& mask) {
   const auto folder = PrivateFolder::make();
   if (!folder) return folder.error();
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
-  UniqueFd from(ends[0]), to(ends[1]);
+  auto pipe = makePipe();
+  if (!pipe) return pipe.error();
   std::fflush(nullptr);  // what is buffered is printed once
-  const pid_t child = ::fork();
-  if (child < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
-  if (child == 0) collectInChild(part, folder->path(), to.get(), mask);
-  to.reset();
-  const Told told = listen(from.get(), stop, SystemClock().now() + part.limit);
-  endChild(child);
+  const auto child = startChild();
+  if (!child) return child.error();
+  if (*child == 0) collectInChild(part, folder->path(), pipe->to.get(), mask);
+  pipe->to.reset();
+  const Told told = listen(pipe->from.get(), stop, SystemClock().now() + part.limit);
+  endChild(*child);
   if (told.stopped) return Error{Errc::kClosed, "interrupted; nothing is left behind"};
   PartResult result;
   takeMissing(told.text, result);
@@ -207,9 +206,9 @@ Result<int> runInto(const std::string& path, const std::vector<std::string>& arg
   std::vector<char*> argv;
   for (std::string& argument : copies) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const pid_t child = ::fork();
-  if (child < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
-  if (child == 0) {
+  const auto child = startChild();
+  if (!child) return child.error();
+  if (*child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::dup2(file.get(), STDOUT_FILENO);
     ::dup2(file.get(), STDERR_FILENO);
@@ -217,9 +216,7 @@ Result<int> runInto(const std::string& path, const std::vector<std::string>& arg
     ::execvp(argv[0], argv.data());
     ::_exit(kExitNotInstalled);
   }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = waitForChild(*child);
   if (!WIFEXITED(status))
     return Error{Errc::kIo,
                  fmt::format("{} was ended by signal {}", arguments[0], WTERMSIG(status))};

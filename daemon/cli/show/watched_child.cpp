@@ -9,7 +9,6 @@
 #include <optional>
 #include <string_view>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
@@ -17,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/unique_fd.h"
 
@@ -134,21 +134,17 @@ bool follow(int from, int stop, Told& told) {
 }  // namespace
 
 Result<Ok> runWatched(const WatchedWork& watched, int stop, const sigset_t& mask) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    return Error{Errc::kIo, fmt::format("pipe: {}", std::strerror(errno))};
-  UniqueFd from(ends[0]), to(ends[1]);
+  auto pipe = makePipe();
+  if (!pipe) return pipe.error();
   std::fflush(nullptr);  // what is buffered is printed once
-  const pid_t child = ::fork();
-  if (child < 0) return Error{Errc::kIo, fmt::format("fork: {}", std::strerror(errno))};
-  if (child == 0) workInChild(watched, to.get(), mask);
-  to.reset();
+  const auto child = startChild();
+  if (!child) return child.error();
+  if (*child == 0) workInChild(watched, pipe->to.get(), mask);
+  pipe->to.reset();
   Told told(watched.on_progress);
-  const bool finished = follow(from.get(), stop, told);
-  if (!finished) endChild(child, from.get(), told);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const bool finished = follow(pipe->from.get(), stop, told);
+  if (!finished) endChild(*child, pipe->from.get(), told);
+  const int status = waitForChild(*child);
   if (!finished) return Error{Errc::kClosed, "interrupted; nothing is left behind"};
   if (const auto result = told.result()) return *result;
   // Ctrl-C reaches the child as well, and may end it before this process looks.

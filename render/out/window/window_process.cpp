@@ -10,8 +10,9 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
+
+#include "daemon/base/child_process.h"
 
 namespace merlin::render::out {
 namespace {
@@ -56,10 +57,12 @@ Result<std::unique_ptr<WindowProcess>> WindowProcess::start(const std::string& p
                                                             const WindowForm& form, int pictures) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    return Error{Errc::kIo, fmt::format("socketpair: {}", std::strerror(errno))};
+    return Error{Errc::kIo,
+                 fmt::format("a socket to merlin-window cannot be made: {}", std::strerror(errno))};
   UniqueFd ours(ends[0]), theirs(ends[1]);
   if (::send(ours.get(), &form, sizeof form, MSG_NOSIGNAL) != sizeof form)
-    return Error{Errc::kIo, fmt::format("socketpair: {}", std::strerror(errno))};
+    return Error{Errc::kIo, fmt::format("merlin-window cannot be told the window's size: {}",
+                                        std::strerror(errno))};
   pid_t pid = -1;
   if (const int refused = spawn(pid, program, theirs.get(), pictures); refused != 0)
     return Error{Errc::kIo,
@@ -71,8 +74,7 @@ Result<std::unique_ptr<WindowProcess>> WindowProcess::start(const std::string& p
 // removes the window.
 WindowProcess::~WindowProcess() {
   ::kill(pid_, SIGKILL);
-  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  waitForChild(pid_);
 }
 
 Result<Ok> WindowProcess::send(const FrameReady& frame) {
