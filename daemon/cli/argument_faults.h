@@ -56,11 +56,15 @@ inline std::vector<std::string> optionsOf(const CLI::App& app) {
 }
 
 // Of a word that nothing expected; `needs_command`: where a command's name has to stand.
-inline std::string unknownWord(const CLI::App& app, const std::string& word, bool needs_command) {
+inline std::string unknownWord(const GivenCommand& given, const std::string& word,
+                               bool needs_command) {
+  const CLI::App& app = *given.app;
   const bool is_option = word.starts_with('-');
   const std::vector<std::string> known = is_option ? optionsOf(app) : commandsOf(app);
   const std::string near = nearestWord(word, known);
   const std::string quoted = is_option ? excerpt(word) : fmt::format("\"{}\"", excerpt(word));
+  if (is_option && near == word)
+    return fmt::format("{} has to stand behind the command: {} {}", quoted, given.words, quoted);
   if (!near.empty())
     return fmt::format("{} is not {}; did you mean {}?", quoted,
                        is_option ? "an option" : "a command", near);
@@ -84,7 +88,7 @@ inline std::string argumentFault(const CLI::App& app, const std::string& program
   const bool needs_command =
       given.app->get_require_subcommand_min() > 0 && !commandsOf(*given.app).empty();
   const std::string what =
-      !left.empty()   ? unknownWord(*given.app, left.front(), needs_command)
+      !left.empty()   ? unknownWord(given, left.front(), needs_command)
       : needs_command ? fmt::format("needs a command: {}", fmt::join(commandsOf(*given.app), ", "))
                       : unconverted(error.what());
   return fmt::format("{}: {}\n{} --help describes {}\n", given.words, printable(what), given.words,

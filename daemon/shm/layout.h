@@ -23,7 +23,7 @@
 namespace merlin::shm {
 
 inline constexpr std::uint32_t kMagic = 0x4E4C524D;  // "MRLN" in memory
-inline constexpr std::uint32_t kVersion = 5;
+inline constexpr std::uint32_t kVersion = 6;
 inline constexpr std::size_t kMostFields = 704;          // of the wall's segment
 inline constexpr std::size_t kMostDevicesFields = 2304;  // of the devices' segment
 
@@ -225,7 +225,7 @@ static_assert(sizeof(OutputStats) == 328);
 struct WallOutputs {
   std::uint32_t count;  // of outputs that are used
   std::uint32_t reserved;
-  OutputStats outputs[8];
+  OutputStats outputs[32];
 };
 
 // The content that is shown, and what became of the last request for one. Written once a period.

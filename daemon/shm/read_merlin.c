@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
   memory = mmap(0, (size_t)status.st_size, PROT_READ, MAP_SHARED, fd, 0);
   const struct header* h = (const struct header*)memory;
   /* The second one is the frame buffer's. */
-  if (memory == MAP_FAILED || (h->magic != 0x4E4C524D && h->magic != 0x42464D4D) || h->version != (h->magic == 0x4E4C524D ? 5u : 4u)) {
+  if (memory == MAP_FAILED || (h->magic != 0x4E4C524D && h->magic != 0x42464D4D) || h->version != (h->magic == 0x4E4C524D ? 6u : 4u)) {
     fprintf(stderr, "read_merlin: %s is not a segment of MERLIN that this program knows\n", path);
     return 2;
   }

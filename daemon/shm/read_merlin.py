@@ -8,7 +8,7 @@ import mmap, struct, sys
 
 HEADER = "<IIQQIIII"             # magic, version, size, generation, table: offset, count, size; pid
 FIELD = "<48s24s8sIIIIIIII"      # name, unit, type, count, step, offset, slot, ring (3 numbers)
-VERSIONS = {0x4E4C524D: 5, 0x42464D4D: 4}  # of each kind of segment, by its magic
+VERSIONS = {0x4E4C524D: 6, 0x42464D4D: 4}  # of each kind of segment, by its magic
 
 def text(raw):
     return raw.split(b"\0")[0].decode(errors="replace")

@@ -16,7 +16,7 @@ def endpoint(segment, wanted):
     with open(f"/dev/shm/{segment}", "rb") as file:
         memory = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
     magic, version, _, _, table, fields, size, _ = struct.unpack_from("<IIQQIIII", memory)
-    if magic != 0x4E4C524D or version != 5:
+    if magic != 0x4E4C524D or version != 6:
         sys.exit(f"read_status.py: {segment} is not a segment of MERLIN that this program knows")
     for i in range(fields):
         name, _, type_, _, _, offset = struct.unpack_from("<48s24s8sIII", memory, table + i * size)

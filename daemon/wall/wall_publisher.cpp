@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <type_traits>
 
 #include "daemon/base/fixed_text.h"
 
@@ -114,6 +115,7 @@ void WallPublisher::idle(const Playlist::Due& due, bool testcard, Timestamp now)
 
 void WallPublisher::outputs(const render::out::OutputSet& outputs, Timestamp now) {
   if (!slots_.outputs) return;
+  static_assert(std::extent_v<decltype(shm::WallOutputs::outputs)> == render::out::kMostOutputs);
   shm::WallOutputs all{};
   all.count = static_cast<std::uint32_t>(std::min(outputs.size(), std::size(all.outputs)));
   for (std::size_t i = 0; i < all.count; ++i) {

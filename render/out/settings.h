@@ -74,7 +74,7 @@ std::optional<PictureSize> pictureSize(const OutputSettings& output,
                                        const tiles::TilesSettings& tiles);
 
 // Maximum number of outputs; shared memory has room for the state of this many.
-inline constexpr std::size_t kMostOutputs = 8;
+inline constexpr std::size_t kMostOutputs = 32;
 
 // Checks for: no output or more than kMostOutputs; two outputs with one name; a name of more than
 // 23 characters; two outputs in shared memory; a PNG output without a path; a setting that belongs

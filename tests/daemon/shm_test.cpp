@@ -24,9 +24,9 @@ using test::privateName;
 
 const Endpoints kEndpoints{"ipc:///run/merlin/a.status", "ipc:///run/merlin/a.command"};
 
-// The contract with other programs: these offsets never change within version 5.
-TEST(Layout, OffsetsOfVersion5) {
-  EXPECT_EQ(kVersion, 5u);
+// The contract with other programs: these offsets never change within version 6.
+TEST(Layout, OffsetsOfVersion6) {
+  EXPECT_EQ(kVersion, 6u);
   EXPECT_EQ(offsetof(Header, generation), 16u);
   EXPECT_EQ(offsetof(Header, field_offset), 24u);
   EXPECT_EQ(offsetof(Header, field_count), 28u);

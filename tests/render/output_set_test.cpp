@@ -300,8 +300,8 @@ TEST(OutputSettings, AreCheckedTogether) {
   const out::OutputSettings shared, png{out::OutputKind::kPng, "", "a.png", 60};
   EXPECT_EQ(faultOf({shared, png}), "");
   EXPECT_EQ(faultOf({}), " is an empty list; a wall has at least one output");
-  EXPECT_EQ(faultOf(std::vector<out::OutputSettings>(9, png)),
-            " has 9 outputs; a wall has at most 8");
+  EXPECT_EQ(faultOf(std::vector<out::OutputSettings>(33, png)),
+            " has 33 outputs; a wall has at most 32");
   EXPECT_EQ(faultOf({png, png}), "/1 is the second output named \"png\"; give it a \"name\"");
   EXPECT_EQ(faultOf({png, {out::OutputKind::kPng, "b", "b.png", 60}}), "");
   EXPECT_EQ(faultOf({png, {out::OutputKind::kPng, "b", "a.png", 60}}),

@@ -298,6 +298,9 @@ TEST_F(BadInput, ArgumentsThatNoCommandTakes) {
                 {"merlin: \"qqqqqq\" is not a command; commands are status, watch, "});
   expectOutcome(run({kMerlin, "mesh", "info", scan, "--jsn"}), 2,
                 {"merlin mesh info: --jsn is not an option; did you mean --json?"});
+  expectOutcome(run({kMerlin, "--instance", "x", "status"}), 2,
+                {"merlin status: --instance has to stand behind the command: "
+                 "merlin status --instance\n"});
   expectOutcome(run({kMerlin, "blank", "now"}), 2,
                 {"merlin blank: \"now\" is one argument too many"});
   expectOutcome(run({kMerlin, "snapshot"}), 2, {"merlin snapshot: -o is required\n"});

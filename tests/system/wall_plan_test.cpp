@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/eventually.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -113,6 +114,38 @@ TEST_F(WallPlan, SaysWhereProjectorsOverlap) {
   EXPECT_NE(done.output.find("<a> and b overlap by 0.200 x 1.200 m: "), std::string::npos)
       << done.output;
   EXPECT_EQ(readText(dir_ / "room.svg").find("<a>"), std::string::npos) << "escaped";
+}
+
+// Six by five displays, each an output of its own beside the shared memory.
+TEST_F(WallPlan, AWallOfThirtyDisplaysShowsEachOfThem) {
+  json displays = json::array(), outputs = {{{"kind", "shared_memory"}}};
+  for (int i = 0; i < 30; ++i) {
+    const std::string name = "display" + std::to_string(i);
+    displays.push_back({{"name", name},
+                        {"part_m", {0.4 * (i % 6), 0.3 * (i / 6), 0.4, 0.3}},
+                        {"width", 32},
+                        {"height", 24}});
+    outputs.push_back({{"kind", "png"},
+                       {"name", name},
+                       {"path", dir_ / (name + ".png")},
+                       {"interval_s", 1},
+                       {"tiles", {{{"tile", name}}}}});
+  }
+  const json panel = {
+      {"name", "screen"}, {"width_m", 2.4}, {"height_m", 1.5}, {"lower_left_m", {-1.2, -0.75, -3}}};
+  MerlindOptions options;
+  options.also["wall"] = {{"room", {{"panels", {panel}}, {"displays", displays}}},
+                          {"outputs", outputs}};
+  Merlind wall(dir_, makeModel(dir_, 2), "many", options);
+  ASSERT_TRUE(wall.ready()) << wall.process().output();
+  EXPECT_TRUE(eventually([&] {
+    const json shown = wall.status()["outputs"];
+    return shown.size() == 31 && std::all_of(shown.begin(), shown.end(), [](const json& output) {
+             return output["health"] == "ok" && output["frames"] > 0;
+           });
+  })) << wall.status().dump(1);
+  for (int i = 0; i < 30; ++i)
+    EXPECT_TRUE(std::filesystem::exists(dir_ / ("display" + std::to_string(i) + ".png"))) << i;
 }
 
 TEST_F(WallPlan, TilesByHandAreDrawnToo) {
