@@ -43,7 +43,10 @@ void describeStereo(render::stereo::StereoSettings& s, bool from_room, SettingsV
   v.oneOf("size", s.size, render::stereo::kEyeSizeNames,
           "Size of each eye's picture in the modes side_by_side and top_bottom. half: half of the "
           "tile's width or height, so that both together are as large as the tile, as most 3D "
-          "projectors expect. full: as large as the tile.");
+          "projectors expect. full: as large as the tile. An output without tiles is sent the "
+          "frame: with half it has a pair in the place of each tile, as several projectors on one "
+          "signal need it; with full all left eyes' pictures come first and then all right eyes', "
+          "as one 3D display of several tiles needs it.");
   v.number("eye_separation_m", s.eye_separation_m, {0, 10},
            "Distance between the viewer's eyes in metres, usually 0.05 to 0.075.");
   if (from_room) {

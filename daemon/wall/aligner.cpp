@@ -104,16 +104,11 @@ render::correct::CorrectionSettings Aligner::settingsOf(const Entry& entry,
   if (!of) return settings;
   for (const auto& [place, by] : of->moved) {
     if (place.of == Place::Of::kPin) {
-      settings.corners[2 * place.corner()] += by.x;
-      settings.corners[2 * place.corner() + 1] += by.y;
-      continue;
+      moveCorner(settings, place.corner(), by.x, by.y);
+    } else {
+      moveMeshPoint(settings.mesh, place.column, place.row,
+                    {by.x / entry.output.width, by.y / entry.output.height});
     }
-    const auto columns = static_cast<std::size_t>(settings.mesh.columns);
-    render::correct::MeshPoint& point =
-        settings.mesh.points[static_cast<std::size_t>(place.row) * columns +
-                             static_cast<std::size_t>(place.column)];
-    point.x += by.x / entry.output.width;
-    point.y += by.y / entry.output.height;
   }
   return settings;
 }

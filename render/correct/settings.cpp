@@ -122,6 +122,17 @@ bool CorrectionSettings::isOff() const {
          colour.isOff() && black.isOff();
 }
 
+void moveCorner(CorrectionSettings& settings, std::size_t corner, double right_px, double down_px) {
+  settings.corners[2 * corner] += right_px;
+  settings.corners[2 * corner + 1] += down_px;
+}
+
+void moveMeshPoint(MeshSettings& mesh, int column, int row, const MeshPoint& by) {
+  MeshPoint& point = mesh.points[static_cast<std::size_t>(row * mesh.columns + column)];
+  point.x += by.x;
+  point.y += by.y;
+}
+
 SettingFaults validate(const CorrectionSettings& s, int width, int height) {
   SettingFaults faults;
   const bool pinned = checkCorners(s, width, height, faults);

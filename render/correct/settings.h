@@ -80,6 +80,12 @@ struct CorrectionSettings {
   bool operator==(const CorrectionSettings&) const = default;
 };
 
+// Moves a corner, counted as in `corners`, by pixels of the output.
+void moveCorner(CorrectionSettings& settings, std::size_t corner, double right_px, double down_px);
+// Moves a point of the mesh, counted from 0, by shares of the output's width and height. REQUIRES:
+// the mesh has that point.
+void moveMeshPoint(MeshSettings& mesh, int column, int row, const MeshPoint& by);
+
 // Pictures of equal size in one signal, each of which the projector stretches over the whole
 // screen: those of both eyes.
 struct SignalParts {

@@ -119,6 +119,26 @@ std::optional<SettingFault> faultOfEyes(const StereoSettings& s, const tiles::Ti
                   s.eye_separation_m, left.name.substr(0, left.name.size() - 2), distance_m)};
 }
 
+// Of eyes that are one behind the other, or the wrong way round, for the viewer of every screen.
+std::optional<SettingFault> faultOfDirection(const StereoSettings& s, const EyeTiles& eyes) {
+  constexpr double kAgainst = -0.5, kBehind = 0.99;  // cosines
+  if (s.eyes_direction == std::array<double, 3>{}) return std::nullopt;
+  const Vector3d direction = Vector3d(s.eyes_direction.data()).normalized();
+  for (const tiles::TileSettings& t : eyes.tiles.tiles) {
+    if (t.eye != tiles::Eye::kLeft) continue;
+    const Eigen::Matrix3d corners = Eigen::Map<const Eigen::Matrix3d>(t.screen_m.data());
+    const Vector3d across = (corners.col(1) - corners.col(0)).normalized(),
+                   up = corners.col(2) - corners.col(0);
+    const double behind = direction.dot(across.cross(up).normalized());
+    if (direction.dot(across) > kAgainst && std::abs(behind) < kBehind) return std::nullopt;
+  }
+  return SettingFault{
+      "/stereo/eyes_direction",
+      fmt::format("is {}: for every screen the right eye would be behind the left one, or to the "
+                  "left of it; give x, y and z from the left to the right eye, such as 1, 0, 0",
+                  fmt::join(s.eyes_direction, ", "))};
+}
+
 SettingFaults faultsOfTiles(const StereoSettings& s, const tiles::TilesSettings& tiles,
                             const EyeTiles& eyes) {
   const std::string mode = fmt::format("is {}", nameOf(s.mode));
@@ -141,6 +161,7 @@ SettingFaults faultsOfTiles(const StereoSettings& s, const tiles::TilesSettings&
     if (t.eye != tiles::Eye::kLeft) continue;
     if (auto fault = faultOfEyes(s, t)) return {*std::move(fault)};
   }
+  if (auto fault = faultOfDirection(s, eyes)) return {*std::move(fault)};
   return {};
 }
 

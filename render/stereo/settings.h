@@ -64,7 +64,8 @@ struct StereoSettings {
 // does not see a screen from the front, a tile that cannot be halved or whose name has no room for
 // the eye's, an output that shows a tile in a way that the mode has not, one whose correction would
 // move or cover parts of both eyes' pictures where these are not the halves of the signal,
-// two_outputs without two outputs; eyes without a line; axes of the tracker that are not a
+// two_outputs without two outputs; eyes without a line, or one behind the other or the wrong way
+// round for every screen; axes of the tracker that are not a
 // right-handed permutation, figures that are not numbers. Pointers are relative to /wall:
 // "/stereo/mode", "/outputs/0/tiles/1". What else is wrong with the resulting tiles and outputs,
 // their own validate() finds. Pure. `tiles`: those of the wall without stereo, without faults;

@@ -24,7 +24,8 @@ TEST(AlignedWall, EachMovedPointIsNamedWithWhatToAddInTheConfiguration) {
             (std::vector<std::string>{
                 "right (640 x 480)", "  top_left      +39 +0  (configured +40 +0, moved -1 +0)",
                 "  top_right     +0 +0", "  bottom_left   +0 +0", "  bottom_right  +0 +0",
-                "  point 1 2     moved -3.2 +2.4  (in the configuration: -0.005000 +0.005000)",
+                "  point 1 2     moved -3.2 +2.4  (add -0.005000 +0.005000 to the point in the "
+                "configuration)",
                 "steps that can be undone: 2, redone: 0"}));
 }
 

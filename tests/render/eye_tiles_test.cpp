@@ -357,6 +357,20 @@ const Fault kFaults[] = {
      "is 0.0001, 0, 0, which is not a direction; give x, y and z from the left to the right eye, "
      "such "
      "as 1, 0, 0"},
+    {"EyesTheWrongWayRound",
+     [](Wall& w) {
+       w.stereo.eyes_direction = {-1, 0, 0};
+     },
+     "/stereo/eyes_direction",
+     "is -1, 0, 0: for every screen the right eye would be behind the left one, or to the left of "
+     "it; give x, y and z from the left to the right eye, such as 1, 0, 0"},
+    {"EyesBehindEachOther",
+     [](Wall& w) {
+       w.stereo.eyes_direction = {0, 0, 1};
+     },
+     "/stereo/eyes_direction",
+     "is 0, 0, 1: for every screen the right eye would be behind the left one, or to the left of "
+     "it; give x, y and z from the left to the right eye, such as 1, 0, 0"},
     {"AHeadAtNoStation", [](Wall& w) { w.stereo.head.station = 5; }, "/stereo/head/station",
      "is 5; a tracker has stations 1 to 4, 0 is none"},
     {"AMirroredTracker",

@@ -223,6 +223,7 @@ struct Parts {
   std::string version = "version=\"2.0\"", profile = "2d", interpolation = "linear";
   std::string warp = identity(), alpha = greyPng(2, 2, {0, 65535, 32768, 13107});
   std::string beta{}, alpha_tags = "<gammaEmbedded>1.0</gammaEmbedded>", xml{}, region{};
+  std::string place = R"(x="0.0" y="0.0" xsize="1.0" ysize="1.0")";
   std::map<std::string, std::string> extra{};
 
   std::string bytes() const {
@@ -232,14 +233,14 @@ struct Parts {
         R"(<?xml version="1.0" encoding="utf-8"?>
 <MPCDI profile="{}" level="1" date="2015-01-01 10:00:00" {}>
  <display><buffer id="d" Xresolution="160" Yresolution="120">
-  <region id="r" Xresolution="160" Yresolution="120" x="0.0" y="0.0" xsize="1.0" ysize="1.0">{}</region>
+  <region id="r" Xresolution="160" Yresolution="120" {}>{}</region>
  </buffer></display>
  <files><fileset region="r">
   <geometryWarpFile><path> w.pfm </path><interpolation>{}</interpolation></geometryWarpFile>
   <alphaMap><componentDepth>1</componentDepth><path>a.png</path>{}</alphaMap>{}
  </fileset></files>
 </MPCDI>)",
-        profile, version, region, interpolation, alpha_tags, beta_map);
+        profile, version, place, region, interpolation, alpha_tags, beta_map);
     std::vector<std::pair<std::string, std::string>> entries = {
         {"mpcdi.xml", xml.empty() ? text : xml}, {"w.pfm", warp}, {"a.png", alpha}};
     if (!beta.empty()) entries.emplace_back("b.png", beta);
@@ -299,8 +300,10 @@ TEST(Mpcdi, TheLowestRowIsFirstAndVGoesUp) {
 
 TEST(Mpcdi, BigEndianFloatsAreRead) {
   std::string bytes = "PF\n2 2\n1.0\n";
-  const std::string half("\x3f\x00\x00\x00", 4);
-  for (int i = 0; i < 12; ++i) bytes += half;
+  const std::string half("\x3f\x00\x00\x00", 4), one("\x3f\x80\x00\x00", 4);
+  for (const std::string& v : {half, one}) {
+    for (const std::string& u : {half, one}) bytes += u + v + half;
+  }
   Parts parts;
   parts.warp = bytes;
   EXPECT_EQ(measuredOf(parts).warp.places[2].x, 0.5);
@@ -419,7 +422,8 @@ TEST(Mpcdi, ABrokenWarpIsSaid) {
       "two numbers, or two NaN where nothing was measured");
   EXPECT_NE(warp(pfm(2, 2, {{inf, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}})), "");
   EXPECT_EQ(warp(pfm(2, 2, std::vector(4, std::array{kNaN, kNaN, 1.0F}))),
-            "w.pfm: has NaN in every cell; it shows nothing");
+            "w.pfm: the warp of region \"r\" has NaN in every cell, so that it shows nothing; "
+            "write the file anew with the calibration tool, or leave mpcdi out of the correction");
   EXPECT_EQ(warp("PF\n100000 100000\n-1.0\n"),
             "w.pfm: has 100000 x 100000 cells; the maximum is 16777216");
   EXPECT_EQ(warp("PF\n2 2\n-1.0\nabc"), "w.pfm: has 3 bytes of floats; 2 x 2 cells need 48");
@@ -433,6 +437,46 @@ TEST(Mpcdi, ABrokenWarpIsSaid) {
         warp(head),
         "w.pfm: is not a PFM: it does not begin with PF, columns, rows and a scale that is not 0")
         << head;
+}
+
+// Such a map shows one place of the picture everywhere: its tool has not filled it.
+TEST(Mpcdi, AWarpWithoutAnAreaIsSaidWithItsRegion) {
+  const auto warp = [&](const std::vector<std::array<float, 3>>& cells) {
+    return faultWith([&](Parts& p) { p.warp = pfm(2, 2, cells); });
+  };
+  const std::string way_out =
+      "; write the file anew with the calibration tool, or leave mpcdi out of the correction";
+  EXPECT_EQ(warp(std::vector(4, std::array{0.0F, 0.0F, 0.0F})),
+            "w.pfm: the warp of region \"r\" has (0, 0) in every cell, so that every pixel shows "
+            "the same point of the picture" +
+                way_out);
+  EXPECT_EQ(warp({{kNaN, kNaN, 1}, {0.5F, 0.25F, 0}, {kNaN, kNaN, 1}, {0.5F, 0.25F, 0}}),
+            "w.pfm: the warp of region \"r\" has (0.5, 0.25) in every cell, so that every pixel "
+            "shows the same point of the picture" +
+                way_out);
+  EXPECT_EQ(warp({{0, 0.75F, 0}, {0, 0.75F, 0}, {0, 0.25F, 0}, {0, 0.25F, 0}}),
+            "w.pfm: the warp of region \"r\" has the u 0 in every cell, so that every pixel shows "
+            "the same column of the picture" +
+                way_out);
+  EXPECT_EQ(
+      warp({{0, 0.75F, 0}, {1, 0.75F, 0}, {0, 0.75F, 0}, {1, 0.75F, 0}}),
+      "w.pfm: the warp of region \"r\" has the v 0.75 in every cell, so that every pixel shows "
+      "the same row of the picture" +
+          way_out);
+}
+
+TEST(Mpcdi, ARegionsPartOfItsBufferIsKnown) {
+  const auto partOf = [](const std::string& place) {
+    Parts parts;
+    parts.place = place;
+    const std::string bytes = parts.bytes();
+    const auto opened = correct::Mpcdi::open(bytesOf(bytes));
+    return opened ? opened->regions()[0].part : opened.error().what;
+  };
+  for (const char* whole : {"", "x='0' y='0' xSize='1' ySize='1'", "xsize='1.0000001'"})
+    EXPECT_EQ(partOf(whole), "") << whole;
+  EXPECT_EQ(partOf("x='0.5' y='0.0' xsize='0.50' ysize='1.0'"), "x 0.5, y 0, xSize 0.5, ySize 1");
+  EXPECT_EQ(partOf("xSize='half'"), "x 0, y 0, xSize \"half\", ySize 1");
 }
 
 TEST(Mpcdi, ABrokenBlendMapIsSaid) {

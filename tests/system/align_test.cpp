@@ -147,6 +147,69 @@ TEST_F(Align, TheConfiguredCorrectionIsTheBase) {
   EXPECT_TRUE(eventually([&] { return blackLeft(100) == 15; }));
 }
 
+class AlignedExport : public Align {
+ protected:
+  // What is said of an export, and of the file's content.
+  std::pair<std::string, std::string> exported(const std::string& config) const {
+    const std::string mpcdi = dir_ / "wall.mpcdi";
+    const Outcome done = run({kMerlin, "wall", "mpcdi", "export", mpcdi, "-c", config});
+    EXPECT_EQ(done.status, 0) << done.output;
+    return {done.output, run({kMerlin, "wall", "mpcdi", "import", mpcdi}).output};
+  }
+  // The wall's configuration with another correction; without `running` of another instance.
+  std::string changed(const json& correction, bool running) const {
+    json config = json::parse(readText(wall_->config()));
+    if (!running) config["instance"] = privateName("other");
+    config["wall"]["outputs"][1]["correction"] = correction;
+    writeText(dir_ / "changed.json", config.dump());
+    return dir_ / "changed.json";
+  }
+};
+
+// The file is the same as of a configuration with the corners where they were moved to.
+TEST_F(AlignedExport, HasMovedCorners) {
+  EXPECT_EQ(moveCorner("top_left", "20", "12.5").status, 0);
+  const auto [said, moved] = exported(wall_->config());
+  EXPECT_NE(said.find("left: what merlin wall align has moved is in the file; once the "
+                      "configuration uses the file, run merlin wall align --reset --output left"),
+            std::string::npos)
+      << said;
+  const json there = {{"corners", {20, 12.5, 0, 0, 0, 0, 0, 0}}},
+             elsewhere = {{"corners", {1, 0, 0, 0, 0, 0, 0, 0}}};
+  EXPECT_EQ(exported(changed(there, false)).second, moved);
+  const auto [foreign, without] = exported(changed(elsewhere, true));
+  EXPECT_NE(foreign.find("left: what merlin wall align has moved is not in the file: the wall runs "
+                         "with another size, mesh or corners"),
+            std::string::npos)
+      << foreign;
+  EXPECT_NE(without, moved);
+  const std::string stopped = exported(changed(elsewhere, false)).first;
+  EXPECT_NE(
+      stopped.find("if merlin wall align has moved anything, it is not in the file, since the "
+                   "wall cannot be asked: "),
+      std::string::npos)
+      << stopped;
+}
+
+TEST_F(AlignedExport, HasMovedPointsOfTheMesh) {
+  const auto meshed = [](double x, double y) {
+    const auto point = [](double px, double py) { return json{{"x", px}, {"y", py}}; };
+    return json{{"mesh",
+                 {{"columns", 2},
+                  {"rows", 2},
+                  {"points", {point(0, 0), point(1, 0), point(0, 1), point(x, y)}}}}};
+  };
+  wall_->process().kill(SIGTERM);
+  also_ = {{"wall", {{"outputs", json::array()}}}};
+  also_["wall"]["outputs"] = json::parse(readText(wall_->config()))["wall"]["outputs"];
+  also_["wall"]["outputs"][1]["correction"] = meshed(1, 1);
+  start();
+  EXPECT_EQ(align({"--output", "left", "--point", "1", "1", "--by", "-32", "-12"}).status, 0);
+  const std::string moved = exported(wall_->config()).second;
+  EXPECT_EQ(moved, exported(changed(meshed(0.9, 0.95), false)).second);
+  EXPECT_NE(moved, exported(changed(meshed(1, 1), false)).second);
+}
+
 TEST_F(Align, WhatCannotBeIsRefusedWithAMessageAndChangesNothing) {
   const auto refused = [&](const std::vector<std::string>& words, const std::string& what) {
     const Outcome outcome = align(words);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "render/correct/io/archive.h"
 #include "render/image/image_file.h"
 #include "tests/system/merlind.h"
 
@@ -117,6 +118,46 @@ TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
   const auto cut = shown("cut", {{"mpcdi", mpcdi_}, {"corners", kCorners}}),
              without = shown("without", {{"corners", kCorners}});
   EXPECT_EQ(cut.pixels, without.pixels);
+}
+
+// A region that is a part of its buffer, as others write it, and a warp that its tool never filled.
+TEST_F(Correction, WhatAnMpcdiFileHasThatShowsAnotherPictureIsSaid) {
+  const auto imported = [&](const std::string& place, const std::string& cells) {
+    using Entries = std::vector<std::pair<std::string, std::string>>;
+    const std::string xml = fmt::format(
+        "<MPCDI profile='2d' version='2.0'><display><buffer id='wall'><region id='right' "
+        "xResolution='640' yResolution='480' {}/></buffer></display><files><fileset "
+        "region='right'><geometryWarpFile><path>w.pfm</path></geometryWarpFile></fileset></files>"
+        "</MPCDI>",
+        place);
+    const auto bytes = render::correct::zipBytes(
+        Entries{{"mpcdi.xml", xml}, {"w.pfm", "PF\n2 2\n-1.0\n" + cells}});
+    writeText(mpcdi_, *bytes);
+    return run({kMerlin, "wall", "mpcdi", "import", mpcdi_});
+  };
+  std::string cells;
+  for (const float value :
+       {0.25F, 0.25F, 0.F, 0.75F, 0.25F, 0.F, 0.25F, 0.75F, 0.F, 0.75F, 0.75F, 0.F})
+    cells.append(reinterpret_cast<const char*>(&value), sizeof value);
+  const Outcome part = imported("x='0.5' y='0' xSize='0.5' ySize='1'", cells);
+  EXPECT_EQ(part.status, 0) << part.output;
+  EXPECT_NE(part.output.find("region right shows only a part of the picture of buffer wall: x 0.5, "
+                             "y 0, xSize 0.5, ySize 1. MERLIN takes the picture of the output for "
+                             "that part: let its tiles show this part and no more"),
+            std::string::npos)
+      << part.output;
+  const Outcome whole = imported("x='0' y='0' xSize='1' ySize='1'", cells);
+  EXPECT_EQ(whole.output.find("only a part"), std::string::npos) << whole.output;
+  const std::string fault =
+      mpcdi_ + ": w.pfm: the warp of region \"right\" has (0, 0) in every cell";
+  const Outcome zero = imported("", std::string(48, '\0'));
+  EXPECT_EQ(zero.status, 2) << zero.output;
+  EXPECT_NE(zero.output.find(fault), std::string::npos) << zero.output;
+  const Outcome checked = run({kMerlind, "--check-config", file("zero", {{"mpcdi", mpcdi_}})});
+  EXPECT_EQ(checked.status, 1) << "adjusted: " << checked.output;
+  EXPECT_NE(checked.output.find("/wall/outputs/1/correction/mpcdi cannot be used: " + fault),
+            std::string::npos)
+      << checked.output;
 }
 
 TEST_F(Correction, AnMpcdiRegionThatIsNotThereCostsOneOutputItsCorrectionAndTheStatusSaysSo) {

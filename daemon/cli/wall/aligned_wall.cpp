@@ -33,12 +33,20 @@ AlignedPicture pictureOf(const Json& json) {
     const Json& corner = json.at("corners").at(state::kCornerNames[i]);
     picture.corners[i] = {offsetOf(corner.at("configured")), offsetOf(corner.at("moved"))};
   }
+  picture.mesh_columns = json.at("mesh").at(0);
+  picture.mesh_rows = json.at("mesh").at(1);
   for (const Json& point : json.at("points"))
     picture.points.push_back({point.at("column"), point.at("row"), offsetOf(point.at("moved"))});
   return picture;
 }
 
 }  // namespace
+
+bool AlignedPicture::isMoved() const {
+  return !points.empty() || std::ranges::any_of(corners, [](const AlignedCorner& corner) {
+    return corner.moved != state::Offset{};
+  });
+}
 
 const AlignedPicture* AlignAnswer::find(const std::string& output) const {
   const auto found = std::ranges::find(outputs, output, &AlignedPicture::name);
@@ -97,10 +105,10 @@ std::vector<std::string> alignmentLines(const AlignAnswer& answer) {
       lines.push_back(std::move(line));
     }
     for (const AlignedPoint& point : output.points) {
-      lines.push_back(
-          fmt::format("  {:<13} moved {:+g} {:+g}  (in the configuration: {:+.6f} {:+.6f})",
-                      fmt::format("point {} {}", point.column, point.row), point.moved.x,
-                      point.moved.y, point.moved.x / output.width, point.moved.y / output.height));
+      lines.push_back(fmt::format(
+          "  {:<13} moved {:+g} {:+g}  (add {:+.6f} {:+.6f} to the point in the configuration)",
+          fmt::format("point {} {}", point.column, point.row), point.moved.x, point.moved.y,
+          point.moved.x / output.width, point.moved.y / output.height));
     }
   }
   lines.push_back(

@@ -25,6 +25,10 @@ struct AlignedPicture {
   std::array<AlignedCorner, 4> corners;   // in the order of state::kCornerNames
   std::vector<AlignedPoint> points = {};  // those that are moved
   state::SeenAxes axes{};
+  int mesh_columns = 0, mesh_rows = 0;  // 0: no mesh
+
+  // Whether anything of it is not where the configuration has it.
+  bool isMoved() const;
 };
 struct AlignAnswer {
   std::vector<AlignedPicture> outputs;
@@ -43,7 +47,7 @@ class AlignedWall {
   // Errors: those of askRole(); kMalformed: not an answer of this version.
   Result<AlignAnswer> ask(const state::AlignRequest& request) const;
 
-  // The same, and waits until all outputs show what was changed, 10 s at most. Errors: kTimeout.
+  // The same, and waits until all outputs show what was changed, 60 s at most. Errors: kTimeout.
   Result<AlignAnswer> askAndWait(const state::AlignRequest& request) const;
 
  private:

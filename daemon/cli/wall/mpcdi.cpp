@@ -6,6 +6,9 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -18,6 +21,7 @@
 #include "daemon/cli/command.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
+#include "daemon/cli/wall/aligned_wall.h"
 #include "render/correct/io/mpcdi.h"
 
 namespace merlin::cli {
@@ -32,19 +36,77 @@ struct ExportOptions {
   std::string file, config, output;
 };
 
-// The first finding that makes it invalid, as an error.
-Result<WallSettings> readWall(const std::string& path) {
+// The first finding that makes it invalid, as an error. The wall is as it is drawn.
+Result<Settings> readSettings(const std::string& path) {
   const LoadedSettings loaded = loadSettingsFile(path);
   for (const Finding& finding : loaded.findings) {
     if (!finding.adjusted) return Error{Errc::kInvalidArgument, toText(path, finding)};
   }
-  return drawnWall(loaded.settings.wall);
+  Settings settings = loaded.settings;
+  settings.wall = drawnWall(settings.wall);
+  return settings;
+}
+
+// What merlin wall align has moved of the wall that runs under this name. Of one that does not run
+// it is in a file whose place depends on the user who runs merlind.
+AlignAnswer movesOf(const std::string& instance) {
+  auto answer = AlignedWall(instance).ask(state::ListRequest{});
+  if (answer) return *std::move(answer);
+  printNote(
+      fmt::format("if merlin wall align has moved anything, it is not in the file, since the "
+                  "wall cannot be asked: {}",
+                  answer.error().what));
+  return {};
+}
+
+// The correction with what was moved; nothing if that was moved from another one.
+std::optional<render::correct::CorrectionSettings> movedCorrection(
+    render::correct::CorrectionSettings correction, const render::out::PictureSize& size,
+    const AlignedPicture& moved) {
+  const bool is_same = moved.width == size.width && moved.height == size.height &&
+                       moved.mesh_columns == correction.mesh.columns &&
+                       moved.mesh_rows == correction.mesh.rows;
+  if (!is_same) return std::nullopt;
+  for (std::size_t i = 0; i < moved.corners.size(); ++i) {
+    const auto& [configured, by] = moved.corners[i];
+    const state::Offset here{correction.corners[2 * i], correction.corners[2 * i + 1]};
+    if (here != configured) return std::nullopt;
+    moveCorner(correction, i, by.x, by.y);
+  }
+  for (const AlignedPoint& point : moved.points) {
+    moveMeshPoint(correction.mesh, point.column, point.row,
+                  {point.moved.x / size.width, point.moved.y / size.height});
+  }
+  if (!validate(correction, size.width, size.height).empty()) return std::nullopt;
+  return correction;
+}
+
+// Adds to the output's correction what was moved of it, and says so.
+void addMoves(render::out::OutputSettings& output, const render::out::PictureSize& size,
+              const AlignAnswer& moves) {
+  const std::string name = output.shownName();
+  const AlignedPicture* const moved = moves.find(name);
+  if (!moved || !moved->isMoved()) return;
+  const auto correction = movedCorrection(output.correction, size, *moved);
+  if (!correction) {
+    printNote(
+        fmt::format("{}: what merlin wall align has moved is not in the file: the wall runs "
+                    "with another size, mesh or corners of this output than the "
+                    "configuration has; run merlin reload, then export again",
+                    name));
+    return;
+  }
+  output.correction = *correction;
+  printNote(
+      fmt::format("{0}: what merlin wall align has moved is in the file; once the "
+                  "configuration uses the file, run merlin wall align --reset --output {0}, or "
+                  "it is moved twice",
+                  name));
 }
 
 Result<render::correct::MpcdiOutput> exported(const render::out::OutputSettings& output,
-                                              const render::tiles::TilesSettings& tiles) {
+                                              const render::out::PictureSize& size) {
   const render::correct::CorrectionSettings& correction = output.correction;
-  const auto size = *render::out::pictureSize(output, tiles);
   std::optional<render::correct::MeasuredCorrection> measured;
   if (!correction.mpcdi.empty()) {
     auto read = render::correct::readMeasured(correction.mpcdi, correction.mpcdi_region);
@@ -61,38 +123,46 @@ Result<render::correct::MpcdiOutput> exported(const render::out::OutputSettings&
                                       measured ? &*measured : nullptr, threadsOr(0));
 }
 
+// The outputs that are wanted, at least one. Errors also name those that there are.
+Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const ExportOptions& options,
+                                                                  const Settings& settings) {
+  const AlignAnswer moves = movesOf(settings.instance);
+  std::vector<render::correct::MpcdiOutput> outputs;
+  std::vector<std::string> names;
+  for (render::out::OutputSettings output : settings.wall.outputs) {
+    names.push_back(output.shownName());
+    if (!options.output.empty() && names.back() != options.output) continue;
+    const auto size = *render::out::pictureSize(output, settings.wall.tiles);
+    addMoves(output, size, moves);
+    if (options.output.empty() && output.correction.isOff()) continue;
+    auto made = exported(output, size);
+    if (!made) return made.error();
+    outputs.push_back(*std::move(made));
+  }
+  if (!outputs.empty()) return outputs;
+  return Error{Errc::kInvalidArgument,
+               options.output.empty()
+                   ? fmt::format("{}: no output has a correction; --output NAME writes one "
+                                 "without: {}",
+                                 options.config, fmt::join(names, ", "))
+                   : fmt::format("{}: no output is named \"{}\"; there are {}", options.config,
+                                 options.output, fmt::join(names, ", "))};
+}
+
 int exportFile(const ExportOptions& options) {
   if (const auto named = checkEnding(options.file, "correction file", ".mpcdi"); !named)
     return fail(named.error());
-  const auto wall = readWall(options.config);
-  if (!wall) return fail(wall.error());
-  std::vector<render::correct::MpcdiOutput> outputs;
-  std::vector<std::string> names;
-  for (const render::out::OutputSettings& output : wall->outputs) {
-    names.push_back(output.shownName());
-    const bool wanted =
-        options.output.empty() ? !output.correction.isOff() : output.shownName() == options.output;
-    if (!wanted) continue;
-    auto made = exported(output, wall->tiles);
-    if (!made) return fail(made.error());
-    outputs.push_back(*std::move(made));
-  }
-  if (outputs.empty()) {
-    return fail({Errc::kInvalidArgument,
-                 options.output.empty()
-                     ? fmt::format("{}: no output has a correction; --output NAME writes one "
-                                   "without: {}",
-                                   options.config, fmt::join(names, ", "))
-                     : fmt::format("{}: no output is named \"{}\"; there are {}", options.config,
-                                   options.output, fmt::join(names, ", "))});
-  }
+  const auto settings = readSettings(options.config);
+  if (!settings) return fail(settings.error());
+  const auto outputs = exportedOutputs(options, *settings);
+  if (!outputs) return fail(outputs.error());
   const auto now =
       std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
   const auto bytes =
-      render::correct::mpcdiBytes(outputs, fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(now)));
+      render::correct::mpcdiBytes(*outputs, fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(now)));
   if (!bytes) return fail(bytes.error());
   if (const auto written = writeFile(options.file, *bytes); !written) return fail(written.error());
-  for (const render::correct::MpcdiOutput& output : outputs)
+  for (const render::correct::MpcdiOutput& output : *outputs)
     printOut("{}: region {}, {} x {} pixels\n", options.file, output.name, output.width,
              output.height);
   return kExitDone;
@@ -100,16 +170,15 @@ int exportFile(const ExportOptions& options) {
 
 void addExport(Command mpcdi, Run& run) {
   const auto options = std::make_shared<ExportOptions>();
-  Command command =
-      mpcdi.subcommand("export",
-                       "Write the warp, blend and black level of a configuration's outputs as an "
-                       "MPCDI file (profile "
-                       "2d), with a region for each output that has a correction. What was moved "
-                       "by merlin wall align is not in it: write the corners that merlin wall "
-                       "align --list prints into the configuration and add what it prints of moved "
-                       "points to those of the mesh there, then merlin wall align --reset --output "
-                       "NAME.\n"
-                       "Example: merlin wall mpcdi export wall.mpcdi -c /etc/merlin/merlin.json");
+  Command command = mpcdi.subcommand(
+      "export",
+      "Write the warp, blend and black level of a configuration's outputs as an "
+      "MPCDI file (profile "
+      "2d), with a region for each output that has a correction. What was moved "
+      "by merlin wall align is in it if the wall runs, and is said: once the "
+      "configuration uses the file, run merlin wall align --reset --output NAME, or "
+      "it is moved twice.\n"
+      "Example: merlin wall mpcdi export wall.mpcdi -c /etc/merlin/merlin.json");
   command.option("file", options->file, "The MPCDI file").required().typeName("FILE.mpcdi");
   command.option("-c,--config", options->config, "The configuration").required().typeName("CONFIG");
   command.option("--output", options->output, "Only this output, corrected or not")
@@ -171,6 +240,13 @@ void printRegion(const std::string& file, const render::correct::MpcdiRegion& re
       printable(file), region.id, region.width, region.height, measured.warp.columns,
       measured.warp.rows, figures.farthest, figures.black,
       measured.alpha ? "alpha map" : "no alpha map", measured.beta ? "beta map" : "no beta map");
+  if (!region.part.empty()) {
+    printNote(
+        fmt::format("region {} shows only a part of the picture of buffer {}: {}. MERLIN "
+                    "takes the picture of the output for that part: let its tiles show this "
+                    "part and no more (/wall/outputs/N/tiles)",
+                    region.id, region.buffer, region.part));
+  }
   if (figures.mirrored) {
     printNote(
         fmt::format("region {} shows the picture mirrored. For a mirrored projector that is "

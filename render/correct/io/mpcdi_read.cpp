@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +13,7 @@
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "render/correct/io/archive.h"
+#include "render/correct/io/measured_warp.h"
 #include "render/correct/io/mpcdi.h"
 #include "render/correct/io/pfm.h"
 #include "render/image/png_levels.h"
@@ -24,6 +27,7 @@ constexpr std::size_t kMostMapBytes = 12 * kMostMeasuredCells + 4096;
 constexpr std::size_t kMostRegions = 64;
 constexpr std::size_t kLongestId = 64;
 constexpr double kMostResolution = 65536;  // [px]
+constexpr double kSamePlace = 1e-6;        // shares of a picture that differ less are the same
 
 std::string shown(std::string_view text) { return oneLine(excerpt(text)); }
 
@@ -122,6 +126,22 @@ Result<double> gammaOf(const pugi::xml_node& region, const std::string& id) {
                                shown(gamma), kLeastGamma, kMostGamma));
 }
 
+// The region's place in its buffer, as text; empty if it is the whole buffer.
+std::string partOf(const pugi::xml_node& region) {
+  std::vector<std::string> texts;
+  bool whole = true;
+  for (const auto& [name, of_whole] : {std::pair{"x", 0.0}, std::pair{"y", 0.0},
+                                       std::pair{"xSize", 1.0}, std::pair{"ySize", 1.0}}) {
+    const std::string text =
+        has(region, name) ? attribute(region, name) : fmt::format("{}", of_whole);
+    const auto value = numberIn(text, -kMostResolution, kMostResolution);
+    whole &= value && std::abs(*value - of_whole) < kSamePlace;
+    texts.push_back(value ? fmt::format("{} {:g}", name, *value)
+                          : fmt::format("{} \"{}\"", name, shown(text)));
+  }
+  return whole ? std::string() : fmt::format("{}", fmt::join(texts, ", "));
+}
+
 Result<RegionFiles> regionFiles(const std::string& buffer, const pugi::xml_node& node,
                                 const pugi::xml_node& files) {
   RegionFiles r;
@@ -145,6 +165,7 @@ Result<RegionFiles> regionFiles(const std::string& buffer, const pugi::xml_node&
   const auto gamma = gammaOf(node, id);
   if (!gamma) return gamma.error();
   r.region.gamma = *gamma;
+  r.region.part = partOf(node);
   for (const pugi::xml_node& fileset : children(files, "fileset")) {
     if (attribute(fileset, "region") != r.region.id) continue;
     const pugi::xml_node warp = child(fileset, "geometryWarpFile");
@@ -197,33 +218,6 @@ Result<std::vector<RegionFiles>> regionsOf(const pugi::xml_document& document) {
 
 Error at(const std::string& file, const Error& error) {
   return {error.code, fmt::format("{}: {}", shown(file), error.what)};
-}
-
-// Converts v, which points upwards in the file as in OpenGL, to point downwards. A cell of two NaN
-// means that nothing was measured there.
-Result<MeasuredWarp> warpOf(const FloatMap& map, MeshInterpolation between) {
-  if (map.columns < 2 || map.rows < 2)
-    return Error{Errc::kMalformed,
-                 fmt::format("has {} x {} cells; a warp has 2 x 2 or more", map.columns, map.rows)};
-  MeasuredWarp warp{map.columns, map.rows, {}, between};
-  warp.places.reserve(map.cells.size());
-  bool any = false;
-  for (std::size_t i = 0; i < map.cells.size(); ++i) {
-    const auto& [u, v, error] = map.cells[i];
-    const bool known = std::isfinite(u) && std::isfinite(v);
-    if (!known && !(std::isnan(u) && std::isnan(v))) {
-      return Error{
-          Errc::kMalformed,
-          fmt::format("its cell of column {}, row {} (from the top, counted from 0) is "
-                      "({}, {}); a cell has two numbers, or two NaN where nothing was measured",
-                      i % static_cast<std::size_t>(map.columns),
-                      i / static_cast<std::size_t>(map.columns), u, v)};
-    }
-    any |= known;
-    warp.places.push_back({static_cast<double>(u), 1 - static_cast<double>(v)});
-  }
-  if (!any) return Error{Errc::kMalformed, "has NaN in every cell; it shows nothing"};
-  return warp;
 }
 
 Result<MeshInterpolation> interpolationOf(const std::string& name) {
@@ -295,7 +289,7 @@ struct Mpcdi::Content {
     if (!bytes) return bytes.error();
     const auto map = parsePfm(*bytes, kMostMeasuredCells);
     if (!map) return at(files.warp, map.error());
-    auto warp = warpOf(*map, *between);
+    auto warp = measuredWarp(*map, *between, files.region.id);
     return warp ? warp : at(files.warp, warp.error());
   }
   Result<image::Levels> levels(const MapFile& file) const {
