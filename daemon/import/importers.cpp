@@ -1,7 +1,9 @@
 #include "daemon/import/importers.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/import/sandbox.h"
 #include "render/import/grid_import.h"
@@ -61,6 +63,15 @@ Result<Imported> importGrid(const Request& request, const Reports& reports) {
   return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
 }
 
+// A file that may be read and cannot be mapped is larger than the memory that is allowed, of which
+// the libraries take a part.
+Result<render::points::PointCloud> readPoints(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file && file.error().code == Errc::kIo && ::access(path.c_str(), R_OK) == 0)
+    return render::import::needsMoreMemory(path);
+  return render::points::readCloud(path);
+}
+
 #if defined(MERLIN_POINTS)
 
 Result<Ok> preparePoints(const char* program) { return render::import::preparePoints(program); }
@@ -90,7 +101,7 @@ std::string factsOf(const render::points::PointCloud& cloud,
 
 Result<Imported> importPoints(const Request& request, const Reports& reports) {
   const std::string name = "model.ply";
-  const auto cloud = render::points::readCloud(request.input);
+  const auto cloud = readPoints(request.input);
   if (!cloud) return cloud.error();
   const auto surface = render::import::surfaceOf(*cloud, request.surface, reports.progress);
   if (!surface) return Error{surface.error().code, request.input + ": " + surface.error().what};
@@ -112,7 +123,7 @@ Result<Ok> preparePoints(const char* /*program*/) { return Ok{}; }
 
 // What can be said of the file is said first.
 Result<Imported> importPoints(const Request& request, const Reports& /*reports*/) {
-  const auto cloud = render::points::readCloud(request.input);
+  const auto cloud = readPoints(request.input);
   if (!cloud) return cloud.error();
   return Error{Errc::kUnsupported, request.input +
                                        ": this merlin-import was built without Open3D, which makes "

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,7 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/import/importers.h"
 #include "daemon/import/sandbox.h"
+#include "render/import/model_file.h"
 
 namespace merlin::import {
 namespace {
@@ -124,6 +126,16 @@ Result<Ok> limitResult(std::uint64_t raw_bytes) {
   return limitFileSize(raw_bytes / 2 * 3 + (std::uint64_t{64} << 20));
 }
 
+// Errors: those of the importer, and kInvalidArgument (it takes more memory than is allowed).
+Result<Imported> runWithinMemory(const Importer& importer, const Request& request,
+                                 const Reports& reports) {
+  try {
+    return importer.run(request, reports);
+  } catch (const std::bad_alloc&) {
+    return render::import::needsMoreMemory(request.input);
+  }
+}
+
 int run(const Importer& importer, const char* program, const Options& options) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever started this no longer waits
   ::setenv("TMPDIR", options.request.folder.c_str(), 1);
@@ -148,7 +160,7 @@ int run(const Importer& importer, const char* program, const Options& options) {
                           tell(fmt::format("progress {:.6f} {}", share, items));
                         },
                         [](const std::string& what) { tell("note " + what); }};
-  const auto imported = importer.run(options.request, reports);
+  const auto imported = runWithinMemory(importer, options.request, reports);
   if (!imported) return failed(imported.error());
   tell(fmt::format("done {} {{{}}}", imported->file, imported->facts));
   return kExitDone;

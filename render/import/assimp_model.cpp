@@ -15,12 +15,15 @@
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
+#include "daemon/base/printable_text.h"
 #include "render/import/assimp_folder.h"
 #include "render/import/gltf_check.h"
+#include "render/import/gltf_values.h"
 #include "render/import/model_file.h"
 #include "render/import/model_textures.h"
 #include "render/import/model_unit.h"
 #include "render/mesh/io/companion_files.h"
+#include "render/mesh/non_numbers.h"
 
 namespace merlin::render::import {
 namespace {
@@ -61,7 +64,9 @@ struct Material {
 
 class SceneReader {
  public:
-  SceneReader(const aiScene& scene, const ModelFile& file, const OnTriangles& on_triangles)
+  // `values`: of the vertices of the only mesh; empty: there are none.
+  SceneReader(const aiScene& scene, const ModelFile& file, const OnTriangles& on_triangles,
+              std::vector<mesh::Feature> values)
       : scene_(scene),
         linear_(file.format == "gltf" || file.format == "glb"),
         amf_(file.format == "amf"),
@@ -69,6 +74,9 @@ class SceneReader {
         on_triangles_(on_triangles) {
     for (unsigned m = 0; m < scene.mNumMaterials; ++m)
       materials_.push_back(materialOf(*scene.mMaterials[m]));
+    if (values.empty()) return;
+    rows_ = firstEqualRows(values, scene.mMeshes[0]->mNumVertices);
+    builder_.takeValues(std::move(values));
   }
 
   BuiltModel read() {
@@ -269,6 +277,7 @@ class SceneReader {
   Corner cornerOf(const aiMesh& mesh, const Material& material, const aiColor4D* colour,
                   unsigned v) const {
     Corner corner;
+    if (!rows_.empty()) corner.row = rows_[v];
     corner.colour = colour ? screenColour(*colour * material.factor) : material.colour;
     if (material.texcoords < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
         mesh.mTextureCoords[material.texcoords]) {
@@ -321,6 +330,7 @@ class SceneReader {
   std::map<std::string, aiMatrix4x4> by_name_;
   mesh::Origin origin_{};
   ModelBuilder builder_;
+  std::vector<std::uint32_t> rows_;  // of the builder's values, for each vertex; or empty
   std::size_t others_ = 0, meshes_ = 0, transforms_ = 0, coloured_pictures_ = 0;
   bool morphs_ = false;
 };
@@ -377,6 +387,25 @@ Result<Ok> checkTriangles(std::vector<GltfPrimitive> promised, const aiScene& sc
                     mesh->mNumVertices)};
   }
   return Ok{};
+}
+
+// The file's own values of the vertices, if the scene's only mesh has the vertices that they are
+// of, in the file's order. Those are no longer among the promise's `own_attributes`.
+std::vector<mesh::Feature> takeOwnValues(GltfPromise& promised, const aiScene& scene) {
+  GltfValues& own = promised.own;
+  if (own.features.empty() || scene.mNumMeshes != 1) return {};
+  const aiMesh& mesh = *scene.mMeshes[0];
+  if (own.positions.size() != 3 * std::size_t{mesh.mNumVertices}) return {};
+  for (std::size_t v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3D& at = mesh.mVertices[v];
+    const float* p = &own.positions[3 * v];
+    if (at.x != p[0] || at.y != p[1] || at.z != p[2]) return {};
+  }
+  for (mesh::Feature& f : own.features) {
+    promised.own_attributes.erase(oneLine(excerpt("_" + f.name)));
+    if (f.name == "colour") std::ranges::transform(f.values, f.values.begin(), toSrgb);
+  }
+  return std::move(own.features);
 }
 
 // The unit of an AMF or 3MF file, as it names it; empty of other formats, and where AMF has none.
@@ -439,7 +468,10 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
     return Error{Errc::kUnsupported, "holds no surface"};
   if (const auto whole = checkTriangles(std::move(promised->primitives), *scene); !whole)
     return whole.error();
-  BuiltModel built = SceneReader(*scene, file, on_triangles).read();
+  auto values = takeOwnValues(*promised, *scene);
+  std::string replaced = mesh::replaceNonNumbers(values);
+  BuiltModel built = SceneReader(*scene, file, on_triangles, std::move(values)).read();
+  if (!replaced.empty()) built.notes.push_back(std::move(replaced));
   if (std::string note = noteOf(promised->own_attributes); !note.empty())
     built.notes.push_back(std::move(note));
   if (const std::string unit = namedUnit(file); !unit.empty()) built.notes.push_back(noteOf(unit));

@@ -66,7 +66,9 @@ void complain(const SoError* error, void*) {
   constexpr std::string_view kPrefix = "Coin read error: ";
   if (text.starts_with(kPrefix)) text.erase(0, kPrefix.size());
   text.erase(std::min(text.find(" in any of the following directories"), text.size()));
-  if (text.starts_with("Could not read texture file")) return;  // ModelTextures reads them
+  if (text.starts_with("Could not read texture file") ||
+      text.find("SbImage::readFile()") != std::string::npos)
+    return;  // ModelTextures reads them
   if (complaints().size() < 4) complaints().push_back(std::move(text));
 }
 

@@ -11,6 +11,7 @@
 
 #include "daemon/base/bytes.h"
 #include "daemon/base/printable_text.h"
+#include "render/import/gltf_json.h"
 
 namespace merlin::render::import {
 namespace {
@@ -44,12 +45,6 @@ constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
 constexpr std::string_view kFloats[] = {"POSITION", "TEXCOORD_", "WEIGHTS_"};
 
 Error malformed(const std::string& what) { return {Errc::kMalformed, "glTF: " + what}; }
-
-// The member of that name; null if there is none.
-const json* memberOf(const json& object, const char* name) {
-  const auto found = object.is_object() ? object.find(name) : object.end();
-  return object.is_object() && found != object.end() ? &*found : nullptr;
-}
 
 // The array of that name: an empty one if there is none.
 Result<const json*> arrayOf(const json& object, const char* name) {
@@ -179,6 +174,7 @@ Result<GltfPromise> checkGltf(std::string_view file) {
   for (std::size_t m = 0; m < (*meshes)->size(); ++m) {
     if (const auto good = checkMesh(**accessors, m, (**meshes)[m], all); !good) return good.error();
   }
+  if (file.starts_with("glTF")) all.own = ownValuesOf(model, file);
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/base/result.h"
+#include "render/import/gltf_values.h"
 
 namespace merlin::render::import {
 
@@ -23,6 +24,7 @@ struct GltfPromise {
   // Attributes of the program that wrote it, such as _CONFIDENCE, without control characters and
   // cut: assimp reads none.
   std::set<std::string> own_attributes;
+  GltfValues own;  // of these, what was read; NaN is left in it
 };
 
 // `file`: a whole .gltf or .glb of glTF 2; any other version is left to assimp.

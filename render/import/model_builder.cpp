@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,11 +52,12 @@ void ModelBuilder::dress(Corner& corner) const {
 }
 
 std::uint32_t ModelBuilder::vertexOf(const Corner& corner) {
-  const auto& [p, c, t] = corner;
+  const auto& [p, c, t, row] = corner;
   Key key{};
   const float numbers[] = {p[0], p[1], p[2], c[0], c[1], c[2], t[0], t[1]};
-  for (std::size_t i = 0; i < key.size(); ++i)
+  for (std::size_t i = 0; i < std::size(numbers); ++i)
     key[i] = std::bit_cast<std::uint32_t>(numbers[i] + 0.0F);  // -0 is 0
+  key.back() = row;
   const auto next = static_cast<std::uint32_t>(model_.mesh.vertexCount());
   const auto [found, fresh] = vertices_.try_emplace(key, next);
   if (!fresh) return found->second;
@@ -63,6 +65,7 @@ std::uint32_t ModelBuilder::vertexOf(const Corner& corner) {
   colours_.insert(colours_.end(), c.begin(), c.end());
   texcoords_.insert(texcoords_.end(), t.begin(), t.end());
   labels_.push_back(static_cast<float>(model_.parts - 1));
+  if (!values_.empty()) rows_.push_back(row);
   return next;
 }
 
@@ -98,12 +101,28 @@ std::uint32_t ModelBuilder::textureNumber() {
   return number;
 }
 
+void ModelBuilder::addValues() {
+  for (const mesh::Feature& from : values_) {
+    mesh::Feature to{from.name, from.dimension, {}};
+    to.values.reserve(rows_.size() * from.dimension);
+    for (const std::size_t row : rows_) {
+      for (std::size_t k = 0; k < from.dimension; ++k)
+        to.values.push_back(from.values[row * from.dimension + k]);
+    }
+    if (mesh::Feature* const same = model_.mesh.find(to.name))
+      *same = std::move(to);
+    else
+      model_.mesh.features.push_back(std::move(to));
+  }
+}
+
 BuiltModel ModelBuilder::finish() && {
   mesh::Mesh& mesh = model_.mesh;
   const bool textured = !textures_.textures.empty();
   if (coloured_ || textured) mesh.features.push_back({"colour", 3, std::move(colours_)});
   if (textured) mesh.features.push_back({"texcoord", 2, std::move(texcoords_)});
   if (model_.parts > 1) mesh.features.push_back({"label", 1, std::move(labels_)});
+  addValues();
   model_.notes = mesh::joinTextures(mesh, textures_).notes();
   model_.welded = mesh::weldParts(mesh);
   if (model_.not_finite > 0)

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "render/image/image_file.h"
@@ -24,6 +25,7 @@ struct Corner {
   std::array<float, 3> position{};
   std::array<float, 3> colour = kPlain;
   std::array<float, 2> texcoord{};
+  std::uint32_t row = 0;  // of the values of takeValues()
 };
 
 struct BuiltModel {
@@ -36,12 +38,15 @@ struct BuiltModel {
   std::vector<std::string> notes;
 };
 
-// Corners of one part become one vertex if all of their numbers are the same, so that seams of
-// textures and borders of colours stay; vertices of different parts are welded where the parts are
-// one surface (render/mesh/weld_parts.h). Not pure in its use of memory alone: std::bad_alloc
-// leaves it. Thread-bound.
+// Corners of one part become one vertex if all of their numbers and their rows are the same, so
+// that seams of textures and borders of colours stay; vertices of different parts are welded where
+// the parts are one surface (render/mesh/weld_parts.h). Not pure in its use of memory alone:
+// std::bad_alloc leaves it. Thread-bound.
 class ModelBuilder {
  public:
+  // Features whose rows the corners name; the mesh gets them, also instead of finish()'s own of the
+  // same name. REQUIRES: called before add(); every feature has the rows that are named.
+  void takeValues(std::vector<mesh::Feature> values) { values_ = std::move(values); }
   // The triangles that follow belong to a new part.
   // `texture`: its picture must outlive the builder; null: none.
   void beginPart(const mesh::SurfaceTexture& texture);
@@ -57,16 +62,19 @@ class ModelBuilder {
   BuiltModel finish() &&;
 
  private:
-  using Key = std::array<std::uint32_t, 8>;
+  using Key = std::array<std::uint32_t, 9>;
   struct Hash {
     std::size_t operator()(const Key& key) const noexcept;
   };
   std::uint32_t vertexOf(const Corner& corner);
   void dress(Corner& corner) const;
   std::uint32_t textureNumber();
+  void addValues();
 
   BuiltModel model_;
   std::vector<float> colours_, texcoords_, labels_;
+  std::vector<mesh::Feature> values_;  // of takeValues()
+  std::vector<std::uint32_t> rows_;    // of the values, for each vertex; empty if there are none
   std::unordered_map<Key, std::uint32_t, Hash> vertices_;  // of this part
   mesh::SurfaceTexture texture_;                           // of this part
   std::uint32_t number_ = mesh::kNoTexture;                // of this part's texture

@@ -20,6 +20,13 @@ std::string allowedMemory() {
 
 }  // namespace
 
+Error needsMoreMemory(const std::string& path) {
+  return {Errc::kInvalidArgument,
+          fmt::format("{}: reading it takes more memory than {} (--memory, by default the free "
+                      "memory)",
+                      path, allowedMemory())};
+}
+
 Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triangles) {
   const auto named = [&](Errc code, const std::string& why) {
     return Error{code, file.path + ": " + why};
@@ -34,10 +41,7 @@ Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triang
                                fmt::join(model->notes, "; ")));
     return model;
   } catch (const std::bad_alloc&) {
-    return named(Errc::kInvalidArgument,
-                 fmt::format("reading it takes more memory than {} (--memory, by default the free "
-                             "memory)",
-                             allowedMemory()));
+    return needsMoreMemory(file.path);
   } catch (const std::exception& e) {
     return named(Errc::kMalformed, fmt::format("cannot be read: {}", e.what()));
   }

@@ -29,6 +29,10 @@ Result<Ok> prepareModels(const char* program);
 // that the library lacks), kInvalidArgument (more memory is needed than is allowed).
 Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triangles);
 
+// kInvalidArgument: reading a file, or what is made of it, takes more memory than this process may
+// have. For a caller that catches std::bad_alloc.
+Error needsMoreMemory(const std::string& path);
+
 // The two readers; errors without the file's name.
 Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_triangles);
 Result<BuiltModel> readByCoin(const ModelFile& file, const OnTriangles& on_triangles);

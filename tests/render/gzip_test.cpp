@@ -63,5 +63,20 @@ TEST(Gzip, SaysThatAFileIsCutOrDamaged) {
   EXPECT_GT(refused, packed.size() - 10);
 }
 
+TEST(Gzip, NamesThePlaceOfTheDamage) {
+  std::string packed = test::gzipped(numbers(300));
+  const std::string size = std::to_string(packed.size());
+  const Error whole = packedFileError(packed);
+  EXPECT_EQ(whole.code, Errc::kUnsupported);
+  EXPECT_TRUE(whole.what.starts_with("is packed by gzip; ")) << whole.what;
+  EXPECT_EQ(packedFileError(packed.substr(0, 40)).what, "gzip: is cut");
+  packed[packed.size() - 8] ^= 1;  // the first byte of the check, which is read to its end
+  const std::string why =
+      "gzip: is damaged at byte " + std::to_string(packed.size() - 4) + " of " + size + ": ";
+  EXPECT_EQ(packedFileError(packed).what, why + "incorrect data check");
+  EXPECT_EQ(packedFileError(packed).code, Errc::kMalformed);
+  EXPECT_EQ(gunzip(packed, kMost).error().what, why + "incorrect data check");
+}
+
 }  // namespace
 }  // namespace merlin::render::mesh

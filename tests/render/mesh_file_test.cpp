@@ -236,6 +236,17 @@ TEST(ReadMesh, TidiesWhatItRead) {
   EXPECT_EQ(loaded->tidied.unused, 1u);
 }
 
+TEST(ReadMesh, TwoCornersOfATriangleAtOnePlaceBecomeOne) {
+  const TempDir dir;
+  writeText(dir / "a.obj",
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\nf 1 2 3\nf 5 3 4\nf 1 3 5\n");
+  const auto loaded = mesh::readMesh(dir / "a.obj");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(loaded->tidied.degenerate, 1u);
+  EXPECT_EQ(loaded->tidied.unused, 1u);
+}
+
 // A float keeps seven digits, the northing of a map has nine.
 TEST(ReadMesh, CoordinatesOfAMapKeepTheirDigitsByAnOrigin) {
   const TempDir dir;

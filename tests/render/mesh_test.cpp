@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/mesh/weld_degenerate.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::render {
@@ -86,6 +87,50 @@ TEST(MeshTidy, DropsDegenerateTrianglesAndKeepsTheOrderOfTheOthers) {
   EXPECT_EQ(report.degenerate, 3u);
   EXPECT_EQ(report.unused, 0u);
   EXPECT_EQ(mesh.triangles, (Indices{0, 1, 3, 0, 3, 2}));
+}
+
+// A square that is cut along its diagonal; a triangle without area joins the cut at corner 0.
+mesh::Mesh cutSquare() {
+  mesh::Mesh mesh;
+  mesh.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, -0.0F, 0};
+  mesh.features = {{"heat", 1, {7, 1, 2, 3, 7}}};
+  mesh.triangles = {0, 1, 2, 4, 2, 3, 0, 2, 4};
+  return mesh;
+}
+
+TEST(WeldDegenerate, ATriangleWithTwoCornersAtOnePlaceLeavesNoSlit) {
+  mesh::Mesh mesh = cutSquare();
+  EXPECT_EQ(mesh::weldDegenerate(mesh), 1u);
+  const mesh::TidyReport report = mesh::tidy(mesh);
+  EXPECT_EQ(report.degenerate, 1u);
+  EXPECT_EQ(report.unused, 1u);
+  EXPECT_EQ(mesh.triangles, (Indices{0, 1, 2, 0, 2, 3}));
+}
+
+TEST(WeldDegenerate, CornersOfOtherValuesOrPlacesAndThoseOfNoCommonTriangleStayApart) {
+  mesh::Mesh other = cutSquare();
+  other.features[0].values[4] = 8;
+  mesh::Mesh moved = cutSquare();
+  moved.positions[14] = 1e-30F;
+  mesh::Mesh apart = cutSquare();
+  apart.triangles.resize(6);
+  for (mesh::Mesh* mesh : {&other, &moved, &apart}) {
+    const Indices before = mesh->triangles;
+    EXPECT_EQ(mesh::weldDegenerate(*mesh), 0u);
+    EXPECT_EQ(mesh->triangles, before);
+  }
+}
+
+TEST(WeldDegenerate, ARowOfCopiesBecomesItsFirst) {
+  mesh::Mesh fan;  // the pole of a sphere: each triangle has its own copy, joined to the next one's
+  fan.positions.assign(9, 0);
+  for (int i = 0; i < 4; ++i)
+    fan.positions.insert(fan.positions.end(),
+                         {std::cos(static_cast<float>(i)), std::sin(static_cast<float>(i)), -1});
+  fan.triangles = {2, 5, 6, 1, 4, 5, 0, 3, 4, 1, 2, 5, 0, 1, 4};
+  EXPECT_EQ(mesh::weldDegenerate(fan), 2u);
+  EXPECT_EQ(mesh::tidy(fan).degenerate, 2u);
+  EXPECT_EQ(fan.triangles, (Indices{0, 3, 4, 0, 2, 3, 0, 1, 2}));
 }
 
 TEST(MeshTidy, DropsUnusedVerticesWithTheirFeatures) {

@@ -159,10 +159,13 @@ TEST(Las, WhatBecomesNoFeatureIsNamed) {
   setDouble(bytes, 227 + 20, 1.5);
   bytes[227 + 14] = 2 << 3;
   bytes[227 + 16] = 5;
+  bytes[227 + 17] = 1;
+  bytes[227 + 18] = 7;
   const auto cloud = cloudOf(bytes);
   ASSERT_EQ(cloud.notes.size(), 1U);
   EXPECT_EQ(cloud.notes[0],
-            "left out of each point, as no feature: GPS time, return numbers, scan angles");
+            "left out of each point, as no feature: GPS time, return numbers, scan angles, "
+            "user data, point source IDs");
   EXPECT_EQ(cloudOf(las(4, 10, 3)).notes[0],
             "left out of each point, as no feature: near infrared, waveforms");
 }

@@ -8,6 +8,7 @@
 
 #include "daemon/base/bytes.h"
 #include "render/image/png_writer.h"
+#include "render/mesh/io/mesh_file.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -294,6 +295,89 @@ TEST_F(GltfImport, ValuesThatGltfDoesNotDefineAreSaidToBeLeftOut) {
                   "_thermal); a PLY file keeps such values as features"}));
   for (char c = 'a'; c < 'i'; ++c) attributes[std::string("_") + c] = 0;
   EXPECT_NE(report(json.dump())["notes"].dump().find("_f, _g and 2 others)"), std::string::npos);
+}
+
+// Three triangles; at (1, 0, 0) two vertices of different heat, at (0, 1, 0) two that are alike.
+constexpr const char* kHot =
+    "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float "
+    "z\nproperty float heat\nproperty float confidence\nelement face 3\nproperty list uchar int "
+    "vertex_indices\nend_header\n0 0 0 -4.5 1\n1 0 0 20.25 1\n0 1 0 3 0.5\n1 0 0 21 1\n2 0 0 9 0\n"
+    "0 1 0 3 0.5\n-1 0 0 7 1\n2 1 0 8 1\n3 0 1 2\n3 0 5 6\n3 3 4 7\n";
+
+TEST_F(GltfImport, ValuesThatMerlinWroteComeBack) {
+  writeText(dir_ / "hot.ply", kHot);
+  ASSERT_EQ(run({kMerlin, "mesh", "export", dir_ / "hot.ply", "-o", dir_ / "a.glb"}).status, 0);
+  const Outcome done = run({kMerlin, "mesh", "import", dir_ / "a.glb", "-o", out_, "--json"});
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_EQ(done.output.find("left out"), std::string::npos) << done.output;
+  const auto loaded = render::mesh::readMesh(out_);
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const render::mesh::Mesh& mesh = loaded->mesh;
+  ASSERT_EQ(mesh.vertexCount(), 7U) << "those that are alike are one again";
+  const auto* heat = mesh.find("heat");
+  const auto* confidence = mesh.find("confidence");
+  ASSERT_TRUE(heat && confidence);
+  EXPECT_EQ(heat->values, (std::vector<float>{-4.5, 20.25, 3, 7, 21, 9, 8}));
+  EXPECT_EQ(confidence->values, (std::vector<float>{1, 1, 0.5, 1, 1, 0, 1}));
+  EXPECT_EQ(mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 4, 5, 6}));
+}
+
+TEST_F(GltfImport, ColoursThatMerlinWroteBesideATextureComeBack) {
+  picture("red.png");
+  writeText(dir_ / "a.mtl", "newmtl m\nmap_Kd red.png\n");
+  writeText(dir_ / "a.obj",
+            "mtllib a.mtl\nusemtl m\nv 0 0 0 0 0.4 1\nv 1 0 0 0 0.4 1\nv 0 1 0 0 0.4 1\nvt 0 0\nvt "
+            "1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  ASSERT_EQ(run({kMerlin, "mesh", "export", dir_ / "a.obj", "-o", dir_ / "a.glb"}).status, 0);
+  const Outcome done = run({kMerlin, "mesh", "import", dir_ / "a.glb", "-o", out_, "--json"});
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_EQ(done.output.find("left out"), std::string::npos) << done.output;
+  EXPECT_EQ(colourOf(readText(out_)), (std::array{0, 102, 255}));
+}
+
+// The triangle as a GLB with the attribute _heat, which is three floats of its texture coordinates.
+Json hotTriangle() {
+  Json json = triangle("");
+  json["meshes"][0]["primitives"][0]["attributes"]["_heat"] = 3;
+  json["accessors"].push_back(
+      {{"bufferView", 3}, {"componentType", 5126}, {"count", 3}, {"type", "SCALAR"}});
+  json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 44}, {"byteLength", 36}});
+  return json;
+}
+
+TEST_F(GltfImport, ValuesBeyondTheBinaryChunkAreLeftOut) {
+  const auto said = [&](const Json& json) { return report(glb(json), "a.glb")["notes"].dump(); };
+  EXPECT_EQ(said(hotTriangle()), "[]");
+  const Json huge = std::uint64_t{0xFFFFFFFFFFFFFFFC};
+  const std::pair<const char*, Json> faults[] = {
+      {"/accessors/3/count", 2},
+      {"/accessors/3/count", 10},
+      {"/accessors/3/count", huge},
+      {"/accessors/3/count", -3},
+      {"/accessors/3/byteOffset", 28},
+      {"/accessors/3/byteOffset", huge},
+      {"/accessors/3/byteOffset", "0"},
+      {"/accessors/3/type", "VEC2"},
+      {"/accessors/3/componentType", 5125},
+      {"/accessors/3/sparse", Json::object()},
+      {"/accessors/3/bufferView", 4},
+      {"/accessors/3/bufferView", huge},
+      {"/bufferViews/3/byteOffset", 48},
+      {"/bufferViews/3/byteOffset", huge},
+      {"/bufferViews/3/byteLength", 37},
+      {"/bufferViews/3/byteLength", huge},
+      {"/bufferViews/3/byteLength", 8},
+      {"/bufferViews/3/byteStride", 8},
+      {"/bufferViews/3/buffer", 1},
+      {"/meshes/0/primitives/0/attributes/_heat", 4},
+      {"/meshes/0/primitives/0/attributes/_heat", "3"},
+  };
+  for (const auto& [pointer, value] : faults) {
+    Json json = hotTriangle();
+    json[Json::json_pointer(pointer)] = value;
+    EXPECT_NE(said(json).find("that glTF does not define (_heat)"), std::string::npos)
+        << pointer << " " << value;
+  }
 }
 
 TEST_F(GltfImport, FaultsOfItsJsonAreSaid) {

@@ -305,6 +305,15 @@ TEST_F(ModelImport, ATextureBesideTheModelIsKeptAndNoOtherFileIsRead) {
   EXPECT_GT(kept["texture_bytes"], 60) << kept;
   EXPECT_EQ(features(), "colour texcoord normal ");
   fs::remove(out_ + ".png");
+  EXPECT_TRUE(kept["notes"].empty()) << kept["notes"];
+  const std::string square = "Coordinate3 { point [ 0 0 0, 1 0 0, 0 1 0 ] } FaceSet { }";
+  const auto inventor = report("models/a.iv",
+                               "#Inventor V2.1 ascii\nSeparator { Texture2 { filename "
+                               "\"beside.png\" } " +
+                                   square + " }\n");
+  EXPECT_GT(inventor["texture_bytes"], 60) << inventor;
+  EXPECT_TRUE(inventor["notes"].empty()) << "Coin itself reads no pictures: " << inventor["notes"];
+  fs::remove(out_ + ".png");
   const auto left = report("models/b.wrl", textured("../above.png"));
   EXPECT_EQ(left["texture_bytes"], 0);
   EXPECT_NE(left["notes"].dump().find("this texture is left out"), std::string::npos) << left;
@@ -408,8 +417,13 @@ TEST_F(ModelImport, InventorAndVrmlMayBePackedByGzip) {
   const std::string packed = gzipped(kSquareIv);
   std::filesystem::remove(out_);
   expectRefused("cut.gz", packed.substr(0, packed.size() - 20), "gzip: is cut");
-  expectRefused("other.gz", gzipped("ply\n"), "is of no format that MERLIN reads");
-  expectRefused("twice.gz", gzipped(packed), "is of no format that MERLIN reads");
+  for (const char* name : {"other.gz", "other.ply"})
+    expectRefused(name, gzipped("ply\n"), "is packed by gzip; of packed files only Inventor");
+  expectRefused("twice.gz", gzipped(packed), "is packed by gzip; of packed files only Inventor");
+  std::string damaged = gzipped("ply\n");
+  damaged[10] = '\xff';  // the first byte behind the head
+  for (const char* name : {"damaged.gz", "damaged.ply"})
+    expectRefused(name, damaged, "gzip: is damaged at byte ");
 #if !defined(MERLIN_ANY_SANITIZER)
   std::string bomb = gzipped(kSquareIv);
   const std::string member = gzipped(std::string(std::size_t{1} << 24, '#'));

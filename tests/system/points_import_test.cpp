@@ -164,6 +164,21 @@ TEST_F(PointsImport, AProjectionStaysInTheModel) {
   EXPECT_NE(about.find("map.projection=" + wkt + "\n"), std::string::npos) << about;
 }
 
+#if !defined(MERLIN_ANY_SANITIZER)  // which need terabytes
+TEST_F(PointsImport, TooLittleMemoryIsSaidWithTheWayOut) {
+  // A file of as many bytes as may be used, of which none are there.
+  writeText(dir_ / "large.las", "LASF");
+  std::filesystem::resize_file(dir_ / "large.las", std::size_t{101} << 20);
+  const Outcome outcome =
+      run({kMerlin, "mesh", "import", dir_ / "large.las", "-o", ply_, "--memory", "100M"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("large.las: reading it takes more memory than the 100 MB that are "
+                                "allowed (--memory, by default the free memory)"),
+            std::string::npos)
+      << outcome.output;
+}
+#endif
+
 TEST_F(PointsImport, WhatCannotBeASurfaceIsRefusedInOneLine) {
   const auto refusal = [&](const std::string& bytes, std::vector<std::string> options = {}) {
     const Outcome outcome = import(bytes, std::move(options));

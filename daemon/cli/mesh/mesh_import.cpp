@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/files.h"
 #include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/import_grid.h"
@@ -21,6 +22,7 @@
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
 #include "render/image/image_file.h"
+#include "render/mesh/io/gzip.h"
 #include "render/points/io/cloud_file.h"
 
 namespace merlin::cli {
@@ -158,6 +160,14 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
   return Ok{};
 }
 
+// Errors, with the file's name: those of packedFileError().
+Result<Ok> checkNotPacked(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file || !render::mesh::isGzip(file->text())) return Ok{};
+  const Error error = render::mesh::packedFileError(file->text());
+  return Error{error.code, path + ": " + error.what};
+}
+
 Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKind>& kind) {
   const std::string option = options.range.anyGiven();
   const std::string& path = options.input();
@@ -171,6 +181,7 @@ Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKi
                  fmt::format("{0}: is a model for the wall already; merlin mesh export {0} -o "
                              "OUT.ply makes a mesh of it",
                              path)};
+  if (const auto plain = kind ? Result<Ok>(Ok{}) : checkNotPacked(path); !plain) return plain;
   if (!kind)
     return Error{Errc::kUnsupported, path + ": is of no format that MERLIN reads; " + read};
   if (!option.empty())

@@ -15,7 +15,7 @@ constexpr std::size_t kBlock = std::size_t{1} << 16;  // [bytes] that are unpack
 // Unpacks block by block. A file may be several packed ones, one after another.
 class Gunzip {
  public:
-  explicit Gunzip(std::string_view bytes) : left_(bytes) {
+  explicit Gunzip(std::string_view bytes) : size_(bytes.size()), left_(bytes) {
     constexpr int kGzipOnly = 16 + MAX_WBITS;
     if (inflateInit2(&stream_, kGzipOnly) != Z_OK) throw std::bad_alloc();
   }
@@ -36,7 +36,8 @@ class Gunzip {
     if (status == Z_OK && (text.size() > before || stream_.avail_in > 0 || !left_.empty()))
       return {};
     if (status == Z_OK || status == Z_BUF_ERROR) return "is cut";
-    return fmt::format("is damaged: {}", stream_.msg ? stream_.msg : "zlib gives no reason");
+    return fmt::format("is damaged at byte {} of {}: {}", size_ - left_.size() - stream_.avail_in,
+                       size_, stream_.msg ? stream_.msg : "zlib gives no reason");
   }
 
   bool ended() const noexcept { return ended_; }
@@ -60,6 +61,7 @@ class Gunzip {
   }
 
   z_stream stream_{};
+  std::size_t size_;       // of all that is packed [bytes]
   std::string_view left_;  // not given to zlib yet
   bool ended_ = false;
 };
@@ -88,6 +90,20 @@ Result<std::string> gunzip(std::string_view bytes, std::size_t most) {
       return Error{Errc::kUnsupported, fmt::format("gzip: unpacks to more than {} bytes", most)};
   }
   return text;
+}
+
+Error packedFileError(std::string_view bytes) {
+  constexpr std::size_t kMost = std::size_t{1} << 30;
+  std::string block;
+  Gunzip unpacking(bytes);
+  for (std::size_t done = 0; done < kMost && !unpacking.ended(); done += block.size()) {
+    block.clear();
+    const std::string fault = unpacking.appendTo(block);
+    if (!fault.empty()) return {Errc::kMalformed, "gzip: " + fault};
+  }
+  return {Errc::kUnsupported,
+          "is packed by gzip; of packed files only Inventor and VRML are read: gunzip -c IN > OUT "
+          "unpacks it"};
 }
 
 }  // namespace merlin::render::mesh

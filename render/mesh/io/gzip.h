@@ -18,4 +18,9 @@ std::string gunzipBeginning(std::string_view bytes, std::size_t most);
 // without the file's name: kMalformed (damaged or cut), kUnsupported (more than `most` bytes).
 Result<std::string> gunzip(std::string_view bytes, std::size_t most);
 
+// Why a packed file is refused where none is unpacked, without its name: kMalformed (damaged, with
+// the place, or cut), else kUnsupported with the way out. Unpacks up to 1 GiB, but keeps nothing.
+// REQUIRES: isGzip(bytes).
+Error packedFileError(std::string_view bytes);
+
 }  // namespace merlin::render::mesh

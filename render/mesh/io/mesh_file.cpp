@@ -14,9 +14,11 @@
 #include "daemon/base/files.h"
 #include "render/mesh/facet_colours.h"
 #include "render/mesh/io/companion_files.h"
+#include "render/mesh/io/gzip.h"
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/writer.h"
 #include "render/mesh/non_numbers.h"
+#include "render/mesh/weld_degenerate.h"
 
 namespace merlin::render::mesh {
 namespace {
@@ -211,6 +213,7 @@ Result<LoadedMesh> readMeshByContent(const std::string& path) {
 Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path) {
   auto file = MappedFile::open(path);
   if (!file) return file.error();
+  if (isGzip(file->text())) return inFile(path, packedFileError(file->text()));
   auto loaded = reader.read(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
   *file = MappedFile();  // unmap it: it is as large as the mesh
@@ -220,6 +223,7 @@ Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path)
     colourByFacets(std::exchange(loaded->facet_colours, {}), loaded->mesh);
     if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   }
+  weldDegenerate(loaded->mesh);
   const TidyReport tidied = tidy(loaded->mesh);
   if (loaded->origin != Origin{}) loaded->notes.push_back(noteOf(loaded->origin));
   const std::size_t in_file = loaded->tidied.degenerate;

@@ -184,6 +184,8 @@ class LasPoints {
     const int returns = is_long ? b_.u8(at + 14) >> 4 : b_.u8(at + 14) >> 3 & 7;
     timed_ = timed_ || (form_.time > 0 && b_.u64(at + form_.time) != 0);
     returns_ = returns_ || returns > 1;
+    user_data_ = user_data_ || b_.u8(at + 17) != 0;
+    sources_ = sources_ || b_.u16(at + (is_long ? 20 : 18)) != 0;
     angles_ = angles_ || (is_long ? b_.u16(at + 18) != 0 : b_.u8(at + 16) != 0);
   }
 
@@ -196,6 +198,8 @@ class LasPoints {
     add(timed_, "GPS time");
     add(returns_, "return numbers");
     add(angles_, "scan angles");
+    add(user_data_, "user data");
+    add(sources_, "point source IDs");
     add(form_.infrared, "near infrared");
     add(form_.waveforms, "waveforms");
     const std::size_t extra = h_.record - form_.bytes;
@@ -231,7 +235,7 @@ class LasPoints {
   const LasHeader& h_;
   const PointFormat& form_;
   std::size_t colour_at_;
-  bool timed_ = false, returns_ = false, angles_ = false;
+  bool timed_ = false, returns_ = false, angles_ = false, user_data_ = false, sources_ = false;
   PointCloud cloud_;
   mesh::Feature intensity_{"intensity", 1, {}}, label_{"label", 1, {}}, colour_{"colour", 3, {}};
   std::size_t withheld_ = 0, noise_ = 0;
