@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "config/device_checks.h"
 #include "config/devices.h"
@@ -57,9 +58,16 @@ void checkProjectors(const DevicesSettings& d, LoadedSettings& loaded) {
     loaded.addFinding("/projector_schedule", fmt::format("needs {}", kProjectorsNeeded));
 }
 
-// Finds bindings whose action could never have an effect. Walls on other machines, which receive
-// actions through /serve/samples_endpoint, may have the folder that this wall lacks. The next
-// content may be the next slide of a folder that somebody shows.
+// As of a device without a driver; a name that is no action's was found while the file was read.
+void checkHasAction(const Binding& binding, const std::string& at, LoadedSettings& loaded) {
+  if (!binding.action.empty() || loaded.lines.contains(at + "/action")) return;
+  loaded.addFinding(at, fmt::format("has no action: name one in \"action\", one of {}",
+                                    fmt::join(kActions, ", ")));
+}
+
+// Finds bindings without an action, or whose action could never have an effect. Walls on other
+// machines, which receive actions through /serve/samples_endpoint, may have the folder that this
+// wall lacks. The next content may be the next slide of a folder that somebody shows.
 void checkBindings(const Settings& s, LoadedSettings& loaded) {
   addFaults(validate(s.devices.bindings), "/bindings", loaded);
   const bool other_walls = !s.serve.samples_endpoint.empty();
@@ -67,6 +75,7 @@ void checkBindings(const Settings& s, LoadedSettings& loaded) {
   const bool projectors = hasProjectors(s.devices);
   for (std::size_t i = 0; i < s.devices.bindings.size(); ++i) {
     const std::string& action = s.devices.bindings[i].action;
+    checkHasAction(s.devices.bindings[i], fmt::format("/bindings/{}", i), loaded);
     const std::string at = fmt::format("/bindings/{}/action", i);
     const CommandInfo* const command = findCommand(action);
     if (action == "snapshot" && s.wall.snapshots.empty() && !other_walls)

@@ -36,12 +36,7 @@ void describeDriver(std::string& driver, SettingsVisitor& v) {
     text.back() = '.';
     return text;
   }();
-  int index = -1;
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (driver == kNames[i]) index = static_cast<int>(i);
-  }
-  v.choice("driver", index, kNames, kHelp.c_str());
-  driver = index < 0 ? "" : kNames[static_cast<std::size_t>(index)];
+  v.choiceOf("driver", driver, kNames, kHelp.c_str());
 }
 
 void describeLine(LineSettings& line, SettingsVisitor& v) {
@@ -158,14 +153,18 @@ std::string actionsHelp() {
     list += fmt::format("{}{}: {}", list.empty() ? "" : " ", c.name, c.help);
   }
   return fmt::format(
-      "Action of the input. Actions that last as long as the input is held: {} Actions that happen "
-      "once: {}",
+      "Action of the input, which must be given. Actions that last as long as the input is held: "
+      "{} Actions that happen once: {}",
       held, once);
 }
 
 void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
   static const std::string kInput = fmt::format("Name of the input: {}.", kInputForms);
   static const std::string kAction = actionsHelp();
+  static const std::string kRepeat = fmt::format(
+      "Time after which an action that happens once happens again while the input is held, in "
+      "seconds: {} or more. 0: it does not.",
+      kShortestRepeat_s);
   v.listOf<Binding>(
       "bindings", d.bindings,
       "Inputs (buttons, postures, gestures, switches) and the action of each. Every merlind that "
@@ -185,9 +184,7 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
                  "How long the input has to be held before it counts, in seconds (a long press). "
                  "Bind the short press of the same input with on: leave; it does not happen when "
                  "the long one did.");
-        v.number("repeat_s", b.repeat_s, {0, 60},
-                 "Time after which an action that happens once happens again while the input is "
-                 "held, in seconds: 0.05 or more. 0: it does not.");
+        v.number("repeat_s", b.repeat_s, {0, kLongestRepeat_s}, kRepeat.c_str());
       });
 }
 

@@ -14,9 +14,6 @@
 namespace merlin {
 namespace {
 
-// A shorter one would do hundreds of steps before a person lets go.
-constexpr double kShortestRepeat_s = 0.05;
-
 bool isLamp(std::string_view action) { return action.starts_with("lamp_"); }
 
 // What one of them does, the other one undoes.
@@ -62,8 +59,8 @@ void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) 
                                                 b.with, b.input)});
   }
   if (b.repeat_s > 0 && b.repeat_s < kShortestRepeat_s)
-    faults.push_back({at + "/repeat_s", fmt::format("is {}; allowed are 0 and {} to 60", b.repeat_s,
-                                                    kShortestRepeat_s)});
+    faults.push_back({at + "/repeat_s", fmt::format("is {}; allowed are 0 and {} to {}", b.repeat_s,
+                                                    kShortestRepeat_s, kLongestRepeat_s)});
   if (b.repeat_s > 0 && (isHeldAction(b.action) || atLeave(b)))
     faults.push_back({at + "/repeat_s", "repeats only what happens once, as its input begins"});
 }
@@ -93,6 +90,7 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
   if (!input)
     faults.push_back(
         {at + "/input", fmt::format("is \"{}\"; allowed are {}", b.input, kInputForms)});
+  if (b.action.empty()) return;
   const bool held = isHeldAction(b.action);
   if (b.when != When::kByAction && (b.when == When::kHold) != held) {
     const char* const when = !held ? "hold" : atLeave(b) ? "leave" : "enter";
@@ -183,6 +181,7 @@ SettingFaults validate(const std::vector<Binding>& bindings) {
   for (std::size_t i = 0; i < bindings.size(); ++i) {
     const std::string at = fmt::format("/{}", i);
     checkOne(bindings[i], at, faults);
+    if (bindings[i].action.empty()) continue;
     const auto j = before.excluded(bindings[i]);
     if (j)
       faults.push_back({at, conflictText(bindings[*j], bindings[i]), fmt::format("/{}", *j)});

@@ -12,13 +12,19 @@ namespace merlin {
 enum class When { kByAction, kEnter, kHold, kLeave };
 
 struct Binding {
-  std::string input;            // in a form of kInputForms
-  std::string action = "grab";  // a name of kActions (daemon/base/commands.h)
+  std::string input;        // in a form of kInputForms
+  std::string action = {};  // a name of kActions (daemon/base/commands.h); empty: none was given
   When when = When::kByAction;
   std::string with = {};  // another input of the same device that has to be held too; empty: none
   double after_s = 0;     // how long the input has to be held before it counts
-  double repeat_s = 0;    // of what happens once: again after each such time; 0: once
+  // Of what happens once: again after each such time, kShortestRepeat_s to kLongestRepeat_s; 0:
+  // once.
+  double repeat_s = 0;
 };
+
+// A shorter one would do hundreds of steps before a person lets go.
+inline constexpr double kShortestRepeat_s = 0.05;
+inline constexpr double kLongestRepeat_s = 60;
 
 // All names of inputs, for descriptions and messages.
 inline constexpr const char* kInputForms =
@@ -42,7 +48,8 @@ inline std::vector<Binding> defaultBindings() {
 
 // Finds unknown inputs, actions that cannot be combined with their `when` or times, and pairs of
 // actions that one input would trigger at the same moment although they exclude each other or are
-// the same. Pointers: "/INDEX/input" ... Cost: linear.
+// the same. A binding without an action is no fault here: the caller knows whether the file gives
+// none, or a name that is none. Pointers: "/INDEX/input" ... Cost: linear.
 SettingFaults validate(const std::vector<Binding>& bindings);
 
 }  // namespace merlin

@@ -95,15 +95,15 @@ class SettingsVisitor {
     choice(key, index, names, help);
     value = static_cast<Enum>(index);
   }
-  // A text that is one of `names`.
+  // A text that is one of `names`, or empty if there is no default.
   void choiceOf(const char* key, std::string& value, std::span<const char* const> names,
                 const char* help) {
-    int index = 0;
+    int index = -1;
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (value == names[i]) index = static_cast<int>(i);
     }
     choice(key, index, names, help);
-    value = names[static_cast<std::size_t>(index)];
+    value = index < 0 ? "" : names[static_cast<std::size_t>(index)];
   }
   template <typename T>
   void listOf(const char* key, std::vector<T>& values, const char* help,

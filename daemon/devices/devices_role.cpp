@@ -9,6 +9,7 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include "daemon/base/fixed_text.h"
 #include "daemon/base/log.h"
 #include "daemon/shm/fields.h"
 #include "drivers/io/cpu_latency.h"
@@ -17,6 +18,7 @@
 #include "drivers/io/open_stream.h"
 #include "drivers/io/recording_stream.h"
 #include "drivers/io/tcp_stream.h"
+#include "drivers/port/health_reasons.h"
 
 namespace merlin::devices {
 namespace {
@@ -49,12 +51,12 @@ void giveUpRealTime() {
   (void)::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &none);
 }
 
-DeviceHealth notConfigured(Timestamp now) {
+// The health of a device whose thread has not written it yet.
+DeviceHealth absent(bool configured, Timestamp now) {
   DeviceHealth health{};
   health.since_ns = health.updated_ns = toNanoseconds(now);
   health.state = HealthState::kAbsent;
-  constexpr std::string_view kReason = "not configured";
-  std::copy(kReason.begin(), kReason.end(), health.reason);
+  setText(health.reason, configured ? kNotOpenedYet : kNotConfigured);
   return health;
 }
 
@@ -159,7 +161,7 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
   role->cpu_latency_us_ = settings.devices.cpu_latency_us;
   for (std::size_t i = 0; i < settings.devices.list.size(); ++i) {
     const DeviceSettings& device = settings.devices.list[i];
-    role->segment_->health[i].publish(notConfigured(clock.now()));
+    role->segment_->health[i].publish(absent(!device.line.port.empty(), clock.now()));
     role->publishFrames(settings.devices, i);
     role->lines_.push_back(std::make_unique<Line>());
     role->lines_[i]->name = device.name;
@@ -239,7 +241,7 @@ void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes
     close(i);
     publishFrames(devices, i);
     if (devices.list[i].line.port.empty()) {
-      segment_->health[i].publish(notConfigured(clock_.now()));
+      segment_->health[i].publish(absent(false, clock_.now()));
       continue;
     }
     [[maybe_unused]] const auto opened = open(i, devices);
@@ -250,7 +252,7 @@ void DevicesRole::reload(const Settings& settings, const DevicesChanges& changes
 
 void DevicesRole::addPanel(const DevicesSettings& devices) {
   const GpioSettings& settings = devices.gpio;
-  segment_->gpio_health.publish(notConfigured(clock_.now()));
+  segment_->gpio_health.publish(absent(!settings.chip.empty(), clock_.now()));
   if (settings.chip.empty()) return;
   panel_health_ = std::make_unique<shm::ShmHealthSink>(segment_->gpio_health);
   const auto open = [settings] {

@@ -11,6 +11,7 @@
 #include "daemon/base/files.h"
 #include "daemon/shm/device_slots.h"
 #include "daemon/shm/segment.h"
+#include "drivers/port/health_reasons.h"
 
 namespace merlin::devices {
 namespace {
@@ -58,7 +59,7 @@ std::vector<Event> FlightRecorder::check() {
     const auto health = segment_.health[entry.place].read();
     if (!health) continue;
     const bool well = health->state == HealthState::kOk;
-    const bool fell = entry.was_well && !well && std::string_view(health->reason) != "stopped";
+    const bool fell = entry.was_well && !well && std::string_view(health->reason) != kStopped;
     entry.was_well = well;
     if (well) entry.well_ns = health->since_ns;
     if (!fell) continue;

@@ -1,22 +1,24 @@
 #include "daemon/status/health_events.h"
 
-#include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "daemon/base/fixed_text.h"
 #include "daemon/status/documents.h"
+#include "drivers/port/health_reasons.h"
 
 namespace merlin::status {
 namespace {
 
 // Whether a device is absent as it should be.
-bool isIntended(std::string_view reason) {
-  constexpr std::string_view kReasons[] = {"not configured", "not opened yet", "stopped"};
-  return std::ranges::find(kReasons, reason) != std::end(kReasons);
+bool isIntended(std::string_view reason) { return reason == kNotConfigured || reason == kStopped; }
+
+// Opening is not an event: an absent device is opened again every second. Nor is that a process
+// which has just started will open it.
+bool isBeingOpened(const DeviceHealth& health) {
+  return health.state == HealthState::kOpening || textIn(health.reason) == kNotOpenedYet;
 }
 
 }  // namespace
@@ -40,8 +42,7 @@ std::vector<Event> HealthEvents::take(Timestamp now) {
   for (std::size_t i = 0; i < devices_.health.size(); ++i) {
     const auto& [device, slot] = devices_.health[i];
     const auto health = slot->read();
-    // Opening is not an event: an absent device is opened again every second.
-    if (!health || health->state == HealthState::kOpening) continue;
+    if (!health || isBeingOpened(*health)) continue;
     Told& told = told_[i];
     if (isBrief(told, *health, now)) continue;
     const std::string_view state = shm::healthName(*health, now);

@@ -79,18 +79,24 @@ CybergloveDevice::CybergloveDevice(const CybergloveSettings& settings, const Clo
 
 Result<std::string> CybergloveDevice::open(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
-  complaint_ = "";
-  if (const auto sent = dialogue.send(kStop); !sent) return sent.error();
-  if (const auto quiet = dialogue.drain(milliseconds(100), milliseconds(500)); !quiet) {
-    return quiet.error();
-  }
-  if (const auto known = identify(dialogue); !known) return known.error();
+  auto known = stopAndIdentify(dialogue);
+  if (!known && known.error().code == Errc::kMalformed) known = stopAndIdentify(dialogue);
+  if (!known) return known.error();
   if (const auto done = setUp(dialogue); !done) return done.error();
   parser_.expect({slots_.count, settings_.time_stamps, true, text_});
   if (const auto sent = dialogue.send(text_ ? "s\r" : "S"); !sent) return sent.error();
   last_record_ = clock_.now();
   last_stamp_ = 0;
   return fmt::format("CyberGlove, {} sensors", slots_.count);
+}
+
+Result<Ok> CybergloveDevice::stopAndIdentify(Dialogue& dialogue) {
+  complaint_ = "";
+  if (const auto sent = dialogue.send(kStop); !sent) return sent.error();
+  if (const auto quiet = dialogue.drain(milliseconds(100), milliseconds(500)); !quiet) {
+    return quiet.error();
+  }
+  return identify(dialogue);
 }
 
 Result<Ok> CybergloveDevice::identify(Dialogue& dialogue) {

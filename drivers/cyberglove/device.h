@@ -14,9 +14,11 @@
 namespace merlin::cyberglove {
 
 // open() takes about 0.3 s, or 1 s if the interface unit does not stop streaming or does not
-// answer. poll() fails with kTimeout after 0.5 s without a record, or 5 periods if the rate is
-// below 10 Hz. A glove that is not plugged in is a complaint, not an error, as long as the
-// interface unit streams.
+// answer. What answers otherwise than a CyberGlove does is stopped and asked once more before it
+// is refused, which takes as long again: a glove that comes back after a silence first sends the
+// rest of its stream and answers to what it was asked before. poll() fails with kTimeout after 0.5
+// s without a record, or 5 periods if the rate is below 10 Hz. A glove that is not plugged in is a
+// complaint, not an error, as long as the interface unit streams.
 class CybergloveDevice final : public Device {
  public:
   CybergloveDevice(const CybergloveSettings& settings, const Clock& clock, SampleSink& sink);
@@ -27,6 +29,7 @@ class CybergloveDevice final : public Device {
   const char* complaint() const noexcept override { return complaint_; }
 
  private:
+  Result<Ok> stopAndIdentify(Dialogue& dialogue);
   Result<Ok> identify(Dialogue& dialogue);
   Result<Ok> setUp(Dialogue& dialogue);
   std::uint32_t lostBefore(const Record& record) noexcept;

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/port/health_reasons.h"
+
 namespace merlin::gpio {
 namespace {
 
@@ -43,7 +45,7 @@ void PanelLoop::run(const std::stop_token& stop, const std::function<void()>& al
     report(end.code == Errc::kNotFound ? HealthState::kAbsent : HealthState::kFailed, end.what);
     if (!clock_.sleepUntil(clock_.now() + kRetry, stop)) break;
   }
-  report(HealthState::kAbsent, "stopped");
+  report(HealthState::kAbsent, std::string(kStopped));
 }
 
 Error PanelLoop::serve(const std::stop_token& stop, const std::function<void()>& alive) {
@@ -72,7 +74,7 @@ Error PanelLoop::serve(const std::stop_token& stop, const std::function<void()>&
     const Duration wait = std::clamp<Duration>(due - clock_.now(), Duration::zero(), kRound);
     if (const auto waited = (*lines)->wait(wait); !waited) return waited.error();
   }
-  return {Errc::kClosed, "stopped"};
+  return {Errc::kClosed, std::string(kStopped)};
 }
 
 Result<Ok> PanelLoop::apply(GpioLines& lines) {

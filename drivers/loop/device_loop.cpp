@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "drivers/port/health_reasons.h"
+
 namespace merlin {
 namespace {
 
@@ -31,7 +33,7 @@ DeviceLoop::DeviceLoop(DeviceLoopSettings settings, StreamOpener open_stream,
 }
 
 void DeviceLoop::run(const std::stop_token& stop, const std::function<void()>& alive) {
-  enter(HealthState::kAbsent, "not opened yet");
+  enter(HealthState::kAbsent, kNotOpenedYet);
   Duration retry = settings_.first_retry;
   while (!stop.stop_requested()) {
     alive();
@@ -47,7 +49,7 @@ void DeviceLoop::run(const std::stop_token& stop, const std::function<void()>& a
     if (!clock_.sleepUntil(clock_.now() + retry, stop)) break;
     retry = std::min(2 * retry, settings_.longest_retry);
   }
-  enter(HealthState::kAbsent, "stopped");
+  enter(HealthState::kAbsent, kStopped);
 }
 
 std::unique_ptr<ByteStream> DeviceLoop::paced(std::unique_ptr<ByteStream> stream) {
@@ -99,7 +101,7 @@ Error DeviceLoop::pollUntilLost(ByteStream& stream, const std::stop_token& stop)
     if (device_->counters().samples > health_.samples) streamed_ = true;
     report();
   }
-  return {Errc::kClosed, "stopped"};
+  return {Errc::kClosed, std::string(kStopped)};
 }
 
 void DeviceLoop::enter(HealthState state, std::string_view reason) noexcept {

@@ -1,6 +1,9 @@
 #include "nn/gesture/path_recording.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
 
 namespace merlin::nn {
 namespace {
@@ -26,6 +29,30 @@ bool isJustAfter(const std::vector<Take>& takes, std::int64_t first_ns, double a
 
 // Length times speed: both features are logarithms.
 float greatness(const StrokeFeatures& stroke) { return stroke[kLogLength] + stroke[kLogSpeed]; }
+
+// Of way and turn together, as PathPoint::speed_m_s.
+struct Movement {
+  float reach_m = 0;  // from where the hand was first
+  float greatest_m_s = 0;
+};
+
+Movement movementOf(std::span<const LabelledPose> poses) {
+  Movement movement;
+  StrokeFinder finder;
+  std::optional<PathPoint> first;
+  for (const LabelledPose& p : poses) {
+    (void)finder.update(p.pose);
+    const PathPoint& now = finder.newest();
+    if (!first) first = now;
+    const auto& a = first->position_m;
+    const auto& b = now.position_m;
+    const float way = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    const float turn = kRollLever_m * (now.roll_rad - first->roll_rad);
+    movement.reach_m = std::max(movement.reach_m, std::hypot(way, turn));
+    movement.greatest_m_s = std::max(movement.greatest_m_s, now.speed_m_s);
+  }
+  return movement;
+}
 
 }  // namespace
 
@@ -93,6 +120,20 @@ std::vector<LabelledStroke> strokesOf(const PathRecording& recording, double aft
     }
   }
   return strokes;
+}
+
+Result<Ok> checkTake(const PathRecording& take) {
+  std::size_t lost = 0;
+  (void)strokesOf(take, 0, lost);
+  if (lost == 0) return Ok{};
+  const Movement m = movementOf(take.poses);
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format(
+          "the hand made no stroke: it moved {:.0f} cm, at most {:.2f} m/s, its turn "
+          "included; make the gesture once, faster than {} m/s, and begin and end it within "
+          "the take",
+          100 * m.reach_m, m.greatest_m_s, StrokeSettings{}.begins_m_s)};
 }
 
 }  // namespace merlin::nn

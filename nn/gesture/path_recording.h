@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/base/result.h"
 #include "nn/gesture/pose.h"
 #include "nn/gesture/training.h"
 
@@ -44,5 +45,9 @@ std::vector<Take> takesOf(std::span<const LabelledPose> session, const PathRecor
 // motion. `lost`: set to the number of takes in which there is no stroke.
 std::vector<LabelledStroke> strokesOf(const PathRecording& recording, double after_take_s,
                                       std::size_t& lost);
+
+// Whether the one take of a gesture in `take` has a stroke, without which training leaves it out.
+// Errors: kInvalidArgument: how little the hand moved in it, and what to do.
+Result<Ok> checkTake(const PathRecording& take);
 
 }  // namespace merlin::nn

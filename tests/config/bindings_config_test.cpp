@@ -1,4 +1,5 @@
 // Bindings and projectors of a configuration: what could have no effect is refused.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -133,6 +134,26 @@ TEST(BindingsConfig, BindingsThatNameNothingAreFound) {
   EXPECT_NE(bindingsAre(R"({"input": "posture.a", "action": "dance"})").find("fly"),
             std::string::npos)
       << "the list of what exists";
+}
+
+TEST(BindingsConfig, ABindingWithoutAnActionIsFoundAndGrabsNothing) {
+  const auto loaded = loadSettings(R"({"bindings": [{"input": "posture.fist"},
+      {"input": "posture.fist", "on": "leave"}, {"input": "posture.fist", "action": "grab"}]})",
+                                   "");
+  ASSERT_EQ(loaded.verdict(), Verdict::kInvalid);
+  const std::string what = "has no action: name one in \"action\", one of reset_view, next_mode, ";
+  const std::string findings = findingsOf(loaded);
+  EXPECT_NE(findings.find("f.json:1: /bindings/0 " + what), std::string::npos) << findings;
+  EXPECT_NE(findings.find("f.json:2: /bindings/1 " + what), std::string::npos) << findings;
+  EXPECT_EQ(std::count(findings.begin(), findings.end(), '\n'), 2) << findings;
+  EXPECT_EQ(loaded.settings.devices.bindings[0].action, "");
+}
+
+TEST(BindingsConfig, AnActionThatIsNoneIsFoundOnce) {
+  const std::string findings = bindingsAre(R"({"input": "posture.a", "action": "dance"})");
+  EXPECT_TRUE(findings.starts_with("f.json:1: /bindings/0/action is the string \"dance\"; "))
+      << findings;
+  EXPECT_EQ(std::count(findings.begin(), findings.end(), '\n'), 1) << findings;
 }
 
 }  // namespace

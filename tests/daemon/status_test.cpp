@@ -133,9 +133,11 @@ TEST_F(DocumentsTest, TheWallSaysWhatAClientHasItSayAndWhereFilesGo) {
   wall_->notice.publish({1, "Reading scan.pgm: 45 %"});
   const std::string status = wallStatus(*wall_, kNow);
   EXPECT_EQ(json::parse(status)["notice"], "Reading scan.pgm: 45 %");
-  const json s = json::parse(addShownFolder(status, {"/var/lib/merlin/merlin.shown", 4096, ""}));
-  EXPECT_EQ(s["shown_folder"].dump(),
-            R"({"fault":"","limit_bytes":4096,"path":"/var/lib/merlin/merlin.shown"})");
+  const json s =
+      json::parse(addShownFolder(status, {"/var/lib/merlin/merlin.shown", 4096, "", {"scan"}}));
+  EXPECT_EQ(
+      s["shown_folder"].dump(),
+      R"({"fault":"","limit_bytes":4096,"names":["scan"],"path":"/var/lib/merlin/merlin.shown"})");
   EXPECT_EQ(s["notice"], "Reading scan.pgm: 45 %");
   const std::string missing = addMissingContents(status, {{"dome", "dome.tif: is cut"}});
   EXPECT_EQ(json::parse(missing)["missing_contents"].dump(), R"({"dome":"dome.tif: is cut"})");
@@ -325,6 +327,10 @@ TEST_F(DocumentsTest, EventsAreToldOnce) {
             test::Sentences{"fault: ball: stale (it lacks the key BTN_8)"});
   lost.state = HealthState::kOpening;  // trying to open it again is no event
   devices_->health[test::kBall].publish(lost);
+  EXPECT_TRUE(events.take(kNow).empty());
+  DeviceHealth starts{};  // nor is that a process which was started anew will open it
+  std::snprintf(starts.reason, sizeof starts.reason, "not opened yet");
+  devices_->health[test::kBall].publish(starts);
   EXPECT_TRUE(events.take(kNow).empty());
 }
 

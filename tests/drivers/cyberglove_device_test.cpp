@@ -219,6 +219,40 @@ TEST(CybergloveDevice, RefusesAnswersThatMakeNoGlove) {
   }
 }
 
+// Comes back to life with the first query: what it was sending and what it was asked before go
+// ahead of the answer.
+struct Returning final : emulate::Emulator {
+  Returning(emulate::Emulator& box, std::string left_over)
+      : box_(box), left(std::move(left_over)) {}
+  void receive(std::span<const std::byte> bytes, Timestamp now) override {
+    if (bytes[0] == std::byte{'?'}) silent = false;
+    box_.receive(bytes, now);
+  }
+  void advance(Timestamp now, std::string& out) override {
+    if (!silent) out += std::exchange(left, {});
+    box_.advance(now, out);
+  }
+  Timestamp nextDue() const override { return box_.nextDue(); }
+
+  emulate::Emulator& box_;
+  std::string left;
+  bool silent = true;
+};
+
+TEST(CybergloveDevice, IsNotMistakenForAnotherDeviceAsItComesBack) {
+  for (const std::string& left : {record({}).substr(8), record({}) + record({}),
+                                  "CyberGlove\0?G\3\0"s, std::string(600, 'x')}) {
+    Glove glove;
+    Returning box(*glove.emulator, left);
+    glove.stream.plug(&box);
+    const auto identity = glove.device->open(glove.stream);
+    ASSERT_TRUE(identity) << identity.error().what;
+    EXPECT_LT(glove.clock.now() - glove.start, seconds(1));
+    ASSERT_TRUE(glove.pollFor(*glove.device, seconds(1)));
+    EXPECT_EQ(glove.device->counters().bad_bytes, 0u);
+  }
+}
+
 // The vendor's firmware of 1993 ends the answer to a set command with an extra NUL.
 struct ThirdByte final : emulate::Emulator {
   explicit ThirdByte(emulate::Emulator& box) : box_(box) {}

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "nn/gesture/evaluation.h"
@@ -296,6 +297,28 @@ TEST(GestureTraining, SaysWhatItCannotTrainOn) {
   EXPECT_NE(wrong({{"wave", {}}, {"wave", {}}}).find("2 strokes of \"wave\"; needed: 3"),
             std::string::npos);
   EXPECT_NE(wrong({{"two words", {}}}).find("gesture \"two words\""), std::string::npos);
+}
+
+TEST(PathRecordingTest, ATakeOfAGestureNeedsAStroke) {
+  const auto faultOf = [](const std::vector<HandPose>& poses) {
+    PathRecording take;
+    for (const HandPose& p : poses) take.poses.push_back({take.labelled("wave"), p});
+    const auto checked = checkTake(take);
+    return checked ? std::string() : checked.error().what;
+  };
+  const auto fault = [](const char* moved) {
+    return fmt::format(
+        "the hand made no stroke: it moved {}, its turn included; make the gesture "
+        "once, faster than 0.25 m/s, and begin and end it within the take",
+        moved);
+  };
+  EXPECT_EQ(faultOf(line({0.3F, 0, 0})), "");
+  EXPECT_EQ(faultOf(line({0, 0, 0}, 1.5F)), "") << "a twist";
+  EXPECT_EQ(faultOf(line({0, 0, 0})), fault("0 cm, at most 0.00 m/s"));
+  EXPECT_EQ(faultOf(line({0.3F, 0, 0}, 0, 3)), fault("30 cm, at most 0.19 m/s"));
+  std::vector<HandPose> cut = line({0.3F, 0, 0});
+  cut.resize(70);  // it still moves
+  EXPECT_EQ(faultOf(cut), fault("14 cm, at most 1.25 m/s"));
 }
 
 TEST(PathRecordingTest, ATakeHasOneStrokeAndTheWayBackIsLeftOut) {

@@ -113,5 +113,23 @@ TEST(CalibrateGlove, NamesTheSensorsThatDidNotMoveAndLeavesTheFile) {
   EXPECT_EQ(readText(config), "{\"instance\": \"kept\"}");
 }
 
+TEST(CalibrateGlove, OpensThePortOfTheConfigurationUnlessOneIsGiven) {
+  const TempDir dir;
+  Process glove({kMerlin, "emulate", "cyberglove", "--link", dir / "glove", "--script", "still"});
+  ASSERT_TRUE(glove.saysEventually("cyberglove on")) << glove.output();
+  const std::string config = dir / "merlin.json";
+  const auto calibrate = [&](const std::string& port) {
+    writeText(config, onlyDevice(deviceEntry("left", "cyberglove", port)).dump());
+    return run({kMerlin, "calibrate", "glove", "-o", config, "--pause", "0.1", "--hold", "0.1"});
+  };
+  const Outcome done = calibrate("pty:" + dir / "glove");
+  EXPECT_NE(done.output.find("left: CyberGlove, 22 sensors"), std::string::npos) << done.output;
+  const Outcome none = calibrate("");
+  EXPECT_EQ(none.status, 2) << none.output;
+  EXPECT_NE(none.output.find("/devices/0 (\"left\") has no port: give one on the command line"),
+            std::string::npos)
+      << none.output;
+}
+
 }  // namespace
 }  // namespace merlin::test

@@ -97,13 +97,15 @@ int calibrateGlove(const GloveOptions& o) {
 
 void addCalibrateGlove(Command calibrate, Run& run) {
   const auto o = std::make_shared<GloveOptions>();
-  Command command =
-      calibrate.subcommand("glove",
-                           "Calibrate the glove: tells you a few poses to hold and computes "
-                           "each sensor's offset and gain.\nExample: merlin calibrate glove "
-                           "serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
-  command.option("port", o->port, "Port of the glove: serial:/dev/..., pty:PATH or tcp://HOST:PORT")
-      .required();
+  Command command = calibrate.subcommand(
+      "glove",
+      "Calibrate the glove: tells you a few poses to hold and computes "
+      "each sensor's offset and gain. One program has the line: stop merlind "
+      "first.\nExample: merlin calibrate glove -o merlin.json\nExample: merlin "
+      "calibrate glove serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
+  command.option("port", o->port,
+                 "Port of the glove: serial:/dev/..., pty:PATH or tcp://HOST:PORT; the default is "
+                 "that of the glove in the configuration file");
   command.option("-o,--output", o->output, "The configuration file to write into").required();
   command
       .option("--baud", o->baud,

@@ -109,27 +109,39 @@ bool isSeenThroughout(std::span<const nn::LabelledPose> take, Timestamp from, Ti
   return to - last <= kLongestGap;
 }
 
-// A take in which the hand was lost for a moment, as on a busy machine, is taken once more.
+// Errors: kTimeout: the hand was lost for a moment, as on a busy machine; those of
+// nn::checkTake(), but ordinary motion may be none.
+Result<Ok> checkTaken(std::span<const nn::LabelledPose> poses, Timestamp began,
+                      const RecordOptions& options) {
+  if (!isSeenThroughout(poses, began, began + fromSeconds(options.seconds)))
+    return Error{Errc::kTimeout,
+                 "the hand was not seen all the time: `merlin status` tells of its tracker"};
+  if (options.label == nn::kNoGesture) return Ok{};
+  return nn::checkTake({{options.label}, {poses.begin(), poses.end()}});
+}
+
+// A take that cannot be used is taken once more.
 Result<Ok> takeOne(LiveHand& hand, const RecordOptions& options, const nn::WallAxes& axes,
                    std::uint32_t label, std::vector<nn::LabelledPose>& poses) {
   const SystemClock clock;
-  for (int tries = 1; tries <= kMostTries; ++tries) {
+  for (int tries = 1;; ++tries) {
     if (auto waited = listen(hand, options.pause, axes, label, nullptr); !waited) return waited;
     printError("now: {}\n", options.label);
     std::vector<nn::LabelledPose> take;
     const Timestamp began = clock.now();
     if (auto taken = listen(hand, options.seconds, axes, label, &take); !taken) return taken;
-    if (isSeenThroughout(take, began, began + fromSeconds(options.seconds))) {
+    const auto checked = checkTaken(take, began, options);
+    if (checked) {
       poses.insert(poses.end(), take.begin(), take.end());
       return Ok{};
     }
-    printError("the hand was not seen all the time: once more, hold it still ...\n");
+    const std::string& why = checked.error().what;
+    if (tries == kMostTries)
+      return Error{checked.error().code,
+                   fmt::format("hand \"{}\": {} takes in a row are of no use; of the last one: {}",
+                               hand.name, kMostTries, why)};
+    printError("this take is of no use: {}\nonce more: hold the hand still ...\n", why);
   }
-  return Error{
-      Errc::kTimeout,
-      fmt::format("the hand \"{}\" was lost in each of {} takes: see `merlin status` for its "
-                  "tracker",
-                  hand.name, kMostTries)};
 }
 
 Result<nn::PathRecording> takes(const RecordOptions& options, const nn::WallAxes& axes) {
