@@ -185,8 +185,8 @@ void checkAlarms(LoadedSettings& loaded) {
     if (usable) continue;
     const std::string at = fmt::format("/alarms/{}/run/0", i);
     loaded.add({true, loaded.lineOf(at), at,
-                fmt::format("{}{}; until it can be, this alarm tells nobody: put the program "
-                            "there, and let everybody execute it (chmod 755)",
+                fmt::format("{}{}; until it can be, this alarm tells nobody: put the program, "
+                            "or its interpreter, there, and let everybody execute it (chmod 755)",
                             kCannot, usable.error().what),
                 true});
   }

@@ -93,13 +93,15 @@ Result<std::unique_ptr<Daemon>> Daemon::make(Configuration configuration,
 
 Daemon::Daemon(Configuration configuration, const DaemonOptions& options, Clock& clock)
     : settings_(configuration.loaded.settings),
-      configured_(std::move(configuration.loaded.settings)),
+      configured_{std::move(configuration.loaded.settings), {}},
       file_(std::move(configuration.file)),
       instead_of_(std::move(configuration.instead_of)),
       contents_(std::move(configuration.contents)),
       options_(options),
       clock_(clock),
-      watchdog_(watchdogInterval()) {}
+      watchdog_(watchdogInterval()) {
+  configured_.named = readNamedFiles(configured_.settings);  // before any part reads them
+}
 
 Daemon::~Daemon() { limitStop(); }
 

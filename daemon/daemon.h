@@ -79,7 +79,7 @@ class Daemon {
   // Members are destroyed from the last to the first: an object that calls others is declared after
   // them, so that it is destroyed first.
   Settings settings_;
-  Settings configured_;                      // as the file has them; moved into reloader_
+  Reloader::Configured configured_;          // as the files have it; moved into reloader_
   const std::string file_, instead_of_;      // Configuration's
   std::vector<wall::WallContent> contents_;  // moved into wall_ when that is created
   DaemonOptions options_;

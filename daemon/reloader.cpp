@@ -48,12 +48,11 @@ std::string orNothing(const std::string& value) { return value.empty() ? "nothin
 
 }  // namespace
 
-Reloader::Reloader(std::string file, const DaemonOptions& options, Settings configured,
+Reloader::Reloader(std::string file, const DaemonOptions& options, Configured configured,
                    Settings& running, const Parts& parts)
     : file_(std::move(file)),
       options_(options),
       configured_(std::move(configured)),
-      named_(readNamedFiles(configured_)),
       running_(running),
       parts_(parts) {}
 
@@ -149,7 +148,7 @@ Reloader::ReadFile Reloader::readGuarded() const {
 }
 
 reload::Readers Reloader::process() const {
-  const bool mirrors = options_.wall && !configured_.wall.input.endpoint.empty();
+  const bool mirrors = options_.wall && !configured_.settings.wall.input.endpoint.empty();
   return (options_.devices ? reload::kDevices : 0U) | (options_.wall ? reload::kWall : 0U) |
          (mirrors ? reload::kMirror : 0U);
 }
@@ -166,8 +165,9 @@ void Reloader::checkStart(LoadedSettings& loaded, const std::vector<SettingChang
 
 Outcome Reloader::judge(LoadedSettings& loaded, const NamedFiles& named, reload::Plan& plan) const {
   if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return Outcome::kInvalid;
-  auto changes = changesBetween(configured_, loaded.settings);
-  for (SettingChange& change : changesBetween(named_, named)) changes.push_back(std::move(change));
+  auto changes = changesBetween(configured_.settings, loaded.settings);
+  for (SettingChange& change : changesBetween(configured_.named, named))
+    changes.push_back(std::move(change));
   reload::Plan found = reload::planFor(changes, process());
   if (!found.restart.empty()) checkStart(loaded, changes);
   if (loaded.verdict() == LoadedSettings::Verdict::kInvalid || adjustsChange(loaded, changes))
@@ -228,8 +228,7 @@ void Reloader::swap(const ReadFile& file) {
         {plan.has(Part::kRate), plan.has(Part::kPlaylist), plan.has(Part::kScene),
          plan.has(Part::kBindings) || plan.has(Part::kHand), plan.has(Part::kCorrection)});
   }
-  configured_ = file.settings;
-  named_ = file.named;
+  configured_ = {file.settings, file.named};
 }
 
 void Reloader::report(const reload::Answer& answer) {

@@ -42,9 +42,16 @@ class Reloader {
     const Clock& clock;
     std::function<void()> wake;  // has the main thread call tend() soon; called on any thread
   };
-  // `configured`: the settings of `file` that are in effect. `running`: the same with what was made
-  // of them at the start (the emulators' ports); changed by tend() alone. All must outlive this.
-  Reloader(std::string file, const DaemonOptions& options, Settings configured, Settings& running,
+  // The settings of the file, and the files that they name as they were before any part of the
+  // process read them: one that changed while the process started counts as changed, whichever of
+  // its contents a part has.
+  struct Configured {
+    Settings settings;
+    NamedFiles named;
+  };
+  // `configured`: what is in effect of `file`. `running`: its settings with what was made of them
+  // at the start (the emulators' ports); changed by tend() alone. All must outlive this.
+  Reloader(std::string file, const DaemonOptions& options, Configured configured, Settings& running,
            const Parts& parts);
 
   // The command: "now" and "check", which only says what would be done, return {"request": N}; N
@@ -60,7 +67,7 @@ class Reloader {
   // first frame on. Takes up to 50 ms for each device that is made anew.
   Done tend();
   // The settings of the file that are in effect. On the thread of tend().
-  const Settings& configured() const noexcept { return configured_; }
+  const Settings& configured() const noexcept { return configured_.settings; }
 
  private:
   struct Request {
@@ -87,8 +94,7 @@ class Reloader {
 
   const std::string file_;
   const DaemonOptions options_;
-  Settings configured_;  // changed by tend() while nothing is read
-  NamedFiles named_;     // by configured_; likewise
+  Configured configured_;  // changed by tend() while nothing is read
   Settings& running_;
   Parts parts_;
   std::mutex mutex_;  // guards all below but thread_

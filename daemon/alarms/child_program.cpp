@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "daemon/base/child_process.h"
+#include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 
 namespace merlin::alarms {
@@ -62,28 +63,50 @@ int failureOf(const UniqueFd& end) {
   return got == static_cast<ssize_t>(sizeof why) ? why : 0;
 }
 
-const char* reasonOf(int failure) {
-  if (failure == ENOEXEC) return "it is no program; a script begins with a line such as #!/bin/sh";
-  if (failure == ENOENT) return "the interpreter that its first line names is not there";
-  return std::strerror(failure);
+// Why a file cannot be executed whatever is in it; empty if it can.
+std::string whyNoProgram(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), X_OK) != 0)
+    return std::strerror(errno);
+  return S_ISREG(status.st_mode) ? "" : "it is not a file";
+}
+
+// The same of a script: by its beginning, as the kernel reads it. A file with a zero byte is
+// another kind of program, of which the kernel may know more kinds than ELF (binfmt_misc).
+std::string whyNoScript(std::string_view begin) {
+  constexpr const char* kNone = "it is no program; a script begins with a line such as #!/bin/sh";
+  if (!begin.starts_with("#!")) return begin.find('\0') == std::string_view::npos ? kNone : "";
+  begin = begin.substr(2, begin.find('\n') - 2);
+  begin.remove_prefix(std::min(begin.find_first_not_of(" \t"), begin.size()));
+  const std::string interpreter(begin.substr(0, begin.find_first_of(std::string_view(" \t\0", 3))));
+  if (interpreter.empty()) return kNone;
+  const std::string why = whyNoProgram(interpreter);
+  if (why.empty()) return {};
+  return fmt::format("its first line names the interpreter {}: {}", oneLine(interpreter), why);
+}
+
+std::string whyNotExecutable(const std::string& path) {
+  constexpr std::size_t kReadByKernel = 256;
+  std::string why = whyNoProgram(path);
+  if (!why.empty()) return why;
+  const auto begin = FileCopy::read(path, kReadByKernel);
+  return begin ? whyNoScript(begin->text()) : "";  // who may not read a program may execute it
+}
+
+Error cannotBeExecuted(const std::string& path, std::string_view why) {
+  return {Errc::kNotFound, fmt::format("{}: cannot be executed: {}", path, why)};
 }
 
 }  // namespace
 
 Result<Ok> checkProgram(const std::string& path) {
-  struct stat status {};
-  const char* why = nullptr;
-  if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), X_OK) != 0)
-    why = std::strerror(errno);
-  else if (!S_ISREG(status.st_mode))
-    why = "it is not a file";
-  if (!why) return Ok{};
-  return Error{Errc::kNotFound, fmt::format("{}: cannot be executed: {}", path, why)};
+  const std::string why = whyNotExecutable(path);
+  if (why.empty()) return Ok{};
+  return cannotBeExecuted(path, why);
 }
 
 Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
                                          const std::string& input, Timestamp deadline) {
-  if (const auto usable = checkProgram(run.front()); !usable) return usable.error();
   const auto file = fileOf(input);
   if (!file) return file.error();
   std::vector<char*> arguments;
@@ -101,8 +124,8 @@ Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
   failures->to.reset();
   if (const int failure = failureOf(failures->from); failure != 0) {
     waitForChild(*child);
-    return Error{Errc::kNotFound,
-                 fmt::format("{}: cannot be executed: {}", run.front(), reasonOf(failure))};
+    const auto usable = checkProgram(run.front());  // which says more than the number
+    return usable ? cannotBeExecuted(run.front(), std::strerror(failure)) : usable.error();
   }
   return ChildProgram(*child, std::move(output->from), deadline);
 }

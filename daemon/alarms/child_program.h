@@ -15,8 +15,9 @@
 
 namespace merlin::alarms {
 
-// Whether this process may execute the program now. Errors, a sentence that begins with the path:
-// kNotFound (there is no such file, it is none, or may not be executed).
+// Whether this process may execute the program now, as far as the file and its first line tell.
+// Errors, a sentence that begins with the path: kNotFound (there is no such file, it is none, may
+// not be executed, or is a script without an interpreter).
 Result<Ok> checkProgram(const std::string& path);
 
 // Thread-bound. Waits in start(), until the program is loaded, and in the destructor, which ends
@@ -35,7 +36,8 @@ class ChildProgram {
   ~ChildProgram();
 
   // What became of it: nothing while it runs; then once a sentence, empty if it ended with status
-  // 0. Ends it and all that it started once the deadline has passed.
+  // 0. Ends it and all that it started once the deadline has passed, except a process in a session
+  // of its own (setsid), which no signal to the group reaches.
   std::optional<std::string> ended(Timestamp now);
 
   // What it wrote so far, to standard output or error: the lines of the first kMostKept bytes, each

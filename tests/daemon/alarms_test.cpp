@@ -207,19 +207,40 @@ TEST(ChildProgram, OfWhatItWritesTheBeginningIsKept) {
   EXPECT_EQ(lines.back(), "... and 2997952 bytes more, left out");
 }
 
+// What the check says before is what the start says.
 TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
   const TempDir dir;
+  const std::string script = dir / "script";
   const auto whatOf = [&](const std::string& text) {
-    test::writeText(dir / "script", text);
-    EXPECT_EQ(::chmod((dir / "script").c_str(), 0755), 0);
-    const auto started = ChildProgram::start({dir / "script"}, "", inAnHour());
-    return started ? std::string("started") : started.error().what;
+    test::writeText(script, text);
+    EXPECT_EQ(::chmod(script.c_str(), 0755), 0);
+    const auto checked = checkProgram(script);
+    const auto started = ChildProgram::start({script}, "", inAnHour());
+    EXPECT_EQ(checked.ok(), started.ok()) << text;
+    EXPECT_EQ(checked ? "" : checked.error().what, started ? "" : started.error().what);
+    return checked ? std::string("started") : checked.error().what;
   };
-  const std::string begin = (dir / "script") + ": cannot be executed: ";
-  EXPECT_EQ(whatOf("echo\n"),
-            begin + "it is no program; a script begins with a line such as #!/bin/sh");
-  EXPECT_EQ(whatOf("#!/no/such/sh\n"),
-            begin + "the interpreter that its first line names is not there");
+  const std::string begin = script + ": cannot be executed: ";
+  const std::string none = "it is no program; a script begins with a line such as #!/bin/sh";
+  const std::string names = "its first line names the interpreter ";
+  for (const char* text : {"echo\n", "", "#", "#!", "#! \n/bin/sh\n"})
+    EXPECT_EQ(whatOf(text), begin + none) << text;
+  for (const char* text : {"#!/no/such/sh\n", "#! \t/no/such/sh -e", "#!/no/such/sh\t\n"})
+    EXPECT_EQ(whatOf(text), begin + names + "/no/such/sh: No such file or directory") << text;
+  EXPECT_EQ(whatOf("#!/bin/sh\r\n"), begin + names + "/bin/sh\\x0d: No such file or directory");
+  EXPECT_EQ(whatOf("#!/etc/passwd\n"), begin + names + "/etc/passwd: Permission denied");
+  EXPECT_EQ(whatOf("#!/tmp\n"), begin + names + "/tmp: it is not a file");
+  for (const char* text : {"#!/bin/sh", "#!/bin/sh\n", "#! /bin/sh -e\n"})
+    EXPECT_EQ(whatOf(text), "started") << text;
+}
+
+// Of a program that is no script the kernel knows more than its beginning tells.
+TEST(ChildProgram, IsNotJudgedByBytesThatAreNoScript) {
+  const TempDir dir;
+  test::writeText(dir / "program", std::string("MZ\0\1", 4));
+  ASSERT_EQ(::chmod((dir / "program").c_str(), 0755), 0);
+  EXPECT_TRUE(checkProgram(dir / "program"));
+  EXPECT_TRUE(checkProgram("/bin/true"));
 }
 
 TEST(ChildProgram, IsEndedWithAllThatItStartedWhenItsTimeIsOver) {

@@ -60,6 +60,23 @@ TEST(ShownSettings, AnEntryOfAListIsComparedWithTheDefaultListOfThatLength) {
   EXPECT_EQ(lineOf(find(settings, "/bindings/1/on")), "  /bindings/1/on: \"by_action\"\n");
 }
 
+TEST(ShownSettings, WhatAnEntryOfAListDoesNotSayIsTheDefault) {
+  const auto loaded = loadSettings(R"({"devices": [
+{"name": "ball", "driver": "spaceball",
+ "spaceball": {"null_region": 30}}, {"name": "glove", "driver": "cyberglove"},
+{"name": "tracker", "driver": "fastrak", "baud": 19200}]})",
+                                   "");
+  const auto settings = shownSettings(loaded, "m.json", nullptr);
+  EXPECT_EQ(lineOf(find(settings, "/devices/0/spaceball/null_region")),
+            "* /devices/0/spaceball/null_region: 30  (m.json:3)\n");
+  EXPECT_EQ(lineOf(find(settings, "/devices/0/spaceball/cubic")),
+            "  /devices/0/spaceball/cubic: true\n");
+  EXPECT_EQ(lineOf(find(settings, "/devices/0/baud")), "  /devices/0/baud: 9600\n")
+      << "of its driver, whatever the first of the default devices is";
+  EXPECT_EQ(lineOf(find(settings, "/devices/2/baud")),
+            "* /devices/2/baud: 19200  (m.json:4; default 9600)\n");
+}
+
 TEST(ShownSettings, AreJsonForPrograms) {
   const auto loaded = loadSettings(R"({"instance": "lab"})", "");
   const auto settings = shownSettings(loaded, "m.json", nullptr);

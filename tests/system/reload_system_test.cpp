@@ -231,6 +231,9 @@ TEST_F(Reload, ForWhatOnlyAStartTakesItStartsAgainWithAllTheRest) {
   EXPECT_TRUE(eventually([&] { return reload().output == "nothing changed\n"; }));
   const std::string pid = std::to_string(merlind_->process().pid());
   EXPECT_EQ(readText("/proc/" + pid + "/comm"), "merlind\n");
+  for (const std::string device : kDevices)
+    EXPECT_EQ(merlind_->process().output().find(device + ": absent (not "), std::string::npos)
+        << "it is configured, and is opened: " << merlind_->process().output();
   EXPECT_EQ(merlind_->process().kill(SIGTERM), 0) << merlind_->process().output();
 }
 
@@ -263,6 +266,22 @@ TEST_F(Reload, WhatOtherProcessesReadIsSaid) {
   EXPECT_EQ(done.output,
             "/bindings/0/action: \"grab\" -> \"fly\"\n"
             "/page/port: is read by the page: systemctl reload merlin-page\n");
+}
+
+TEST_F(Reload, AnAlarmHasOneLineHoweverManyOfItsSettingsChanged) {
+  start();
+  const auto alarm = [](int most) { return json{{"run", {"/bin/true"}}, {"most_per_hour", most}}; };
+  const std::string reader = ": is read by the alarms: systemctl reload merlin-alarms\n";
+  write({{"alarms", {alarm(1), alarm(2)}}});
+  EXPECT_EQ(reload({"--check"}).output, "/alarms" + reader) << "there were none";
+  EXPECT_EQ(reload().status, 0);
+  write({{"alarms", {alarm(1), alarm(5), alarm(3), alarm(4)}}});
+  const std::string all = " (run, kinds, most_per_hour, time_limit_s)";
+  EXPECT_EQ(reload().output, "/alarms/1/most_per_hour" + reader + "/alarms/2" + all + reader +
+                                 "/alarms/3" + all + reader);
+  write({{"serve", {{"vrpn_port", 3999}, {"spnav_socket", dir_ / "ball"}}}});
+  const Outcome start = reload({"--check"});
+  EXPECT_NE(start.output.find("which alone takes:\n  /serve ("), std::string::npos) << start.output;
 }
 
 // Good ones and bad ones in a random order, always the same one, while the hand moves.

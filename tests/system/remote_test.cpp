@@ -5,8 +5,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/inotify.h>
 #include <unistd.h>
 
+#include "daemon/base/unique_fd.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -17,6 +20,29 @@ std::string keys(const std::string& path) {
   EXPECT_EQ(made.status, 0) << made.output;
   return made.output.substr(0, 40);
 }
+
+// Counts how often a file is read, from now on.
+class ReadsOf {
+ public:
+  explicit ReadsOf(const std::string& file) : events_(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
+    EXPECT_GE(::inotify_add_watch(events_.get(), file.c_str(), IN_CLOSE_NOWRITE), 0) << file;
+  }
+  // Whether it has been read `times` times, for which it waits 10 s.
+  bool reach(int times) {
+    while (count_ < times) {
+      pollfd waits{events_.get(), POLLIN, 0};
+      if (::poll(&waits, 1, 10'000) != 1) return false;
+      inotify_event event{};  // without a name, since a file is watched
+      while (count_ < times && ::read(events_.get(), &event, sizeof event) == sizeof event)
+        ++count_;
+    }
+    return true;
+  }
+
+ private:
+  UniqueFd events_;
+  int count_ = 0;
+};
 
 struct TwoMachines : testing::Test {
   TwoMachines() {
@@ -106,6 +132,22 @@ TEST_F(TwoMachines, AWallWithoutKeysIsRefusedWithTheWayOut) {
   const Outcome both = run({kMerlind, "--config", dir / "wall.json"});
   EXPECT_EQ(both.status, 2) << both.output;
   EXPECT_NE(both.output.find("run it with --role wall"), std::string::npos) << both.output;
+}
+
+// The first time it is checked, the second time compared or used.
+TEST_F(TwoMachines, AKeyThatIsReplacedWhileTheWallStartsIsTakenByTheNextReload) {
+  const std::string key = dir / "wall.keys", other = dir / "other.keys";
+  keys(other);
+  ReadsOf reads(key);
+  Process wall({kMerlind, "--config", dir / "wall.json", "--role", "wall"});
+  ASSERT_TRUE(reads.reach(2)) << wall.output();
+  std::filesystem::rename(other, key);
+  ASSERT_TRUE(wall.saysEventually("ready")) << wall.output();
+  const Outcome reload = run({kMerlin, "reload", "--instance", wall_name});
+  EXPECT_EQ(reload.status, 0) << reload.output;
+  EXPECT_EQ(reload.output, "merlind started again, which alone takes:\n  /wall/input/keys\n");
+  EXPECT_EQ(run({kMerlin, "reload", "--instance", wall_name}).output, "nothing changed\n");
+  EXPECT_EQ(wall.kill(SIGTERM), 0) << wall.output();
 }
 
 }  // namespace

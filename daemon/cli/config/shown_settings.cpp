@@ -12,11 +12,22 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kRate = "/wall/rate/rate_hz";
 
-// What an entry of a list does not say and the default list's entry does comes from the file too,
-// since the file's list replaces the default one.
+// Whether the setting belongs to an entry of a list that stands in a file.
+bool isOfListedEntry(const LoadedSettings& loaded, std::string at) {
+  for (; !at.empty(); at.resize(at.rfind('/'))) {
+    const char first = at[at.rfind('/') + 1];
+    if (first >= '0' && first <= '9' && loaded.lines.contains(at)) return true;
+  }
+  return false;
+}
+
+// What an entry in the file does not say has the default of an entry with these others (the baud
+// rate of its driver), and not that of the default list's entry, which the file's list replaces.
 void findOrigin(const LoadedSettings& loaded, const std::string& file, ShownSetting& shown) {
-  const bool own = loaded.lines.contains(shown.setting.pointer);
-  const int line = own || shown.differs() ? loaded.lineOf(shown.setting.pointer) : 0;
+  SettingValue& setting = shown.setting;
+  const bool own = loaded.lines.contains(setting.pointer);
+  if (!own && isOfListedEntry(loaded, setting.pointer)) setting.default_value = setting.value;
+  const int line = own || shown.differs() ? loaded.lineOf(setting.pointer) : 0;
   if (line == 0) return;
   const auto place = loaded.placeAt(line);
   shown.origin = Origin::kFile;

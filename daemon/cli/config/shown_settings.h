@@ -17,7 +17,7 @@ enum class Origin { kDefault, kFile, kState };
 inline constexpr const char* kOriginNames[] = {"default", "file", "state"};
 
 struct ShownSetting {
-  SettingValue setting;  // with the value in effect
+  SettingValue setting;  // with the value in effect, which is the default of what an entry omits
   Origin origin = Origin::kDefault;
   std::string file;  // of kFile and kState
   int line = 0;      // of kFile
@@ -42,7 +42,7 @@ std::string settingsLines(std::span<const ShownSetting> settings);
 std::string changesLines(const RunTimeChanges& changes);
 
 // [{"pointer", "value", "default", "differs", "origin", "file", "line"}, ...]; default is null
-// where the setting exists because of others only.
+// where a file has the setting and it exists because of others only.
 std::string settingsJson(std::span<const ShownSetting> settings);
 
 }  // namespace merlin::cli

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clock.h"
@@ -160,14 +161,19 @@ std::vector<std::string> together(const std::vector<Reloaded>& all, const char* 
 
 std::string itself(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
 
-// What makes a start necessary: of a list or group of which all changed only its own name.
-std::vector<std::string> restartSettings(const std::vector<Reloaded>& all) {
-  std::vector<std::string> settings = together(all, "restart", itself);
+// Of a list or group of which all changed only its own name.
+void leaveOutMembers(std::vector<std::string>& settings) {
   const std::vector<std::string> whole = settings;
   std::erase_if(settings, [&](const std::string& setting) {
     return std::ranges::any_of(
         whole, [&](const std::string& group) { return setting.starts_with(group + "/"); });
   });
+}
+
+// What makes a start necessary.
+std::vector<std::string> restartSettings(const std::vector<Reloaded>& all) {
+  std::vector<std::string> settings = together(all, "restart", itself);
+  leaveOutMembers(settings);
   return settings;
 }
 
@@ -177,6 +183,7 @@ std::vector<std::string> readByNone(const std::vector<Reloaded>& all, reload::Re
   std::erase_if(settings, [&](const std::string& setting) {
     return (reload::takerOf(setting).readers & running) != 0;
   });
+  leaveOutMembers(settings);
   return settings;
 }
 
@@ -186,17 +193,43 @@ const char* whoTakes(reload::Readers readers) {
   return "is taken by a merlind of another role when it starts";
 }
 
+// Settings of one group or entry of a list that follow one another, with what is said of them.
+struct SettingsTogether {
+  std::string group;               // "/alarms/0"
+  std::vector<std::string> names;  // "run", "kinds"
+  std::string said;
+
+  std::string text() const {
+    if (names.size() == 1) return fmt::format("{}/{}{}", group, names.front(), said);
+    return fmt::format("{} ({}){}", group, fmt::join(names, ", "), said);
+  }
+};
+
+// One line for an entry of a list, however many of its settings changed.
+void printTogether(const char* before, const std::vector<std::string>& settings,
+                   std::string (*said)(const std::string&)) {
+  std::vector<SettingsTogether> lines;
+  for (const std::string& setting : settings) {
+    const std::size_t slash = setting.rfind('/');
+    const std::string group = setting.substr(0, slash), what = said(setting);
+    if (lines.empty() || group.empty() || lines.back().group != group || lines.back().said != what)
+      lines.push_back({group, {}, what});
+    lines.back().names.push_back(setting.substr(slash + 1));
+  }
+  for (const SettingsTogether& line : lines) printOut("{}{}\n", before, line.text());
+}
+
 // `tense`: of the sentence that names what merlind starts again for.
 void printDone(const std::vector<Reloaded>& all, reload::Readers running, const char* tense) {
   const auto swapped = together(all, "swapped", changeText);
   const auto unread = readByNone(all, running);
   for (const std::string& line : swapped) printOut("{}\n", line);
-  for (const std::string& setting : unread) {
-    printOut("{}: {}\n", setting, whoTakes(reload::takerOf(setting).readers));
-  }
+  printTogether("", unread, [](const std::string& setting) {
+    return fmt::format(": {}", whoTakes(reload::takerOf(setting).readers));
+  });
   const auto restart = restartSettings(all);
   if (!restart.empty()) printOut("merlind {} again, which alone takes:\n", tense);
-  for (const std::string& setting : restart) printOut("  {}\n", setting);
+  printTogether("  ", restart, [](const std::string&) { return std::string(); });
   if (swapped.empty() && unread.empty() && restart.empty()) printOut("nothing changed\n");
 }
 
@@ -278,12 +311,18 @@ Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>
 
 // Says which roles were not asked, and what follows for the exit status of the others. Of one
 // process (--pid) nobody else is expected to run.
-int withLostRoles(const ReloadOptions& options, int status) {
+int withLostRoles(const ReloadOptions& options, const std::vector<Reloaded>& asked, int status) {
   if (options.pid > 0) return status;
   const auto lost = lostRoles(options.instance);
   for (const LostRole& role : lost) {
     printError("merlin: {}: the role {} {}; it was not asked, and reads the file when it starts\n",
                options.instance, role.role, role.what());
+    if (status != kExitDone || asked.empty()) continue;
+    printError(
+        "merlin: {}: the role {} {} it; the exit status is {} until the role {} has been started "
+        "again. Without that role: merlin reload --pid {}\n",
+        options.instance, asked.front().process.role, options.check ? "can do" : "has done",
+        kExitFailed, role.role, asked.front().process.pid);
   }
   return lost.empty() || status != kExitDone ? status : kExitFailed;
 }
@@ -297,7 +336,7 @@ int reloadInstance(ReloadOptions options) {
     return fail(back.error());
   if (!options.json) {
     print(*all, readersOf(roles), options.check ? "would start" : awaits ? "started" : "starts");
-    return withLostRoles(options, exitStatusOf(*all));
+    return withLostRoles(options, *all, exitStatusOf(*all));
   }
   Json processes = Json::array();
   for (const Reloaded& reloaded : *all) {
@@ -306,7 +345,7 @@ int reloadInstance(ReloadOptions options) {
     processes.push_back(std::move(process));
   }
   printJsonLine(Json{{"processes", std::move(processes)}});
-  return withLostRoles(options, exitStatusOf(*all));
+  return withLostRoles(options, *all, exitStatusOf(*all));
 }
 
 }  // namespace
@@ -324,7 +363,9 @@ void addReload(Command app, Run& run) {
       "Have merlind read its configuration again and swap what changed, without closing anything "
       "else: bindings, devices, hand, postures, rate, playlist, speeds. For other settings the "
       "process that reads them starts again, in about a second. All or nothing: if the file is "
-      "invalid, everything stays as it was. Exit status: 0 done, 2 invalid, 1 otherwise.\n"
+      "invalid, everything stays as it was. Exit status: 0 done, 2 invalid, 1 otherwise, also if a "
+      "role of the instance was killed or hangs, whatever the other one has done: until that role "
+      "has been started again, --pid reloads the other one alone.\n"
       "Example: merlin reload --check");
   addInstance(command, options->instance);
   command
