@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "daemon/base/fixed_text.h"
+#include "render/out/settings.h"
 
 namespace merlin::wall {
 namespace {

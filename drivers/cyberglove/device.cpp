@@ -1,6 +1,7 @@
 #include "drivers/cyberglove/device.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -183,7 +184,7 @@ std::uint32_t CybergloveDevice::lostBefore(const Record& record) noexcept {
   const bool first = std::exchange(last_stamp_, record.timestamp) == 0;
   const double periods = ticks / kStampClock * settings_.rate_hz;
   if (first || periods < 1.5 || periods > kMostLost) return 0;
-  return static_cast<std::uint32_t>(periods + 0.5) - 1;
+  return static_cast<std::uint32_t>(std::lround(periods)) - 1;
 }
 
 DeviceCounters CybergloveDevice::counters() const noexcept {

@@ -128,7 +128,9 @@ void moveCorner(CorrectionSettings& settings, std::size_t corner, double right_p
 }
 
 void moveMeshPoint(MeshSettings& mesh, int column, int row, const MeshPoint& by) {
-  MeshPoint& point = mesh.points[static_cast<std::size_t>(row * mesh.columns + column)];
+  const auto in_row = static_cast<std::size_t>(mesh.columns);
+  MeshPoint& point =
+      mesh.points[static_cast<std::size_t>(row) * in_row + static_cast<std::size_t>(column)];
   point.x += by.x;
   point.y += by.y;
 }
