@@ -190,8 +190,8 @@ Result<Ok> RoleServers::startWall() {
     const wall::ShownFolder& folder = parts_.wall->shownFolder();
     std::string document = status::wallStatus(segment, clock_.now(), servers_.health("wall"),
                                               remote, renderer ? &*renderer : nullptr);
-    document =
-        status::addShownFolder(document, {folder.path(), folder.limitBytes(), folder.fault()});
+    document = status::addShownFolder(document, {folder.path(), folder.limitBytes(), folder.fault(),
+                                                 parts_.wall->namesInFolder()});
     return parts_.services.addTo(
         status::addMissingContents(document, parts_.wall->missingContents()));
   };

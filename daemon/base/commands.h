@@ -46,7 +46,9 @@ inline constexpr CommandInfo kCommands[] = {
     {"previous_content", CommandOf::kWall, "",
      "Show the previous slide, or the previous content of the configuration.", Bindable::kOnce,
      true},
-    {"show", CommandOf::kWall, "NAME", "Show the content of the configuration of that name.",
+    {"show", CommandOf::kWall, "NAME",
+     "Show the content of that name: one of the configuration, or else one of the content folder, "
+     "where what `merlin show FILE` has shown stays.",
      Bindable::kNo, false},
     {"show_file", CommandOf::kWall, "NAME",
      "Show a model, a pyramid or a folder of pyramids of the content folder, by the name that it "

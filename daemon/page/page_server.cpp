@@ -121,11 +121,15 @@ void PageServer::updateRoles(Timestamp now) {
   devices_.update(now);
   if (const shm::WallSegment* const wall = wall_.segment())
     frames_.follow(wall->trace, wall->header.generation);
-  const auto answered = [this](std::uint64_t id, const Result<std::string>& result) {
-    http_->answer(id, commandAnswer(result));
+  const auto answerer = [this](const std::string& role) {
+    return [this, role](std::uint64_t id, const Result<std::string>& result) {
+      const bool gone = !result && result.error().code == Errc::kNotFound;
+      http_->answer(id, gone ? errorAnswer(503, fmt::format("the role {} does not run", role))
+                             : commandAnswer(result));
+    };
   };
-  wall_commands_.update(wall_.commandEndpoint(), now, answered);
-  devices_commands_.update(devices_.commandEndpoint(), now, answered);
+  wall_commands_.update(wall_.commandEndpoint(), now, answerer(wall_.role()));
+  devices_commands_.update(devices_.commandEndpoint(), now, answerer(devices_.role()));
 }
 
 std::optional<Answer> PageServer::handle(const Request& request, std::uint64_t id) {

@@ -282,9 +282,11 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
 }
 
 std::string addShownFolder(const std::string& document, const ShownFolderState& folder) {
-  return addMember(
-      document, "shown_folder",
-      {{"path", folder.path}, {"limit_bytes", folder.limit_bytes}, {"fault", folder.fault}});
+  return addMember(document, "shown_folder",
+                   {{"path", folder.path},
+                    {"limit_bytes", folder.limit_bytes},
+                    {"fault", folder.fault},
+                    {"names", folder.names}});
 }
 
 std::string addMissingContents(const std::string& document,

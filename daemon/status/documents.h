@@ -36,11 +36,12 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
 // The content folder, into which `merlin show FILE` puts files.
 struct ShownFolderState {
   std::string path{};
-  std::uint64_t limit_bytes = 0;  // of all files in it together
-  std::string fault{};            // why it cannot be used; empty: it can
+  std::uint64_t limit_bytes = 0;     // of all files in it together
+  std::string fault{};               // why it cannot be used; empty: it can
+  std::vector<std::string> names{};  // that `show` takes, of the contents in it, the newest first
 };
 // Returns `document`, a JSON object, with the member "shown_folder": {"path", "limit_bytes",
-// "fault"}.
+// "fault", "names"}.
 std::string addShownFolder(const std::string& document, const ShownFolderState& folder);
 // The same with "missing_contents": {NAME: why it cannot be shown}; without it if there is none.
 std::string addMissingContents(const std::string& document,

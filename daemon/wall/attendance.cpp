@@ -138,6 +138,10 @@ Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
   return frame;
 }
 
+Playlist::Due Attendance::due() const noexcept {
+  return blank_ || frozen_ ? Playlist::Due{} : playlist_.due();
+}
+
 Attendance::Shown Attendance::shown() const noexcept {
   if (blank_) return Shown::kBlank;
   return frozen_ ? Shown::kFrozen : Shown::kPicture;

@@ -53,7 +53,8 @@ class Attendance {
   bool isFrozen() const noexcept { return frozen_; }
   float light() const noexcept { return light_; }  // that the last update() wanted
   Playlist::State playlist() const noexcept { return playlist_.state(); }
-  Playlist::Due due() const noexcept { return playlist_.due(); }
+  // Nothing is due while it is black or frozen, since then no time passes for the playlist.
+  Playlist::Due due() const noexcept;
 
   // Motions, such as pushes of the ball, are a new touch if there was none for this time before.
   // Whoever pushes a button of the ball pushes the ball as well.

@@ -81,6 +81,16 @@ void ModelWatch::noteLeftOut(const std::string& slide, const std::string& left_o
     events_.push_back(faultEvent(left_out));
 }
 
+void ModelWatch::reportSkipped(const std::vector<std::string>& skipped) {
+  constexpr Duration kSaidAgain = std::chrono::hours(1);
+  const Timestamp now = clock_.now();
+  const std::lock_guard lock(mutex_);
+  std::erase_if(skipped_, [&](const auto& said) { return now - said.second >= kSaidAgain; });
+  for (const std::string& why : skipped) {
+    if (skipped_.try_emplace(why, now).second) events_.push_back(faultEvent(why));
+  }
+}
+
 void ModelWatch::offer(ReadyModel ready) {
   if (ready.is_slide) noteLeftOut(ready.path, ready.left_out);
   const std::lock_guard lock(mutex_);

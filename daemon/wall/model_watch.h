@@ -98,6 +98,9 @@ class ModelWatch {
   void offer(ReadyModel ready);
   // Adds an event.
   void report(Event event);
+  // The same for slides that were left out, a sentence each: once an hour as long as they come
+  // again, since slides come round.
+  void reportSkipped(const std::vector<std::string>& skipped);
   // Returns the events since the last call, one sentence each.
   std::vector<Event> takeEvents();
 
@@ -131,6 +134,7 @@ class ModelWatch {
   std::vector<ReadyModel> ready_;
   std::vector<Event> events_;
   std::map<std::string, std::string> left_out_;  // by folder of slides: what was said last
+  std::map<std::string, Timestamp> skipped_;     // when each sentence of reportSkipped() was said
   std::vector<Asked> asked_;
   std::vector<std::pair<std::size_t, Watched>> offered_;  // files to look at from now on, by place
   WatchedThread thread_;

@@ -57,15 +57,19 @@ Duration ageOf(const std::string& path) {
          std::chrono::nanoseconds(now.tv_nsec - status.st_mtim.tv_nsec);
 }
 
+// Of the same age by name, so that one folder has one result.
+void sortNewestFirst(std::vector<FolderFile>& files) {
+  std::ranges::sort(files, [](const FolderFile& a, const FolderFile& b) {
+    return std::pair(a.age, std::string_view(a.name)) < std::pair(b.age, std::string_view(b.name));
+  });
+}
+
 }  // namespace
 
 std::vector<std::string> surplusOf(std::vector<FolderFile> files, std::span<const std::string> kept,
                                    std::uint64_t limit_bytes) {
   std::erase_if(files, isHidden);
-  // Of the same age by name, so that one folder has one result.
-  std::ranges::sort(files, [](const FolderFile& a, const FolderFile& b) {
-    return std::pair(a.age, std::string_view(a.name)) < std::pair(b.age, std::string_view(b.name));
-  });
+  sortNewestFirst(files);
   const auto isKept = [&](const FolderFile& file) {
     return std::ranges::find(kept, file.name) != kept.end();
   };
@@ -89,6 +93,20 @@ std::vector<std::string> leftOversOf(std::span<const FolderFile> files) {
     if (isHidden(file) && file.age > kLeftOver) left.push_back(file.name);
   }
   return left;
+}
+
+std::vector<NamedFile> namedFilesOf(std::vector<FolderFile> files) {
+  std::erase_if(files, [](const FolderFile& file) {
+    return !isPlainName(file.name) || !(file.is_folder || kindByEnding(file.name));
+  });
+  sortNewestFirst(files);
+  std::vector<NamedFile> named;
+  for (FolderFile& file : files) {
+    std::string name = nameOf(file.name);
+    if (std::ranges::find(named, name, &NamedFile::name) == named.end())
+      named.push_back({std::move(name), std::move(file.name)});
+  }
+  return named;
 }
 
 ShownFolder::ShownFolder(const ShownSettings& settings, const std::vector<std::string>& configured)
@@ -138,6 +156,20 @@ Result<ContentEntry> ShownFolder::entryOf(const std::string& name) const {
   return Error{Errc::kInvalidArgument,
                fmt::format("{}: has {} bytes; /wall/shown/limit_mb allows {} MB", entry->path,
                            bytes, settings_.limit_mb)};
+}
+
+std::vector<NamedFile> ShownFolder::namedFiles() const {
+  std::vector<FolderFile> found;
+  std::error_code error;
+  for (fs::directory_iterator it(settings_.folder, error), end;
+       !error && it != end && found.size() < kMostLookedAt; it.increment(error)) {
+    std::error_code gone;
+    const fs::file_type type = it->symlink_status(gone).type();
+    if (type == fs::file_type::regular || type == fs::file_type::directory)
+      found.push_back({it->path().filename().string(), 0, ageOf(it->path().string()),
+                       type == fs::file_type::directory});
+  }
+  return namedFilesOf(std::move(found));
 }
 
 std::vector<std::string> ShownFolder::tidy(const std::string& shown) {

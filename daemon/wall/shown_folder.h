@@ -20,6 +20,7 @@ struct FolderFile {
   std::string name;
   std::uint64_t bytes = 0;
   Duration age{};  // since it was written
+  bool is_folder = false;
 };
 
 // Names of the files that are to be removed, so that the next client has room. Those in `kept`
@@ -30,6 +31,13 @@ std::vector<std::string> surplusOf(std::vector<FolderFile> files, std::span<cons
 
 // Names of hidden files that are older than an hour: of clients that were killed. Pure.
 std::vector<std::string> leftOversOf(std::span<const FolderFile> files);
+
+// The names of the contents that these files are, the newest first, each with its file: of two of
+// one name the newer one counts. Hidden files and those that are no content have none. Pure.
+struct NamedFile {
+  std::string name, file;
+};
+std::vector<NamedFile> namedFilesOf(std::vector<FolderFile> files);
 
 // Thread-safe.
 class ShownFolder {
@@ -53,6 +61,11 @@ class ShownFolder {
   // The content of that name in the folder. Errors: those of contentBelow(); kUnsupported (the
   // folder cannot be used), kInvalidArgument (it is larger than limitBytes()).
   Result<ContentEntry> entryOf(const std::string& name) const;
+
+  // namedFilesOf() the folder: what was shown and can be shown again. It looks at the first
+  // kMostLookedAt files.
+  std::vector<NamedFile> namedFiles() const;
+  static constexpr std::size_t kMostLookedAt = 1000;
 
   // Removes surplusOf() the folder; `shown`, the one of the call before and those that the
   // configuration names stay. Returns a sentence about each that cannot be removed.

@@ -211,7 +211,7 @@ void ShownModels::askForSlide(std::size_t place, const SlideTurn& turn, bool to_
                      entry = shown_[place].entry]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;
     auto slide = readContent(entry, settings.render.model.show, turn, skipped);
-    for (const std::string& why : skipped) watch.report(faultEvent(why));
+    watch.reportSkipped(skipped);
     if (!slide) return slide.error();
     auto ready = prepareContent(place, *std::move(slide), settings);
     if (ready) ready->asked_for = to_be_shown;

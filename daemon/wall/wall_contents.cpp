@@ -27,11 +27,6 @@ bool isPyramid(const std::string& path) {
   return std::ranges::any_of(kPyramidEndings, [&](auto ending) { return path.ends_with(ending); });
 }
 
-std::string nameOf(const std::string& path) {
-  const fs::path file(path);
-  return (file.has_filename() ? file : file.parent_path()).stem().string();
-}
-
 ContentEntry entryOf(const ContentSettings& c, const std::string& pointer) {
   ContentEntry entry{pointer + "/model", c.name, c.model, ContentKind::kModel, c.show_as};
   if (!c.picture.empty()) {
@@ -228,6 +223,16 @@ std::string namesOf(const std::vector<ContentEntry>& contents) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+std::string nameOf(const std::string& path) {
+  const fs::path file(path);
+  return (file.has_filename() ? file : file.parent_path()).stem().string();
+}
+
+std::optional<ContentKind> kindByEnding(const std::string& name) {
+  if (name.ends_with(kModelEnding)) return ContentKind::kModel;
+  return isPyramid(name) ? std::optional(ContentKind::kPicture) : std::nullopt;
+}
+
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
                                   const std::vector<std::string>& names) {
   std::vector<std::size_t> places;
@@ -247,14 +252,14 @@ Result<ContentEntry> contentBelow(const std::string& folder, const std::string& 
     return entry;
   }
   if (const auto file = openBelow(folder, name); !file) return file.error();
-  if (path.ends_with(kModelEnding)) {
-    entry.kind = ContentKind::kModel;
-  } else if (!isPyramid(path)) {
+  const auto kind = kindByEnding(path);
+  if (!kind) {
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: is neither a model (.mrm), a pyramid (.tif) nor a folder of "
                              "pyramids; `merlin show FILE` makes one of a file",
                              path)};
   }
+  entry.kind = *kind;
   return entry;
 }
 

@@ -36,6 +36,12 @@ std::vector<ContentEntry> contentsOf(const WallSettings& wall);
 // The names of contents for a message: "left, right".
 std::string namesOf(const std::vector<ContentEntry>& contents);
 
+// The name of a content that is given none: that of its file without the ending, or of its folder.
+std::string nameOf(const std::string& path);
+
+// What a file's ending says that it is: a model or a picture; nothing for any other.
+std::optional<ContentKind> kindByEnding(const std::string& name);
+
 // Places of the contents of these names in `contents`. A name that is none of theirs is left out.
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
                                   const std::vector<std::string>& names);

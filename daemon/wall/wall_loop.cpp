@@ -137,6 +137,7 @@ void WallLoop::showContent() {
   moving_step_.reset();
   full_detail_ = false;
   still_.stop();
+  publishContent(parts_.clock.now());  // what is drawn over its first frame names it
 }
 
 void WallLoop::replaceContents() {
@@ -403,11 +404,13 @@ void WallLoop::publish() {
   interaction.light = attendance.light();
   publisher_.interaction(interaction, view_, parts_.marker, now);
   publisher_.idle(attendance.due(), parts_.shows_testcard(), now);
-  {
-    const std::lock_guard lock(step_mutex_);
-    publisher_.content(turns_.content(), results_.current(now), now);
-  }
+  publishContent(now);
   publisher_.outputs(parts_.delivery.outputs(), now);
+}
+
+void WallLoop::publishContent(Timestamp now) {
+  const std::lock_guard lock(step_mutex_);
+  publisher_.content(turns_.content(), results_.current(now), now);
 }
 
 }  // namespace merlin::wall

@@ -147,6 +147,7 @@ class WallLoop {
   void noteRefusal(const ContentSource::Replacement& refused);
   render::frame::PointerMarker::Points pointedAt() const;
   void publish();
+  void publishContent(Timestamp now);
 
   WallParts parts_;
   ContentTurns turns_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "config/drawn_wall.h"
 #include "daemon/base/log.h"
@@ -429,13 +430,10 @@ Result<std::uint32_t> WallRole::show(const std::string& name) {
   if (!loop) return notShownYet();
   const auto named = std::ranges::find(entries_, name, &ContentEntry::name);
   if (named == entries_.end()) {
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("\"{}\" is not the name of a content; contents are {}{}",
-                             excerpt(name), namesOf(entries_),
-                             name.find('/') == std::string::npos
-                                 ? ""
-                                 : "; merlind opens no path that a client names: `merlin show "
-                                   "FILE` puts the file into its content folder")};
+    for (const NamedFile& shown : shown_folder_.namedFiles()) {
+      if (shown.name == name) return showFile(shown.file);
+    }
+    return noSuchName(name);
   }
   const auto place = static_cast<std::size_t>(named - entries_.begin());
   if (const std::string fault = missing_.faultOf(place); !fault.empty()) {
@@ -446,6 +444,31 @@ Result<std::uint32_t> WallRole::show(const std::string& name) {
   loop->show(place);
   loop->finishRequest(number, {});
   return number;
+}
+
+Error WallRole::noSuchName(const std::string& name) const {
+  const std::vector<std::string> files = namesInFolder();
+  return {Errc::kInvalidArgument,
+          fmt::format("\"{}\" is not the name of a content; contents are {}{}{}", excerpt(name),
+                      namesOf(entries_),
+                      files.empty() ? ""
+                                    : fmt::format(", and of files that were shown {}",
+                                                  fmt::join(files, ", ")),
+                      name.find('/') == std::string::npos
+                          ? ""
+                          : "; merlind opens no path that a client names: `merlin show FILE` puts "
+                            "the file into its content folder")};
+}
+
+std::vector<std::string> WallRole::namesInFolder() const {
+  constexpr std::size_t kMost = 50;  // a status and an error stay short
+  std::vector<std::string> names;
+  for (NamedFile& file : shown_folder_.namedFiles()) {
+    if (names.size() == kMost) break;
+    if (std::ranges::find(entries_, file.name, &ContentEntry::name) == entries_.end())
+      names.push_back(std::move(file.name));
+  }
+  return names;
 }
 
 std::vector<std::pair<std::string, std::string>> WallRole::missingContents() const {

@@ -111,9 +111,9 @@ class WallRole {
   // Returns the events of the viewer's tracked head since the last call. Thread-safe.
   std::vector<Event> viewerEvents();
 
-  // Shows the content of the configuration of that name. Returns the number of the request: when it
-  // is done, shm::WallContent::finished is that number. Errors: kBusy, kInvalidArgument (no such
-  // name). Thread-safe.
+  // Shows the content of that name: one of the configuration, else one of namesInFolder(), by
+  // showFile(). Returns the number of the request: when it is done, shm::WallContent::finished is
+  // that number. Errors: kBusy, kInvalidArgument (no such name), those of showFile(). Thread-safe.
   Result<std::uint32_t> show(const std::string& name);
   // The same of a file in the content folder, by its name there; removes what is no longer needed
   // there. Errors, for whoever asks: kBusy, those of ShownFolder::entryOf() and readContent(); a
@@ -121,6 +121,9 @@ class WallRole {
   // level, a few milliseconds. Thread-safe.
   Result<std::uint32_t> showFile(const std::string& name);
   const ShownFolder& shownFolder() const noexcept { return shown_folder_; }
+  // The names of the contents in the content folder that show() takes: none of the configuration
+  // has them. The newest first, 50 at most. Thread-safe.
+  std::vector<std::string> namesInFolder() const;
   // Names of contents that cannot be shown yet, each with the reason. Thread-safe.
   std::vector<std::pair<std::string, std::string>> missingContents() const;
 
@@ -150,6 +153,7 @@ class WallRole {
   void makeCorrections();
   void makeSignals(std::uint64_t generation);
   std::uint32_t firstNumber() const noexcept;
+  Error noSuchName(const std::string& name) const;
   Result<Ok> showEntry(const ContentEntry& entry, std::uint32_t request);
   std::optional<std::size_t> lastShown() const;
   std::size_t firstContent();

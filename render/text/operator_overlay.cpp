@@ -53,8 +53,10 @@ bool OperatorOverlay::hasChanged() const {
   if (tiles_.empty()) return false;
   if (asked_.load() != drawn_) return true;
   const Timestamp now = clock_.now();
-  if (!drawn_ || now - std::max(read_at_, looked_at_) < kLookedAt) return false;
+  const Duration period = behind_ ? kRedrawn : kLookedAt;
+  if (!drawn_ || now - std::max(read_at_, looked_at_) < period) return false;
   looked_at_ = now;
+  behind_ = false;
   return source_.read(now) != facts_;
 }
 
@@ -71,7 +73,8 @@ void OperatorOverlay::draw(std::span<std::uint8_t> canvas) {
   drawn_ = asked_.load();
   if (tiles_.empty() || !drawn_) return;
   const Timestamp now = clock_.now();
-  if (tiles_.front().plates.empty() || now - read_at_ >= kRedrawn) refresh(now);
+  behind_ = !tiles_.front().plates.empty() && now - read_at_ < kRedrawn;
+  if (!behind_) refresh(now);
   for (const TilePlates& t : tiles_) {
     for (const Plate& plate : t.plates) cover_.put(plate, t.tile, canvas);
   }

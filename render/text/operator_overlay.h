@@ -31,6 +31,7 @@ class OperatorOverlay final : public frame::Overlay {
   bool isShown() const noexcept { return asked_.load(); }
 
   // Looks at the facts at most twice a second: a wall that stands is not presented more often.
+  // Once after the last frames of a motion it looks earlier, if draw() did not read them for those.
   bool hasChanged() const override;
   // Reads the facts and draws the plates anew at most ten times a second; otherwise it costs the
   // blending of the plates' pixels, and erase() a copy of them.
@@ -56,6 +57,7 @@ class OperatorOverlay final : public frame::Overlay {
   OperatorFacts facts_;
   Timestamp read_at_{};            // when the facts that are drawn were read
   mutable Timestamp looked_at_{};  // when hasChanged() last looked at them
+  mutable bool behind_ = false;    // draw() was called since then, and did not read them
   bool drawn_ = false;
   std::atomic<bool> asked_{true};
 };

@@ -218,6 +218,25 @@ TEST_F(AttendanceTest, WhileItIsBlackOrFrozenTheSceneGetsNoInput) {
   EXPECT_FALSE(input.scene.ball || input.scene.hand || input.scene.grab);
 }
 
+TEST_F(AttendanceTest, WhileItIsBlackOrFrozenNothingIsDue) {
+  PlaylistSettings playlist;
+  playlist.after_s = 60;
+  playlist.dim_after_s = 300;
+  attendance_.configure(playlist);
+  pass(milliseconds(1000));
+  EXPECT_NEAR(attendance_.due().begins_s, 59, 0.1);
+  EXPECT_NEAR(attendance_.due().dims_s, 299, 0.1);
+  for (const auto toggle : {&Attendance::toggleBlank, &Attendance::toggleFreeze}) {
+    (attendance_.*toggle)();
+    pass(milliseconds(1000));
+    EXPECT_LT(attendance_.due().begins_s, 0) << "for the playlist no time passes";
+    EXPECT_LT(attendance_.due().dims_s, 0);
+    (attendance_.*toggle)();
+    frame();
+  }
+  EXPECT_GT(attendance_.due().begins_s, 0);
+}
+
 TEST_F(AttendanceTest, TheTouchThatUndoesItMovesTheSceneAsEver) {
   black();
   push(0.5F);

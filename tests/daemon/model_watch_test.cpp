@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/eventually.h"
+#include "tests/support/fake_clock.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/told.h"
 
@@ -104,6 +105,28 @@ TEST(ModelWatch, SaysOnceWhatAFolderOfSlidesHasThatIsNotShown) {
   EXPECT_EQ(offer("/talk/c.tif", "y.jpg, z.jpg are no pyramids").size(), 1U);
   EXPECT_EQ(offer("/talk/a.tif", "").size(), 0U);
   EXPECT_EQ(offer("/talk/b.tif", "z.jpg is no pyramid").size(), 1U) << "it is there again";
+}
+
+// A damaged slide is passed over each time that its folder comes round.
+TEST(ModelWatch, SaysOnceAnHourThatASlideIsLeftOut) {
+  ThreadWatch watch;
+  test::FakeClock clock;
+  MissingContents missing({});
+  const auto make = [](std::size_t, const std::string& path) -> Result<ReadyModel> {
+    return Error{Errc::kIo, path};
+  };
+  ModelWatch models({}, make, missing, watch, clock);
+  const auto saidAfter = [&](Duration time, const std::vector<std::string>& skipped) {
+    clock.advance(time);
+    models.reportSkipped(skipped);
+    return test::told(models.takeEvents());
+  };
+  const test::Sentences both = {"fault: b.tif is cut", "fault: c.tif is cut"};
+  EXPECT_EQ(saidAfter(milliseconds(0), {"b.tif is cut", "c.tif is cut"}), both);
+  EXPECT_EQ(saidAfter(std::chrono::minutes(40), {"b.tif is cut"}), test::Sentences{});
+  EXPECT_EQ(saidAfter(std::chrono::minutes(10), {"b.tif is cut", "d.tif is cut"}),
+            test::Sentences{"fault: d.tif is cut"});
+  EXPECT_EQ(saidAfter(std::chrono::minutes(10), {"b.tif is cut", "c.tif is cut"}), both);
 }
 
 TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {

@@ -126,6 +126,20 @@ TEST_F(Folder, AFileIsAContentByItsNameAndItsEnding) {
   EXPECT_EQ(whyUnread(*slides), "");
 }
 
+// Of two of one name the newer one counts; what is no content has none.
+TEST_F(Folder, WhatCanBeShownAgainHasANameTheNewestFirst) {
+  put("photo 1.tif", 30);
+  put("scan.mrm", 20);
+  put("scan.tif", 40);
+  fs::create_directory(in("talk"));
+  put(".half.tif");
+  put("notes.txt");
+  fs::create_symlink(in("scan.mrm"), in("link.mrm"));
+  std::vector<std::string> named;
+  for (const NamedFile& file : folder_.namedFiles()) named.push_back(file.name + "=" + file.file);
+  EXPECT_EQ(named, (std::vector<std::string>{"talk=talk", "scan=scan.mrm", "photo 1=photo 1.tif"}));
+}
+
 TEST_F(Folder, NoPathIsOpened) {
   put("a.tif");
   test::writeText(dir_ / "a/secret.tif", test::pyramidBytes());

@@ -105,6 +105,27 @@ TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentIsInTime) {
   EXPECT_EQ(costOf(at_change + 3), costOf(at_change - 1));
 }
 
+// So that what is drawn over the frame (the operator's plates) does not name the content before.
+TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentFindsItsNamePublished) {
+  contents_.push_back({&detail_, &painter_});
+  contents_[0].name = "first";
+  contents_[1].name = "second";
+  std::vector<std::string> published;  // when a frame was drawn
+  painter_.on_draw = [&] {
+    const auto content = content_->read();
+    published.emplace_back(content ? content->name : "");
+  };
+  std::size_t at_change = 0;
+  run(1, [&](Timestamp) {
+    if (at_change > 0 || published.size() < 5) return;
+    at_change = published.size() + 1;  // it is asked for while a frame begins
+    loop_->show(1);
+  });
+  ASSERT_GT(at_change, 0u);
+  EXPECT_EQ(published.at(at_change - 1), "first");
+  EXPECT_EQ(published.at(at_change), "second");
+}
+
 TEST_F(WallLoopTest, ARequestIsDoneBeforeTheNextFrame) {
   feed_.pushed = false;
   Progress progress;

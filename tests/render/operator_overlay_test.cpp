@@ -154,6 +154,26 @@ TEST(OperatorOverlay, AWallThatStandsIsPresentedAnewOnlyIfTheFactsDiffer) {
   EXPECT_TRUE(wall.overlay->hasChanged());
 }
 
+// The wall's last frame, before it stands, may be drawn too soon after the one before for the facts
+// to be read: for example the first frame of another content.
+TEST(OperatorOverlay, WhatTheLastFrameDidNotReadIsLookedAtSoonAfterIt) {
+  Wall wall;
+  wall.overlay->draw(wall.canvas);
+  wall.overlay->erase(wall.canvas);
+  wall.clock.advance(milliseconds(50));
+  wall.source.facts.content = "meadow";
+  wall.overlay->draw(wall.canvas);
+  wall.overlay->erase(wall.canvas);
+  EXPECT_FALSE(wall.overlay->hasChanged()) << "at most ten times a second";
+  wall.clock.advance(milliseconds(50));
+  EXPECT_TRUE(wall.overlay->hasChanged());
+  wall.overlay->draw(wall.canvas);
+  wall.overlay->erase(wall.canvas);
+  wall.source.facts.posture = "flat";
+  wall.clock.advance(milliseconds(450));
+  EXPECT_FALSE(wall.overlay->hasChanged()) << "then twice a second again";
+}
+
 TEST(OperatorOverlay, IsHiddenAndShownFromTheNextFrameOn) {
   Wall wall;
   wall.overlay->draw(wall.canvas);

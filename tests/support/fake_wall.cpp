@@ -12,6 +12,7 @@ const Dendrogram& model() {
 }
 
 render::frame::DrawTimes FakePainter::draw(const Request& request) {
+  on_draw();
   const Duration fixed = milliseconds(4) / (divisor * divisor);
   const Duration drawing = costOf(request.step) * slow;
   const Timestamp began = clock_.now();

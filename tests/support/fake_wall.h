@@ -47,6 +47,7 @@ class FakePainter final : public render::frame::FramePainter {
 
   int slow = 1, divisor = 1;
   float furthest_seen_m = 50;
+  std::function<void()> on_draw = [] {};
   bool gives_way = false;
   // What its frames leave out; what has arrived is in the next one that is refined.
   render::content::Pending left_out = render::content::Pending::kNothing;

@@ -122,7 +122,13 @@ def contents(driver):
     seen = "return document.querySelector('%s .thumbnail img')?.naturalWidth || 0"
     driver.until("each content has its picture", lambda: all(
         driver.run(seen % (tile % name)) > 100 for name in ("model", "meadow")))
-    assert driver.run("return document.querySelectorAll('#contents button').length") == 3
+    driver.until("a file that was shown before is listed", lambda: driver.run(
+        "return [...document.querySelectorAll('#contents button')].map(e => e.dataset.name).join()")
+        == "model,again,meadow,valley")
+    driver.click(tile % "valley")
+    driver.until("a tap shows it again", lambda: status()["content"]["name"] == "valley")
+    driver.until("and the page marks it", lambda: driver.run(
+        "return document.querySelector('%s').ariaPressed" % (tile % "valley")) == "true")
     pressed = "return document.querySelector('%s').ariaPressed" % (tile % "meadow")
     driver.until("another one is shown", lambda: driver.run(pressed) == "false")
     driver.click(tile % "meadow")

@@ -1,4 +1,5 @@
 // A person at the operator's page: a headless Chromium, on a desktop and on a phone.
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -48,6 +49,7 @@ TEST_P(Browser, ShowsTheWallAndSendsWhatAPersonDoes) {
          {{{"kind", "shared_memory"}}, {{"kind", "png"}, {"path", dir_ / "out.png"}}}}}}};
   Merlind wall(dir_, model, "browser", options);
   ASSERT_TRUE(wall.ready()) << wall.process().output();
+  std::filesystem::copy(meadow, dir_ / (wall.instance() + ".shown/valley.tif"));
   PageProcess page(dir_, wall.config(), wall.instance(), port);
   ASSERT_TRUE(page.ready()) << page.process().output();
   ASSERT_TRUE(eventually([&] { return page.runs("wall") && page.runs("devices"); }));

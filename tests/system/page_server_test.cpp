@@ -193,6 +193,7 @@ TEST_F(PageTest, OutlivesTheWallAndShowsThatItIsDown) {
   EXPECT_EQ(picture("/picture.jpg").status, 200) << "a card";
   const HttpAnswer sent = page_->send("reset_view");
   EXPECT_EQ(sent.status, 503) << sent.body;
+  EXPECT_NE(sent.body.find("the role wall does not run"), std::string::npos) << sent.body;
   EXPECT_NE(page_->get("/metrics").body.find("merlin_up{role=\"wall\"} 0"), std::string::npos);
   Process again({kMerlind, "--config", wall_->config(), "--emulate"});
   ASSERT_TRUE(again.saysEventually("ready")) << again.output();

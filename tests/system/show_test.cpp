@@ -112,6 +112,27 @@ TEST_F(ShowFile, ARangeImageWithColourIsOnTheWallAfterOneCommand) {
       << "blue";
 }
 
+// While it stays in the content folder.
+TEST_F(ShowFile, AFileThatWasShownIsShownAgainByItsName) {
+  writeScan("hill", 40, "\x10\x10\xF0");
+  writeScan("model", 40, "\x10\x10\xF0");
+  ASSERT_EQ(run(scan("hill")).status, 0);
+  ASSERT_EQ(run(scan("model")).status, 0);
+  ASSERT_EQ(run(command({"model"})).status, 0);
+  EXPECT_EQ(wall_->status()["content"]["index"], 0) << "the configuration's comes first";
+  EXPECT_EQ(wall_->status()["shown_folder"]["names"].dump(), R"(["hill"])");
+  const Outcome again = run(command({"hill"}));
+  EXPECT_EQ(again.status, 0) << again.output;
+  EXPECT_STREQ(content().name, "hill");
+  const Outcome none = run(command({"valley"}));
+  EXPECT_NE(none.output.find("contents are model, and of files that were shown hill"),
+            std::string::npos)
+      << none.output;
+  fs::remove(folder() + "/hill.mrm");
+  EXPECT_EQ(wall_->status()["shown_folder"]["names"].dump(), "[]");
+  EXPECT_NE(run(command({"hill"})).status, 0) << "it is gone";
+}
+
 TEST_F(ShowFile, OneThatIsStoppedSaysOnTheWallHowFarItIsAndLeavesNothing) {
   writeScan("large", 1000, "abc");
   Process showing(scan("large"));

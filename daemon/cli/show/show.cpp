@@ -288,7 +288,8 @@ void addShow(Command app, Run& run) {
   const auto options = std::make_shared<ShowOptions>();
   Command command = app.subcommand(
       "show",
-      "Show a content on the wall: one of the configuration by its name, or any file that merlin "
+      "Show a content on the wall: one of the configuration by its name; a file that was shown "
+      "before, by its name, as long as it stays in the content folder; or any file that merlin "
       "mesh import or merlin image import reads, with the options of mesh import, or a folder of "
       "pictures as slides. A PGM, a FITS image and a TIFF are pictures unless their header gives "
       "a geometry or such an option is given. The file is read with your rights; the result goes "

@@ -2,8 +2,9 @@
 
 import {getJson, getThumbnail} from "./api.js";
 
-const kKinds = {model: "Model", picture: "Picture", panorama: "Panorama", slides: "Slides"};
-const kSigns = {model: "◭", picture: "▣", panorama: "◎", slides: "▤"};
+const kKinds = {model: "Model", picture: "Picture", panorama: "Panorama", slides: "Slides", file: "File"};
+const kSigns = {model: "◭", picture: "▣", panorama: "◎", slides: "▤", file: "◰"};
+const kMostFiles = 24;
 
 export class Contents {
   // `box`: where they are listed. `show`: shows the content of a name.
@@ -17,9 +18,12 @@ export class Contents {
   // Whether there is anything to choose from.
   get any() { return this.tiles.size > 0; }
 
-  // Reads the list again, and the pictures that are new.
-  async refresh(open) {
+  // Reads the list again, and the pictures that are new. `files`: names of the contents that are not in the configuration,
+  // and that the wall can show again; the newest first.
+  async refresh(open, files) {
     const {contents} = await getJson("/api/contents");
+    for (const name of files.slice(0, kMostFiles))
+      if (!contents.some(c => c.name === name)) contents.push({name, kind: "file"});
     const listed = JSON.stringify(contents.map(c => [c.name, c.kind]));
     if (listed !== this.listed) {
       this.listed = listed;

@@ -254,7 +254,7 @@ function showDetail(wall) {
   byId("triangles-auto").setAttribute("aria-pressed", String(!detail.held_cost));
   facts(byId("detail-facts"), [
     ["drawn now", grouped(detail.cost)], ["of", grouped(detail.full_cost)],
-    ["full detail", wall.full_detail ? "shown" : "no"], ["the model", wall.moving ? "moves" : "stands still"],
+    ["full detail", wall.full_detail ? "shown" : "no"], [wall.content && wall.content.kind || "the content", wall.moving ? "moves" : "stands still"],
     ["mode of the ball", wall.mode],
     ["drawn by", wall.renderer && (wall.renderer.software ? "CPU" : "GPU")]]);
 }
@@ -271,6 +271,9 @@ function showContents(wall) {
   contents.mark(now.name);
   picture.showHint();
 }
+
+// Of the wall's content folder: what `merlin show FILE` has shown.
+const shownFiles = () => wallStatus() && wallStatus().shown_folder && wallStatus().shown_folder.names || [];
 
 async function showContent(name) {
   if (await run("show", name) !== undefined) toast("Show " + name);
@@ -440,7 +443,7 @@ async function begin() {
   repeat(readFrames, 500);
   repeat(readEvents, 1000);
   repeat(async () => {
-    await contents.refresh(state.open);
+    await contents.refresh(state.open, shownFiles());
     if (wallStatus()) contents.mark(shownContent(wallStatus()).name);
   }, 3000);
   repeat(() => state.open ? alignment.refresh() : null, 2000);
