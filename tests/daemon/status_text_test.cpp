@@ -43,6 +43,30 @@ TEST(StatusText, BeforeItsFirstFrameTheWallSaysSo) {
   EXPECT_TRUE(statusTable(wall).starts_with("wall     0.0 of 30 Hz")) << statusTable(wall);
 }
 
+TEST(StatusText, NamesTheContentAndWhatComesByItself) {
+  Json wall = {{"rate_asked", 30},
+               {"frames", 1},
+               {"content", {{"name", "harbour"}, {"kind", "slides"}, {"slide", "dawn"}}},
+               {"playlist", "waiting"},
+               {"playlist_in_s", 41.6}};
+  const auto line = [&] {
+    const std::string table = statusTable(wall);
+    const std::size_t begin = table.find("content  ");
+    return begin == std::string::npos ? table
+                                      : table.substr(begin, table.find('\n', begin) - begin);
+  };
+  EXPECT_EQ(line(), "content  harbour (slides: dawn); the playlist begins in 42 s");
+  wall["playlist_in_s"] = nullptr;
+  EXPECT_EQ(line(), "content  harbour (slides: dawn); the playlist waits");
+  wall["playlist"] = "running";
+  wall["next_in_s"] = 7.0;
+  EXPECT_EQ(line(), "content  harbour (slides: dawn); the playlist runs, the next one in 7 s");
+  wall["content"] = {{"name", "skull"}, {"kind", "model"}, {"slide", ""}};
+  wall["playlist"] = "off";
+  wall["testcard"] = true;
+  EXPECT_EQ(line(), "content  skull (model); the playlist is off; a test card covers it");
+}
+
 TEST(StatusText, AFailedServiceIsNotHiddenByTheOtherRolesOfTheSameName) {
   for (const char* failed : {"devices", "wall"}) {
     Json both = Json::object();

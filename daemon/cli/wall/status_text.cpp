@@ -62,12 +62,36 @@ std::string givenWay(const Json& s) {
     text += fmt::format("; frame rate reduced to {:.3g} Hz", s.value("rate_now", 0.0));
   if (s.value("scale_divisor", 1) > 1) text += "; tiles drawn at half size";
   if (s.value("operator_coarser", false)) text += "; operator's view coarser";
-  if (s.value("playlist", "") == "running") text += "; the playlist runs";
   if (s.value("shown", "") == "picture" && s.value("light", 1.0) < 1)
     text += fmt::format("; dimmed to {:.0f} % of its light", 100 * s.value("light", 1.0));
   const int held = s.value("detail", Json::object()).value("held_cost", 0);
   if (held > 0) text += fmt::format("; {} {} set by hand", held, costUnit(s));
   return text;
+}
+
+// "; the next one in 12 s" of what is due at s[key]; empty if nothing is.
+std::string dueIn(const Json& s, const char* key, const char* what) {
+  const auto due = s.find(key);
+  if (due == s.end() || !due->is_number()) return {};
+  return fmt::format("{} in {:.0f} s", what, due->get<double>());
+}
+
+std::string playlistWords(const Json& s) {
+  const std::string state = s.value("playlist", "");
+  if (state == "running") return "; the playlist runs" + dueIn(s, "next_in_s", ", the next one");
+  if (state == "off") return "; the playlist is off";
+  if (state != "waiting") return {};
+  const std::string begins = dueIn(s, "playlist_in_s", "; the playlist begins");
+  return begins.empty() ? "; the playlist waits" : begins;
+}
+
+// What is shown, and what the wall will show by itself.
+std::string contentLine(const Json& s) {
+  const Json content = s.value("content", Json::object());
+  const std::string slide = content.value("slide", "");
+  return fmt::format("content  {} ({}{}){}{}\n", content.value("name", ""),
+                     content.value("kind", ""), slide.empty() ? "" : ": " + slide, playlistWords(s),
+                     s.value("testcard", false) ? "; a test card covers it" : "");
 }
 
 std::string paceLines(const Json& s) {
@@ -268,6 +292,7 @@ std::string frameLines(const Json& s) {
   std::string text = fmt::format("wall     {:.1f} of {:.0f} Hz, {} {}, {} (ball mode: {})\n",
                                  s.value("rate_held", 0.0), s.value("rate_asked", 0.0),
                                  detailCost(s), costUnit(s), pictureWord(s), s.value("mode", ""));
+  text += contentLine(s);
   text += fmt::format(
       "frames   {} drawn; {:.2f} % of those due while moving were late (last minute {:.2f} %), at "
       "most {} in a row\n",
