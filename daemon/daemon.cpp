@@ -135,7 +135,8 @@ Result<Ok> Daemon::makeRoles() {
                                      threads_, clock_);
     if (!role) return role.error();
     wall_ = *std::move(role);
-    if (!wall_->uncorrected().empty()) services_.failed("correction", wall_->uncorrected());
+    const std::string& uncorrected = wall_->outputs().uncorrected();
+    if (!uncorrected.empty()) services_.failed("correction", uncorrected);
     if (keeper_->state().playlist_off) wall_->attendance().switchPlaylist(false);
   }
   connectRoles();

@@ -122,7 +122,7 @@ std::uint64_t framesOf(const Parts& p) {
 // The segment into which the signal of the output will be copied, and the number of the last frame
 // that is not it.
 Answer signal(const Parts& p, const std::string& output) {
-  const auto segment = p.wall->signals().ask(output);
+  const auto segment = p.wall->outputs().signals().ask(output);
   if (!segment) return segment.error();
   return fmt::format("{{\"shared_memory\": \"{}\", \"after\": {}}}", *segment, framesOf(p));
 }
@@ -133,7 +133,7 @@ Answer alignAction(const Parts& p, std::string_view name) {
   const auto action = std::ranges::find(wall::kAlignActions, name);
   if (action == std::end(wall::kAlignActions)) return lacks("does not know the command");
   input.actions = {static_cast<std::uint8_t>(action - std::begin(wall::kAlignActions))};
-  p.wall->aligner().ask(input);
+  p.wall->outputs().aligner().ask(input);
   return done();
 }
 
@@ -166,7 +166,7 @@ Answer seen(const Parts& p, Answer answer) {
 }
 
 Answer testcard(const Parts& p, const std::string& name) {
-  const auto shown = p.wall->aligner().showCard(name);
+  const auto shown = p.wall->outputs().aligner().showCard(name);
   if (!shown) return shown.error();
   return fmt::format("{{\"after\": {}}}", framesOf(p));
 }
@@ -221,15 +221,15 @@ Answer ofWall(const Parts& p, std::string_view name, const std::string& argument
   if (name == "next_mode") return request(p, wall::WallLoop::kNextMode);
   if (name == "next_content") return request(p, wall::WallLoop::kNextContent);
   if (name == "previous_content") return request(p, wall::WallLoop::kPreviousContent);
-  if (name == "show") return requestOf(p.wall->show(argument));
-  if (name == "show_file") return requestOf(p.wall->showFile(argument));
+  if (name == "show") return requestOf(p.wall->contents().show(argument));
+  if (name == "show_file") return requestOf(p.wall->contents().showFile(argument));
   if (name == "notice") return notice(p, argument);
   if (name == "move") return move(p, argument);
   if (name == "snapshot") return snapshot(p);
   if (name == "triangles") return triangles(p, argument);
   if (name == "rate") return rate(p, argument);
-  if (name == "align" && argument == "list") return p.wall->aligner().run(argument);
-  if (name == "align") return seen(p, p.wall->aligner().run(argument));
+  if (name == "align" && argument == "list") return p.wall->outputs().aligner().run(argument);
+  if (name == "align") return seen(p, p.wall->outputs().aligner().run(argument));
   if (name == "testcard") return seen(p, testcard(p, argument));
   if (name == "signal") return signal(p, argument);
   if (name.starts_with("operator_")) return operatorPanel(p, name, argument);

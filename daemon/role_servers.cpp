@@ -187,13 +187,13 @@ Result<Ok> RoleServers::startWall() {
   status::StatusServerSettings s;
   const auto statusNow = [this, &segment, remote] {
     const auto renderer = rendererState(*parts_.wall);
-    const wall::ShownFolder& folder = parts_.wall->shownFolder();
+    const wall::ShownFolder& folder = parts_.wall->contents().folder();
     std::string document = status::wallStatus(segment, clock_.now(), servers_.health("wall"),
                                               remote, renderer ? &*renderer : nullptr);
     document = status::addShownFolder(document, {folder.path(), folder.limitBytes(), folder.fault(),
-                                                 parts_.wall->namesInFolder()});
+                                                 parts_.wall->contents().namesInFolder()});
     return parts_.services.addTo(
-        status::addMissingContents(document, parts_.wall->missingContents()));
+        status::addMissingContents(document, parts_.wall->contents().missing()));
   };
   s.publications = {{"status", kOnceASecond, statusNow},
                     {"metrics", kOnceASecond, [&segment] { return status::wallMetrics(segment); }}};

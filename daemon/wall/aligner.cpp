@@ -43,8 +43,8 @@ std::string misfit(const state::OutputForm& aligned, const state::OutputForm& no
   same.corners = now.corners;
   if (same != now) {
     return fmt::format(
-        "it was aligned with {} x {} pixels and a mesh of {} x {} points and has "
-        "{} x {} and {} x {} now",
+        "it was made for {} x {} pixels and a mesh of {} x {} points, but the output now has "
+        "{} x {} pixels and a mesh of {} x {} points",
         aligned.width, aligned.height, aligned.mesh_columns, aligned.mesh_rows, now.width,
         now.height, now.mesh_columns, now.mesh_rows);
   }
@@ -143,8 +143,8 @@ Result<Aligner::Entry*> Aligner::find(const std::string& name) {
   }
   if (std::ranges::find(refused_, name) != refused_.end()) {
     return refusal(
-        fmt::format("output {} is of kind shared_memory, which holds the frame without "
-                    "correction",
+        fmt::format("output {} cannot be aligned: it is of kind shared_memory, which holds the "
+                    "frame without correction",
                     name));
   }
   return refusal(names.empty()

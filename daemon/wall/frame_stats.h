@@ -26,7 +26,8 @@ class FrameStats {
 
   // Share of the last second's deadlines that were met, times asked_hz [Hz].
   double heldRate(Timestamp now, double asked_hz) const;
-  // Share of late deadlines, of those while something moved; 0 if there were none.
+  // Of the deadlines of the last `over` at which something moved, the share that was late; 0 if
+  // there were none.
   double lateShare(Timestamp now, Duration over) const;
   double medianWorkSeconds() const;  // of the frames of the last second; 0 if there were none
   double utilisation() const;        // mean of work / period of the same frames

@@ -8,18 +8,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "config/drawn_wall.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/shm/fields.h"
-#include "daemon/wall/aligned_output.h"
-#include "render/frame/correction_chain.h"
-#include "render/frame/tile_arrangement.h"
-#include "render/out/output_kinds.h"
 #include "render/room/presets.h"
-#include "render/stereo/eye_tiles.h"
 #include "render/testcard/card_tiles.h"
 
 namespace merlin::wall {
@@ -48,12 +42,6 @@ std::vector<std::string> faultsOf(const std::vector<WallContent>& contents) {
   return faults;
 }
 
-std::vector<std::string> pathsOf(const std::vector<ContentEntry>& entries) {
-  std::vector<std::string> paths;
-  for (const ContentEntry& entry : entries) paths.push_back(entry.path);
-  return paths;
-}
-
 // Maps the names of a room's tiles to the names of their panels.
 std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
   std::map<std::string, std::string> panels;
@@ -63,8 +51,6 @@ std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
   }
   return panels;
 }
-
-Error notShownYet() { return {Errc::kBusy, "the wall has not shown its first frame yet"}; }
 
 }  // namespace
 
@@ -85,51 +71,27 @@ Result<std::unique_ptr<WallRole>> WallRole::make(const Settings& configured,
   auto scene = render::scene::Scene::make(settings.wall.scene);
   if (!scene) return Error{scene.error().code, "/wall/scene: " + scene.error().what};
   std::unique_ptr<WallRole> role(new WallRole(settings, std::move(contents), *std::move(plan),
-                                              *std::move(scene), *std::move(segment), keeper,
-                                              kept_files, watch, clock));
-  if (const auto made = role->makeOutputs(generation); !made) return made.error();
-  role->makeCorrections();
-  role->makeSignals(generation);
-  if (const auto made = role->shown_folder_.make(); !made)
-    role->model_watch_.report(faultEvent(made.error().what));
+                                              *std::move(scene), *std::move(segment), keeper, watch,
+                                              clock));
+  auto outputs =
+      CorrectedOutputs::make({role->settings_, role->plan_, generation, role->cards_, keeper,
+                              kept_files, watch, clock, role->operator_tile_.panelInFrame()});
+  if (!outputs) return outputs.error();
+  role->outputs_ = *std::move(outputs);
+  const std::string frame = sharedFrameName(role->settings_);
+  frame.copy(role->segment_->framebuffer, sizeof role->segment_->framebuffer - 1);
+  role->requests_.makeFolder();
   return role;
-}
-
-Result<Ok> WallRole::makeOutputs(std::uint64_t generation) {
-  const std::string frame_name = shm::segmentName(settings_.instance, "framebuffer");
-  // Looked up when they are called: they are set after the outputs are made.
-  const render::out::WindowActs window{
-      [this](const std::string& name, const std::string& argument) {
-        return window_.command(name, argument);
-      },
-      [this](const std::string& why) { window_.stop(why); }};
-  std::vector<render::out::NamedOutput> outputs;
-  for (const render::out::OutputSettings& settings : settings_.wall.outputs) {
-    auto output = render::out::makeOutput(
-        settings, {plan_, frame_name, generation, watch_, clock_, settings_.wall.tiles,
-                   graphics_cards_, window, operator_tile_.panelInFrame()});
-    if (!output)
-      return Error{output.error().code,
-                   fmt::format("output {}: {}", settings.shownName(), output.error().what)};
-    outputs.push_back({settings.shownName(), nameOf(settings.kind), *std::move(output)});
-    if (settings.kind == render::out::OutputKind::kSharedMemory)
-      frame_name.copy(segment_->framebuffer, sizeof segment_->framebuffer - 1);
-  }
-  outputs_ = render::out::OutputSet(std::move(outputs));
-  makeChecks();
-  graphics_cards_.open();  // before the drawing contexts do
-  return Ok{};
 }
 
 WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
                    render::tiles::TilePlan plan, render::scene::Scene scene,
                    shm::SegmentWriter<shm::WallSegment> segment, state::StateKeeper& keeper,
-                   KeptFiles& kept_files, ThreadWatch& watch, Clock& clock)
+                   ThreadWatch& watch, Clock& clock)
     : settings_(settings),
       contents_(std::move(contents)),
       entries_(entriesOf(contents_)),
       missing_(faultsOf(contents_)),
-      shown_folder_(settings_.wall.shown, pathsOf(entries_)),
       plan_(std::move(plan)),
       scene_(std::move(scene)),
       governor_(settings.wall.governor),
@@ -137,7 +99,7 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       keeper_(keeper),
       watch_(watch),
       clock_(clock),
-      graphics_cards_(kept_files, watch, clock),
+      last_content_(entries_, missing_, keeper),
       cards_(plan_.frame_width, plan_.frame_height,
              render::testcard::cardTiles(plan_, settings.wall.outputs, panelsOf(settings.wall))),
       attendance_(settings.wall.playlist),
@@ -146,90 +108,12 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       notice_(plan_, segment_->notice, clock_),
       model_watch_(filesOf(contents_), ShownModels::maker(entries_, settings_.wall), missing_,
                    watch_, clock_),
-      tiles_(watch_, clock_) {}
-
-void WallRole::makeChecks() {
-  std::vector<render::out::PictureChecks::Checked> checked;
-  for (std::size_t i = 0; i < outputs_.size(); ++i)
-    checked.push_back({&outputs_.output(i), fromSeconds(settings_.wall.outputs[i].check_s)});
-  checks_.emplace(checked, clock_);
-  outputs_.checkWith(&*checks_);
-}
-
-// Outputs of kind shared_memory receive the frame without correction; all others can be aligned.
-void WallRole::makeCorrections() {
-  std::vector<AlignedOutput> aligned;
-  std::vector<std::string> refused;
-  for (std::size_t i = 0; i < settings_.wall.outputs.size(); ++i) {
-    const render::out::OutputSettings& output = settings_.wall.outputs[i];
-    if (output.kind == render::out::OutputKind::kSharedMemory) {
-      refused.push_back(output.shownName());
-      corrections_.push_back(nullptr);
-      continue;
-    }
-    const auto parts = render::stereo::signalParts(output, settings_.wall.tiles);
-    std::string unreadable;
-    AlignedOutput made = alignedOutput(
-        output, *render::out::pictureSize(output, settings_.wall.tiles),
-        parts.value_or(render::correct::SignalParts{}), team_, shader_pass_, unreadable);
-    if (!unreadable.empty())
-      uncorrected_ += fmt::format(
-          "{}output {} is shown without its measured warp and blend: {}; mend the file and restart "
-          "the wall",
-          uncorrected_.empty() ? "" : "; ", output.shownName(), unreadable);
-    std::vector<std::unique_ptr<render::frame::Correction>> links;
-    if (!output.tiles.empty())
-      links.push_back(std::make_unique<render::frame::TileArrangement>(plan_, output.tiles));
-    auto correction = std::make_unique<render::frame::ReplaceableCorrection>();
-    made.correction = correction.get();
-    for (std::size_t corner = 0; corner < made.marks.size(); ++corner)
-      made.marks[corner] = render::testcard::cornerOf(plan_, output, corner);
-    links.push_back(std::move(correction));
-    if (!parts) {
-      made.fixed =
-          "its pictures of both eyes are not the halves of its signal; let it show one tile, or "
-          "use stereo mode two_outputs or anaglyph";
-    }
-    aligned.push_back(std::move(made));
-    corrections_.push_back(
-        links.size() == 1 ? std::move(links.front())
-                          : std::make_unique<render::frame::CorrectionChain>(std::move(links)));
-  }
-  aligner_ =
-      std::make_unique<Aligner>(std::move(aligned), std::move(refused), cards_, keeper_, watch_);
-}
-
-void WallRole::makeSignals(std::uint64_t generation) {
-  std::vector<TappedOutput> outputs;
-  for (const render::out::OutputSettings& output : settings_.wall.outputs) {
-    const render::out::PictureSize size = *render::out::pictureSize(output, settings_.wall.tiles);
-    outputs.push_back({output.shownName(), size.width, size.height});
-  }
-  signals_ =
-      std::make_unique<SignalTaps>(settings_.instance, std::move(outputs), generation, clock_);
-}
+      tiles_(watch_, clock_),
+      requests_({settings_.wall, entries_, missing_, model_watch_, attendance_, loop_}) {}
 
 // In shared memory 0 is the model and 1 the first of the contents, whether there is a model or not.
 std::uint32_t WallRole::firstNumber() const noexcept {
   return entries_.front().pointer == "/wall/model" ? 0 : 1;
-}
-
-// Returns the place of the content that was shown last; nothing if the configuration lacks it.
-std::optional<std::size_t> WallRole::lastShown() const {
-  const std::string path = keeper_.state().content;
-  if (path.empty()) return 0;
-  const auto found = std::ranges::find(entries_, path, &ContentEntry::path);
-  if (found == entries_.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - entries_.begin());
-}
-
-std::size_t WallRole::firstContent() {
-  if (const auto place = lastShown()) return *place;
-  keeper_.addNotice(fmt::format(
-      "content {}, which was shown last, is not in the configuration any more: the first "
-      "one is shown",
-      keeper_.state().content));
-  return 0;
 }
 
 // While no content can be read: only the background is drawn, or a file that somebody shows.
@@ -250,29 +134,18 @@ void WallRole::tellIfEmpty(Timestamp now) {
       std::string(wholeCharacters(std::string_view(why).substr(0, Notice::kMostBytes))), now);
 }
 
-// The state stores an empty path for the first content, so that the configuration decides which
-// one it is. A file that is not in the configuration is not stored.
 void WallRole::tend(Timestamp now) {
-  signals_->tend(now);
+  outputs_->signals().tend(now);
   tellIfEmpty(now);
   notice_.tend(now);
-  if (aligner_->showsCard()) attendance_.attend();
+  if (outputs_->aligner().showsCard()) attendance_.attend();
   const auto shown = segment_->interaction.read();
-  if (!shown || kept_content_ == shown->content) return;
-  const bool first = !std::exchange(kept_content_, shown->content);
-  const std::size_t index = shown->content - firstNumber();
-  if (index >= entries_.size()) return;
-  // Another is shown since its file cannot be read yet; the next start is to show it.
-  if (first && !missing_.faultOf(lastShown().value_or(0)).empty()) return;
-  const std::string path = index == 0 ? std::string() : entries_[index].path;
-  if (keeper_.state().content != path) keeper_.change([&](state::State& s) { s.content = path; });
+  if (shown) last_content_.keep(shown->content - firstNumber());
 }
 
 WallRole::~WallRole() {
   thread_.stop();
-  checks_.reset();
-  outputs_ =
-      render::out::OutputSet({});  // those of kind window execute commands, which use members
+  if (outputs_) outputs_->close();
 }
 
 std::future<Result<std::string>> WallRole::start() {
@@ -295,9 +168,11 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   beginCorrecting(models.contexts());
   DeviceFeed feed(shm::segmentName(settings_.instance, "devices"), feedSettings(settings_));
   render::frame::PointerMarker marker(plan_);
-  delivery_.emplace(plan_, outputs_, overlaysWith(marker), std::move(corrections_), signals_.get());
+  render::out::OutputSet& outputs = outputs_->set();
+  delivery_.emplace(plan_, outputs, overlaysWith(marker), outputs_->takeCorrections(),
+                    &outputs_->signals());
   std::optional<ViewerPlace> viewer = makeViewerPlace();
-  render::out::VblankFrameClock frame_clock(clock_, [this] { return outputs_.vblank(); });
+  render::out::VblankFrameClock frame_clock(clock_, [&outputs] { return outputs.vblank(); });
   const WallSlots slots{segment_->stats,    &segment_->trace,   &segment_->interaction,
                         &segment_->outputs, &segment_->content, &segment_->idle};
   WallParts parts{models.contents(), scene_,     governor_, feed, *delivery_, slots, clock_,
@@ -312,10 +187,10 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
   loop.setRate(keeper_.state().rate_hz);
   loop.calibrate();
   loop_.store(&loop);
-  checks_->start(watch_);
+  outputs_->startChecks();
   loop.run(stop, [&] { ready_.set_value(models.contexts().renderer()); });
   loop_.store(nullptr);
-  shader_pass_.end();
+  outputs_->shaderPass().end();
 }
 
 FeedSettings WallRole::feedSettings(const Settings& settings) {
@@ -345,7 +220,7 @@ void WallRole::reload(const Settings& settings, const WallChanges& changes) {
   if (WallLoop* loop = loop_.load()) loop->tune(std::move(tuning));
   if (!changes.corrections) return;
   for (const render::out::OutputSettings& output : settings.wall.outputs)
-    aligner_->configure(output.shownName(), output.correction);
+    outputs_->aligner().configure(output.shownName(), output.correction);
 }
 
 // From the first to the last that is drawn: a test card hides the plates of the operator's tile,
@@ -364,9 +239,9 @@ void WallRole::addOwn(WallParts& parts) {
   parts.fade_frames = settings_.wall.render.fade_frames;
   parts.return_after_s = settings_.wall.scene.return_after_s;
   parts.on_snapshot = on_snapshot_;
-  parts.on_align = [this](const AlignInput& input) { aligner_->ask(input); };
+  parts.on_align = [this](const AlignInput& input) { outputs_->aligner().ask(input); };
   parts.shows_testcard = [this] { return cards_.isShown(); };
-  parts.first_content = firstContent();
+  parts.first_content = last_content_.first();
   parts.first_number = firstNumber();
   parts.playlist = placesOf(entries_, settings_.wall.playlist.contents);
 }
@@ -377,7 +252,7 @@ void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
   RendererReport report{contexts.own->info(), contexts.other ? 2 : 1, contexts.asynchronous};
   const Place place = settings_.wall.render.correction;
   if (place == Place::kGpu || (place == Place::kAuto && !report.info.software)) {
-    const auto begun = shader_pass_.begin(*contexts.own);
+    const auto begun = outputs_->shaderPass().begin(*contexts.own);
     report.corrects = begun.ok();
     if (!begun) {
       report.correction_fault = begun.error().what;
@@ -391,7 +266,7 @@ void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
 std::optional<RendererReport> WallRole::renderer() const {
   const std::lock_guard lock(renderer_mutex_);
   std::optional<RendererReport> report = renderer_;
-  if (report && report->corrects) report->correction_fault = shader_pass_.fault();
+  if (report && report->corrects) report->correction_fault = outputs_->shaderPass().fault();
   return report;
 }
 
@@ -418,102 +293,11 @@ std::vector<Event> WallRole::viewerEvents() {
 Result<std::string> WallRole::mend() {
   const auto segment = segment_.mend();
   if (!segment || !segment->empty()) return segment;
-  return outputs_.mend();
+  return outputs_->set().mend();
 }
 
 void WallRole::request(WallLoop::Request what) {
   if (WallLoop* loop = loop_.load()) loop->request(what);
-}
-
-Result<std::uint32_t> WallRole::show(const std::string& name) {
-  WallLoop* const loop = loop_.load();
-  if (!loop) return notShownYet();
-  const auto named = std::ranges::find(entries_, name, &ContentEntry::name);
-  if (named == entries_.end()) {
-    for (const NamedFile& shown : shown_folder_.namedFiles()) {
-      if (shown.name == name) return showFile(shown.file);
-    }
-    return noSuchName(name);
-  }
-  const auto place = static_cast<std::size_t>(named - entries_.begin());
-  if (const std::string fault = missing_.faultOf(place); !fault.empty()) {
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("{} cannot be shown until its file can be read: {}", name, fault)};
-  }
-  const std::uint32_t number = ++show_requests_;
-  loop->show(place);
-  loop->finishRequest(number, {});
-  return number;
-}
-
-Error WallRole::noSuchName(const std::string& name) const {
-  const std::vector<std::string> files = namesInFolder();
-  return {Errc::kInvalidArgument,
-          fmt::format("\"{}\" is not the name of a content; contents are {}{}{}", excerpt(name),
-                      namesOf(entries_),
-                      files.empty() ? ""
-                                    : fmt::format(", and of files that were shown {}",
-                                                  fmt::join(files, ", ")),
-                      name.find('/') == std::string::npos
-                          ? ""
-                          : "; merlind opens no path that a client names: `merlin show FILE` puts "
-                            "the file into its content folder")};
-}
-
-std::vector<std::string> WallRole::namesInFolder() const {
-  constexpr std::size_t kMost = 50;  // a status and an error stay short
-  std::vector<std::string> names;
-  for (NamedFile& file : shown_folder_.namedFiles()) {
-    if (names.size() == kMost) break;
-    if (std::ranges::find(entries_, file.name, &ContentEntry::name) == entries_.end())
-      names.push_back(std::move(file.name));
-  }
-  return names;
-}
-
-std::vector<std::pair<std::string, std::string>> WallRole::missingContents() const {
-  std::vector<std::pair<std::string, std::string>> missing;
-  const std::vector<std::string> faults = missing_.faults();
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    if (!faults[i].empty()) missing.emplace_back(entries_[i].name, faults[i]);
-  }
-  return missing;
-}
-
-Result<std::uint32_t> WallRole::showFile(const std::string& name) {
-  if (!loop_.load()) return notShownYet();
-  const auto entry = shown_folder_.entryOf(name);
-  if (!entry) return entry.error();
-  const std::uint32_t number = ++show_requests_;
-  if (const auto shown = showEntry(*entry, number); !shown) return shown.error();
-  for (std::string& fault : shown_folder_.tidy(name))
-    model_watch_.report(faultEvent(std::move(fault)));
-  return number;
-}
-
-// A model is read on the watch's thread, since that may take long.
-Result<Ok> WallRole::showEntry(const ContentEntry& entry, std::uint32_t request) {
-  const auto read = [this, entry, request]() -> Result<ReadyModel> {
-    std::vector<std::string> skipped;
-    auto content = readContent(entry, settings_.wall.render.model.show, {}, skipped);
-    for (const std::string& why : skipped) model_watch_.report(faultEvent(why));
-    if (!content) return content.error();
-    auto ready = prepareContent(entries_.size(), *std::move(content), settings_.wall);
-    if (!ready) return ready.error();
-    ready->asked_for = true;
-    ready->request = request;
-    return ready;
-  };
-  if (entry.kind == ContentKind::kModel) {
-    model_watch_.ask(read, request);
-    attendance_.touch();
-    return Ok{};
-  }
-  auto ready = read();
-  if (!ready) return ready.error();
-  attendance_.touch();
-  model_watch_.offer(*std::move(ready));
-  return Ok{};
 }
 
 std::vector<Event> WallRole::contentEvents() {

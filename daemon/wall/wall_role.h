@@ -2,6 +2,8 @@
 // run on its own thread.
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -12,26 +14,20 @@
 #include "config/settings.h"
 #include "daemon/base/clock.h"
 #include "daemon/base/kept_files.h"
-#include "daemon/base/thread_team.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/shm/segment.h"
 #include "daemon/state/state_keeper.h"
-#include "daemon/wall/aligner.h"
 #include "daemon/wall/attendance.h"
+#include "daemon/wall/content_requests.h"
+#include "daemon/wall/corrected_outputs.h"
 #include "daemon/wall/device_feed.h"
+#include "daemon/wall/last_content.h"
 #include "daemon/wall/message_board.h"
 #include "daemon/wall/notice.h"
 #include "daemon/wall/operator_tile.h"
-#include "daemon/wall/shown_folder.h"
 #include "daemon/wall/shown_models.h"
-#include "daemon/wall/signal_taps.h"
 #include "daemon/wall/wall_checks.h"
 #include "daemon/wall/wall_loop.h"
-#include "render/correct/gpu/shader_pass.h"
-#include "render/frame/correction.h"
-#include "render/out/kms_output.h"
-#include "render/out/output_kinds.h"
-#include "render/out/output_set.h"
 #include "render/testcard/card_overlay.h"
 
 namespace merlin::wall {
@@ -79,7 +75,7 @@ class WallRole {
 
   // Sets what outputs of kind window do for the person at them, on their own threads. To be called
   // before start().
-  void onWindow(render::out::WindowActs acts) { window_ = std::move(acts); }
+  void onWindow(render::out::WindowActs acts) { outputs_->onWindow(std::move(acts)); }
 
   // Has the wall take these settings, of which `changes` differ, before its next frame; nothing is
   // closed. REQUIRES: the first frame was shown; all else in `settings` is as before.
@@ -93,11 +89,10 @@ class WallRole {
   void setRate(std::optional<double> rate_hz);
   // Thread-safe: what hold() may fix, of the content that is shown; nothing before the loop runs.
   std::optional<Pace::Limits> holdLimits() const;
-  Aligner& aligner() { return *aligner_; }
-  SignalTaps& signals() { return *signals_; }
-  // Which outputs are shown without the correction that was measured for them, and why; empty:
-  // none. The same as long as the wall runs.
-  const std::string& uncorrected() const noexcept { return uncorrected_; }
+  // For its thread-safe members.
+  CorrectedOutputs& outputs() { return *outputs_; }
+  // What people ask to be shown. For its thread-safe members.
+  ContentRequests& contents() { return requests_; }
   // For its thread-safe members; null: there is no panel on the operator's tile.
   OperatorPanel* panel() { return operator_tile_.panel(); }
   // For its thread-safe members.
@@ -110,22 +105,6 @@ class WallRole {
 
   // Returns the events of the viewer's tracked head since the last call. Thread-safe.
   std::vector<Event> viewerEvents();
-
-  // Shows the content of that name: one of the configuration, else one of namesInFolder(), by
-  // showFile(). Returns the number of the request: when it is done, shm::WallContent::finished is
-  // that number. Errors: kBusy, kInvalidArgument (no such name), those of showFile(). Thread-safe.
-  Result<std::uint32_t> show(const std::string& name);
-  // The same of a file in the content folder, by its name there; removes what is no longer needed
-  // there. Errors, for whoever asks: kBusy, those of ShownFolder::entryOf() and readContent(); a
-  // model's file is read later, so that its errors come with `finished`. Reads a picture's coarsest
-  // level, a few milliseconds. Thread-safe.
-  Result<std::uint32_t> showFile(const std::string& name);
-  const ShownFolder& shownFolder() const noexcept { return shown_folder_; }
-  // The names of the contents in the content folder that show() takes: none of the configuration
-  // has them. The newest first, 50 at most. Thread-safe.
-  std::vector<std::string> namesInFolder() const;
-  // Names of contents that cannot be shown yet, each with the reason. Thread-safe.
-  std::vector<std::pair<std::string, std::string>> missingContents() const;
 
   // Shows a sentence over the picture for a few seconds. Errors: those of Notice::show().
   // Thread-safe.
@@ -147,16 +126,8 @@ class WallRole {
   WallRole(const Settings& settings, std::vector<WallContent> contents,
            render::tiles::TilePlan plan, render::scene::Scene scene,
            shm::SegmentWriter<shm::WallSegment> segment, state::StateKeeper& keeper,
-           KeptFiles& kept_files, ThreadWatch& watch, Clock& clock);
-  Result<Ok> makeOutputs(std::uint64_t generation);
-  void makeChecks();
-  void makeCorrections();
-  void makeSignals(std::uint64_t generation);
+           ThreadWatch& watch, Clock& clock);
   std::uint32_t firstNumber() const noexcept;
-  Error noSuchName(const std::string& name) const;
-  Result<Ok> showEntry(const ContentEntry& entry, std::uint32_t request);
-  std::optional<std::size_t> lastShown() const;
-  std::size_t firstContent();
   void tellIfEmpty(Timestamp now);
   void run(const std::stop_token& stop, Progress& progress);
   void addOwn(WallParts& parts);
@@ -169,7 +140,6 @@ class WallRole {
   std::vector<WallContent> contents_;
   const std::vector<ContentEntry> entries_;  // of contents_
   MissingContents missing_;                  // of entries_
-  ShownFolder shown_folder_;
   render::tiles::TilePlan plan_;
   render::scene::Scene scene_;
   render::governor::Governor governor_;
@@ -177,37 +147,27 @@ class WallRole {
   state::StateKeeper& keeper_;
   ThreadWatch& watch_;
   Clock& clock_;
-  render::out::kms::Cards graphics_cards_;  // their displays, shared by the outputs on them
-  render::out::OutputSet outputs_{{}};
-  std::optional<render::out::PictureChecks> checks_;  // of outputs_
-  ThreadTeam team_;  // threads for the corrections; used on the wall's thread
-  render::correct::ShaderPass shader_pass_;  // of the corrections, where a GPU computes them
   mutable std::mutex renderer_mutex_;
   std::optional<RendererReport> renderer_;
-  // By output number; null if the output is sent the frame itself.
-  std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
-  std::string uncorrected_;
-  std::unique_ptr<SignalTaps> signals_;
-  std::optional<std::uint32_t> kept_content_;  // content that the state was last updated for
-  bool told_empty_ = false;                    // of the thread of tend()
+  LastContent last_content_;  // of the thread of tend()
+  bool told_empty_ = false;   // the same
   render::testcard::CardOverlay cards_;
   MessageBoard board_;
   Attendance attendance_;
   OperatorTile operator_tile_;
   Notice notice_;
   render::frame::Curtain curtain_;
-  std::optional<render::frame::Delivery> delivery_;  // owns the corrections while the wall runs
-  std::unique_ptr<Aligner> aligner_;  // replaces corrections; the wall's thread calls ask()
+  std::unique_ptr<CorrectedOutputs> outputs_;
+  std::optional<render::frame::Delivery> delivery_;  // has the corrections while the wall runs
   std::function<void()> on_snapshot_ = [] {};
-  render::out::WindowActs window_;
   std::mutex viewer_events_mutex_;
   std::vector<Event> viewer_events_;
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
-  std::atomic<std::uint32_t> show_requests_{0};
-  // Declared before thread_, which uses both.
+  // Declared before thread_, which uses all three.
   ModelWatch model_watch_;
   render::content::TileLoader tiles_;
+  ContentRequests requests_;
   WatchedThread thread_;
 };
 

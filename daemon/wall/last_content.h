@@ -1,0 +1,40 @@
+// LastContent: which content was shown last, in the daemon's state.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "daemon/state/state_keeper.h"
+#include "daemon/wall/missing_contents.h"
+#include "daemon/wall/wall_contents.h"
+
+namespace merlin::wall {
+
+// The state stores an empty path for the first content, so that the configuration decides which one
+// it is. Not thread-safe, but first() may run beside keep().
+class LastContent {
+ public:
+  // `missing`: of `entries`, the contents of the configuration. All outlive this object.
+  LastContent(const std::vector<ContentEntry>& entries, const MissingContents& missing,
+              state::StateKeeper& keeper)
+      : entries_(entries), missing_(missing), keeper_(keeper) {}
+
+  // The place of the content to begin with. Adds a notice to the state's if the configuration lacks
+  // the one that was shown last.
+  std::size_t first() const;
+
+  // Saves that the content of this place is shown; what is beyond the configuration's, a file, is
+  // not saved. Cheap if it is the one of the last call.
+  void keep(std::size_t place);
+
+ private:
+  std::optional<std::size_t> placeInState() const;
+
+  const std::vector<ContentEntry>& entries_;
+  const MissingContents& missing_;
+  state::StateKeeper& keeper_;
+  std::optional<std::size_t> kept_;  // place of the last keep()
+};
+
+}  // namespace merlin::wall
