@@ -131,10 +131,10 @@ void describePostures(DevicesSettings& d, SettingsVisitor& v) {
            "Minimum margin for a posture to be recognised, from 0 to 1: the margin says how sure "
            "the posture network is. Half of it suffices to keep the current posture.");
   v.flag("drift", d.posture_drift,
-         "Whether merlind follows the slow drift of the glove's sensors: from postures that it is "
-         "sure of it learns by how much each sensor has moved, at most 0.3 of its range, and "
-         "subtracts that before it recognises. merlind forgets this when the glove is connected "
-         "again.");
+         "Whether merlind follows the slow drift of the glove's sensors. Whenever it is sure of a "
+         "posture, it learns from it how far each sensor has drifted, at most 0.3 of the sensor's "
+         "range, and subtracts this drift before it recognises postures. The learned drift is "
+         "forgotten when the glove is connected again.");
 }
 
 void describeGestures(DevicesSettings& d, SettingsVisitor& v) {

@@ -78,12 +78,15 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
               "Gamma of the output's red, green and blue, as factors on blend.gamma. Above 1 the "
               "middle tones of the channel become brighter.");
   });
-  v.group("black", "Black level.", [&] {
-    v.numbers("level", c.black.level, {0, render::correct::kMostBlack},
-              "Linear light of red, green and blue that is added outside the blend strips, as a "
-              "share of full brightness. It raises black there to the level of the overlap, where "
-              "the black levels of the projectors add up.");
-  });
+  v.group("black",
+          "Raises black outside the blend strips to the level of the overlaps, where the black "
+          "levels of the projectors add up.",
+          [&] {
+            v.numbers(
+                "level", c.black.level, {0, render::correct::kMostBlack},
+                "Linear light of red, green and blue that is added outside the blend strips, as a "
+                "share of full brightness.");
+          });
 }
 
 void describeWindow(render::out::WindowSettings& w, SettingsVisitor& v) {

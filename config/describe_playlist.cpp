@@ -6,7 +6,7 @@ void describePlaylist(PlaylistSettings& p, SettingsVisitor& v) {
   constexpr Range kADay{0, 86'400};
   v.number(
       "after_s", p.after_s, kADay,
-      "Time in seconds without input (of ball, hand, button, touch surface, mouse or a command) "
+      "Time in seconds without input (from a ball, hand, button, touch surface, mouse or command) "
       "after which the playlist begins. 0: only the command `merlin playlist on` begins it.");
   v.number("hold_s", p.hold_s, {1, 86'400},
            "Time in seconds for which the playlist shows each content, and each slide.");

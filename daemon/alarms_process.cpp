@@ -60,7 +60,8 @@ bool saysThatItWorks(std::string_view sentence, const shm::DeviceSlots* devices)
   });
 }
 
-// SIGUSR1, which the other roles ignore, waits to be asked for.
+// Blocks SIGUSR1 instead of ignoring it as the other roles do, so that it stays pending until
+// askedBySignal() takes it.
 void waitForTests() {
   sigset_t set;
   ::sigemptyset(&set);

@@ -15,9 +15,11 @@ Result<std::vector<Example>> toExamples(std::span<const LabelledHand> hands,
     const LabelledHand& hand = hands[h];
     const auto code = network.postures.code(hand.posture);
     if (!code) {
-      return Error{Errc::kInvalidArgument,
-                   fmt::format("hand {} shows \"{}\", which has no code among the {} postures", h,
-                               hand.posture, network.postures.size())};
+      return Error{
+          Errc::kInvalidArgument,
+          fmt::format(
+              "example {} (counted from 0) shows \"{}\", which has no code among the {} postures",
+              h, hand.posture, network.postures.size())};
     }
     for (std::size_t i = 0; i < kInputs; ++i) {
       if (std::isfinite(hand.value[i])) continue;

@@ -44,8 +44,8 @@ Result<std::string> importProgram() {
   if (!error && ::access(program.c_str(), X_OK) == 0) return program.string();
   return Error{
       Errc::kUnsupported,
-      fmt::format("{}: is not there; install the package merlin-import. In a build it is made "
-                  "where its libraries are (./dev build installs them), beside merlin",
+      fmt::format("{}: is not there; install the package merlin-import. In a build tree it is "
+                  "built beside merlin if its libraries are installed (./dev build installs them)",
                   program.string())};
 }
 

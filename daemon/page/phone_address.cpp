@@ -34,7 +34,8 @@ Result<std::string> phoneAddress(const std::string& origin, const PagePlace& pla
   std::string address = place.address;
   if (address == "0.0.0.0") {
     if (place.networks.empty())
-      return Error{Errc::kNotFound, "a phone cannot reach the page: this machine is in no network"};
+      return Error{Errc::kNotFound,
+                   "a phone cannot reach the page: this machine is not connected to a network"};
     address = place.networks.front();
   }
   return fmt::format("http://{}:{}/", address, place.port);

@@ -88,7 +88,8 @@ void RfbScreen::Library::setHooks() {
 RfbScreen::RfbScreen(int socket, const ScreenSettings& settings, InputMap* input,
                      std::span<std::uint8_t> pixels, int width, int height)
     : library_(std::make_unique<Library>()) {
-  // The library's lines repeat what clients send; the parent process reports how each ended.
+  // Discards the library's log lines, which repeat what clients send. The parent process reports
+  // how each client's connection ended.
   rfbLog = rfbErr = dropLine;
   Library& l = *library_;
   l.input = input;

@@ -19,7 +19,8 @@
 namespace merlin::rfb {
 namespace {
 
-// Each accepted connection costs a process; more wait in the system's queue.
+// Limits how fast connections are accepted, since each costs a process; the others wait in the
+// system's queue.
 constexpr double kAccepts_per_s = 20, kAcceptsBurst = 20;
 
 // `set[0]` is the listener. Waits for anything in the set; while the bucket is empty, not for the

@@ -63,7 +63,7 @@ Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size,
   if (h.version != kVersion) {
     return Error{Errc::kUnsupported,
                  fmt::format("shared memory {}: is version {}, but this program reads version {}; "
-                             "use this program and merlind of the same release",
+                             "use this program and merlind from the same release",
                              name, h.version, kVersion)};
   }
   if (memory.size() < least_size || h.size != memory.size() ||

@@ -85,7 +85,7 @@ Result<std::size_t> SlotTable::locate(const std::string& slot, Describe describe
   if (!first) {
     return Error{Errc::kUnsupported,
                  fmt::format("shared memory {}: has no slot {} (no field {}); use this program and "
-                             "merlind of the same release",
+                             "merlind from the same release",
                              name_, slot, probe.name)};
   }
   const std::int64_t offset =

@@ -103,7 +103,7 @@ Result<TcpAddress> parseTcp(const std::string& endpoint) {
       return address;
   }
   return Error{Errc::kInvalidArgument,
-               endpoint + ": is not tcp://ADDRESS:PORT, ADDRESS an IPv4 address or '*'"};
+               endpoint + ": is not tcp://ADDRESS:PORT, where ADDRESS is an IPv4 address or '*'"};
 }
 
 std::uint64_t inodeOf(const std::string& path) {

@@ -119,9 +119,11 @@ Result<Ok> CybergloveDevice::identify(Dialogue& dialogue) {
   slots_ = slotsOf(mask_);
   const auto count = static_cast<std::uint8_t>((*sensors)[0]);
   if (count != slots_.count || count == 0) {
-    return Error{Errc::kMalformed,
-                 fmt::format("the glove reports {} sensors and a mask of {} (0x{:06X}){}{}", count,
-                             slots_.count, mask_, *complaint_ ? ": " : "", complaint_)};
+    return Error{
+        Errc::kMalformed,
+        fmt::format("the glove reports {} sensors, and its sensor mask has {} (0x{:06X}); the "
+                    "two must be equal and not 0{}{}",
+                    count, slots_.count, mask_, *complaint_ ? ": " : "", complaint_)};
   }
   return Ok{};
 }

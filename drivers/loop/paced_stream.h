@@ -32,8 +32,8 @@ class ReadPace {
 
   // Number of bytes that may be read at `now`; updates above().
   std::size_t allowed(Timestamp now);
-  // Time for which a read waits if none may be read: several bytes at once cost less than each
-  // alone.
+  // How long read() sleeps, while no byte may be read, before it asks again. Bytes collect
+  // meanwhile: to read several in one call costs less than to read each alone.
   static constexpr Duration kPause = std::chrono::milliseconds(10);
   // Subtracts bytes that were read from the allowance.
   void charge(std::size_t bytes, Timestamp now) noexcept;

@@ -106,10 +106,11 @@ void checkPlacement(const TrackerPlacement& placement, const std::string& pointe
 void describe(TrackerPlacement& placement, SettingsVisitor& v) {
   v.numbers(
       "axes", placement.axes, {-3, 3},
-      "Which of the axes that are sent are the tracker's x, y and z, as /wall/scene has them "
-      "of all trackers: 1 is x, 2 is y, 3 is z; a negative number reverses the axis. For x to "
-      "the right, y up and z towards the person, as most motion capture and VR systems send "
-      "them, beside a Fastrak: [3, -1, -2].");
+      "Which of the axes that the sender uses become the tracker's x, y and z: 1 is x, 2 is y, 3 "
+      "is z; a negative number reverses the axis. /wall/scene/tracker_axes then applies to the "
+      "result, as it does to all trackers. For a sender with x to the right, y up and z towards "
+      "the person, as most motion capture and VR systems have it, used together with a Fastrak: "
+      "[3, -1, -2].");
   v.numbers("origin_m", placement.origin_m, {-100, 100},
             "Place, in the tracker's frame, of the point that the sender calls 0, 0, 0: x, y, z in "
             "metres.");

@@ -14,8 +14,8 @@ void describe(TouchSettings& t, SettingsVisitor& v) {
          "Whether a finger that moves down is reported as moving up.");
   v.number("aspect", t.aspect, {0, 10},
            "Width of the surface divided by its height, as a person sees it. 0: computed from the "
-           "device's resolutions, or else from the ranges of its axes; 16:9 if only ranges are "
-           "known and they are equal, and for a mouse.");
+           "resolutions of the device's axes or, if it does not tell them, from the ranges of its "
+           "axes. If those ranges are equal, and for a mouse, 0 means 16:9.");
   v.integer(
       "mouse_counts", t.mouse_counts, {10, 100'000},
       "Number of counts that a mouse must move to drag over the whole height of the surface.");

@@ -16,8 +16,9 @@
 namespace merlin::tuio {
 
 // open() waits for nothing: a tracker need not send while nobody touches its surface, so silence is
-// no fault. poll() publishes a sample for each datagram after which other fingers touch; a source
-// that is silent for 2 s has none any more, and complaint() says that all are silent.
+// no fault. poll() publishes a sample for each datagram that changes which fingers touch, or where.
+// A source that is silent for 2 s counts as having no fingers on it; if all sources are silent,
+// complaint() says so.
 class TuioDevice final : public Device {
  public:
   TuioDevice(const TuioSettings& settings, const Clock& clock, SampleSink& sink);

@@ -433,8 +433,8 @@ std::string noteOf(const std::set<std::string>& own_attributes) {
   if (own_attributes.size() > kNamed)
     names += fmt::format(" and {} others", own_attributes.size() - kNamed);
   return fmt::format(
-      "left out: values of the vertices that glTF does not define ({}); a PLY file "
-      "keeps such values as features",
+      "left out: vertex attributes that glTF does not define ({}); a PLY file keeps such values as "
+      "features",
       names);
 }
 

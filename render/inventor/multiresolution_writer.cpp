@@ -89,9 +89,10 @@ Result<std::vector<std::string>> writeMultiresolution(const std::string& path,
     return Error{Errc::kUnsupported, path + ": the model has no triangles; nothing is written"};
   }
   if (model.nodeCount() > kMost || model.arrays().triangles.size() > kMost) {
-    return Error{Errc::kUnsupported,
-                 fmt::format("{}: {} nodes and {} triangle corners; Open Inventor has at most {}",
-                             path, model.nodeCount(), model.arrays().triangles.size(), kMost)};
+    return Error{
+        Errc::kUnsupported,
+        fmt::format("{}: {} nodes and {} triangle corners; Open Inventor allows at most {} of each",
+                    path, model.nodeCount(), model.arrays().triangles.size(), kMost)};
   }
   const auto done = writeFile(path, [&](const WriteBytes& bytes) { return write(model, bytes); });
   if (!done) return done.error();

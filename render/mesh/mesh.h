@@ -1,7 +1,8 @@
 // Mesh: a triangulated surface with any number of named features at its vertices. Flat arrays.
 //
-// A triangle soup with shared vertices: non-manifold edges, borders and several components are all
-// legal; an algorithm that cannot handle one of them says so in its contract. Reentrant.
+// An indexed triangle set without stored adjacency: non-manifold edges, borders and several
+// components are all legal; an algorithm that cannot handle one of them says so in its contract.
+// All functions are reentrant.
 #pragma once
 
 #include <array>

@@ -94,8 +94,9 @@ void checkDisplays(const std::vector<OutputSettings>& outputs, SettingFaults& fa
     }
     const auto same_card = [&](std::size_t o) { return outputs[o].kms.card == here.card; };
     if (here.connector.empty() && std::ranges::count_if(displays, same_card) > 1) {
-      faults.push_back(
-          {at, "has no connector, and the wall has several outputs on this card; name each one's"});
+      faults.push_back({at,
+                        "has no connector, and the wall has several outputs on this card; name the "
+                        "connector of each"});
     } else if (std::any_of(displays.begin(), i, [&](std::size_t o) {
                  return same_card(o) && outputs[o].kms.connector == here.connector;
                })) {

@@ -59,7 +59,7 @@ struct PanelContent {
   bool is_model = true;
 };
 
-// What this wall has, of what the panel can work; does not change while it runs.
+// Which of the things that the panel can operate this wall has; does not change while it runs.
 struct PanelOptions {
   std::vector<PanelContent> contents;  // of the configuration, in their order
   bool snapshots = false;              // there is a folder for them

@@ -280,7 +280,7 @@ TEST_F(AlignerTest, AnAlignmentThatFitsNoLongerIsDroppedWithANotice) {
   start();
   notices = keeper_.takeNotices();
   ASSERT_EQ(notices.size(), 1u);
-  EXPECT_NE(notices[0].find("it was aligned with 640 x 480 pixels"), std::string::npos);
+  EXPECT_NE(notices[0].find("it was made for 640 x 480 pixels"), std::string::npos);
   EXPECT_EQ(moved("top_left"), json({0, 0}));
   EXPECT_EQ(moved("top_left", 1), json({1, 1}));
 }

@@ -164,7 +164,7 @@ TEST_F(SlotTableTest, ASlotThatIsMissingIsNamed) {
   std::strcpy(field("ball.count").name, "bell.count");
   EXPECT_EQ(fault(),
             "shared memory of the devices: has no slot ball (no field ball.count); use this "
-            "program and merlind of the same release");
+            "program and merlind from the same release");
 }
 
 TEST_F(SlotTableTest, AFieldThatIsMissingIsNamed) {

@@ -202,9 +202,12 @@ TEST(CybergloveDevice, RefusesAnswersThatMakeNoGlove) {
       {{{"?i", "Spaceball\0"s}}, "not a CyberGlove: it identifies itself as \"Spaceball\""},
       {{info, {"?G", "?X\3\0"s}}, "unexpected answer \"?X\\x03\\x00\" to ?G"},
       {{info, state, {"?S", "?S\x12\0"s}, mask},
-       "the glove reports 18 sensors and a mask of 22 (0x7FFF7F)"},
+       "the glove reports 18 sensors, and its sensor mask has 22 (0x7FFF7F); the two must be equal "
+       "and not 0"},
       {{info, {"?G", "?G\1\0"s}, {"?S", "?S\0\0"s}, {"?K", "?K\0\0\0\0"s}},
-       "the glove reports 0 sensors and a mask of 0 (0x000000): glove not plugged in"},
+       "the glove reports 0 sensors, and its sensor mask has 0 (0x000000); the two must be equal "
+       "and "
+       "not 0: glove not plugged in"},
       {{info, state, sensors, mask, {"M\x7F\xFF\x7F", "en\0"s}}, "unexpected answer \"en\" to M"},
   };
   for (const auto& [answers, what] : kCases) {

@@ -196,8 +196,8 @@ TEST(ReadMesh, GoesByTheEndingInSmallOrLargeLetters) {
     EXPECT_EQ(
         refused.error().what,
         dir / name +
-            ": is no mesh that is read here, which are .ply, .obj, .off, .om and .stl; merlin mesh "
-            "import reads other formats and writes a model");
+            ": is not a mesh file that can be read here; supported are .ply, .obj, .off, .om and "
+            ".stl. merlin mesh import reads other formats and writes a model");
   }
 }
 

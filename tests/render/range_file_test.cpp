@@ -137,8 +137,8 @@ TEST_F(RangeFile, RefusalsNameFilePlaceAndWhatIsAllowed) {
             "VERTICAL (degrees)");
   EXPECT_EQ(fault(kHeader + "4 4\n255\nabc"), "a.pgm: has 3 bytes of pixels; 4 x 4 pixels take 16");
   EXPECT_EQ(fault(kHeader + "2 2\n255\n" + std::string(4, '\0')),
-            "a.pgm: none of its 2 x 2 pixels has a return: all are the value that means none "
-            "(--no-return), not numbers, not positive or beyond 1e+09");
+            "a.pgm: none of its 2 x 2 pixels has a return: each is the value that means no "
+            "return (--no-return), is not a number, is not positive, or is beyond 1e+09");
   EXPECT_EQ(fault("P5\n# angles: sixty\n2 2\n255\nabcd"),
             "a.pgm: line 2: angles: found \"sixty\", allowed: one or two numbers (degrees: "
             "horizontal, vertical)");

@@ -362,7 +362,8 @@ TEST_F(Align, AnOutputThatWouldBeIgnoredOrIsNotThereIsRefused) {
     EXPECT_NE(done.output.find(what), std::string::npos) << done.output;
   };
   refused({"--undo", "--output", "beamer"}, "--undo takes back the last step, whichever output");
-  refused({"--redo", "--output", "beamer"}, "--redo takes back the last step, whichever output");
+  refused({"--redo", "--output", "beamer"},
+          "--redo repeats the step that was undone last, whichever");
   refused({"--list", "--output", "bemaer"},
           "\"bemaer\" is not an output that can be aligned; there are ");
 }

@@ -343,7 +343,8 @@ TEST_F(BadInput, MeshCommands) {
                 {"empty.ply: line 1: a PLY file starts with"});
   expectOutcome(
       run({kMerlin, "mesh", "info", dir_ / "a.xyz"}), 2,
-      {"a.xyz: is no mesh that is read here, which are .ply, .obj, .off, .om and .stl; merlin"});
+      {"a.xyz: is not a mesh file that can be read here; supported are .ply, .obj, .off, .om and "
+       ".stl. merlin"});
   const std::string scan = kSource + "/config/models/ankylosaurus.ply";
   expectOutcome(run({kMerlin, "mesh", "reduce", scan, "-o", dir_ / "o.mrm", "--weight", "colour"}),
                 2, {"--weight colour: is not FEATURE=NUMBER"});

@@ -126,7 +126,8 @@ TEST_F(ConfigEdit, OnePersonAtATimeAndNobodyElsesChangeIsLost) {
   ASSERT_EQ(::flock(other.get(), LOCK_UN), 0);
   const auto process = edit("sed -i s/25/40/ \"$1\"; echo '{\"instance\": \"b\"}' >" + file_);
   EXPECT_EQ(process->wait(), 1) << process->output();
-  EXPECT_NE(process->output().find("another program has changed it meanwhile"), std::string::npos)
+  EXPECT_NE(process->output().find("another program has changed this file since it was opened"),
+            std::string::npos)
       << process->output();
   EXPECT_EQ(readText(file_), "{\"instance\": \"b\"}\n");
   EXPECT_NE(readText(copy_).find("40"), std::string::npos) << "the work is not lost";

@@ -291,7 +291,7 @@ TEST_F(GltfImport, ValuesThatGltfDoesNotDefineAreSaidToBeLeftOut) {
   attributes["_CONFIDENCE"] = 0;
   attributes["_thermal"] = 0;
   EXPECT_EQ(report(json.dump())["notes"],
-            (Json{"left out: values of the vertices that glTF does not define (_CONFIDENCE, "
+            (Json{"left out: vertex attributes that glTF does not define (_CONFIDENCE, "
                   "_thermal); a PLY file keeps such values as features"}));
   for (char c = 'a'; c < 'i'; ++c) attributes[std::string("_") + c] = 0;
   EXPECT_NE(report(json.dump())["notes"].dump().find("_f, _g and 2 others)"), std::string::npos);

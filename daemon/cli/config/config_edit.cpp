@@ -97,7 +97,7 @@ int keepOld(const EditedFile& edited, int status) {
 int offerReload(const std::string& instance) {
   if (!findRoles(instance)) return kExitDone;  // no merlind runs that could read it
   const auto answer =
-      ask(fmt::format("merlind \"{}\" runs. Have it read its configuration now? (y)es, (n)o:",
+      ask(fmt::format("merlind \"{}\" is running. Have it read its configuration now? (y)es, (n)o:",
                       instance),
           "yn");
   return answer == 'y' ? reloadNow(instance) : kExitDone;

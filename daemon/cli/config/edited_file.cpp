@@ -124,8 +124,9 @@ Result<Ok> EditedFile::replace() {
   struct stat old {};
   if (::stat(path_.c_str(), &old) != 0) return fault(path_, errno);
   if (fileStamp(path_) != stamp_) {
-    return Error{Errc::kIo,
-                 path_ + ": another program has changed it meanwhile; it stays as it is now"};
+    return Error{Errc::kIo, path_ +
+                                ": another program has changed this file since it was opened; your "
+                                "edits are not saved into it"};
   }
   NewFile fresh(copy_);
   if (fresh.fd() < 0 || !writeAll(fresh.fd(), copy->text())) return fault(path_, errno);

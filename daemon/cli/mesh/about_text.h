@@ -33,7 +33,8 @@ std::string aboutFeatures(const std::vector<FeatureFacts>& features);
 // What aboutFeatures() wrote of this feature; without a unit or a range where there is none.
 FeatureFacts featureIn(std::string_view about, const std::string& name);
 
-// Of a plane of one value, the range that its file gives, else that of the pixels with a return.
+// Name, unit and range of a plane. The range of a plane with one value per pixel is the one that
+// its file gives or, if the file gives none, that of the values at pixels with a return.
 FeatureFacts factsOf(const render::range::Plane& plane, const render::range::RangeImage& image);
 
 // What is known of the feature in several images: the unit of those that have one, and the range of

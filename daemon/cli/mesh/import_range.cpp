@@ -49,7 +49,9 @@ bool isElevation(const range::RangeImage& image) {
 
 Error percentOfHeight(const char* option) {
   return {Errc::kInvalidArgument,
-          fmt::format("{}: a height is no distance; give a length, not a percentage", option)};
+          fmt::format("{}: an elevation map holds heights, not distances from a scanner, so a "
+                      "percentage of the range has no meaning; give a length",
+                      option)};
 }
 
 // A fault of a feature's name as the end of a message; empty if it may be added.

@@ -24,10 +24,10 @@ Result<std::size_t> roomForReduction(const render::mesh::MeshSize& mesh, std::si
 Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSize& mesh,
                           std::size_t limit);
 
-// Checks that a mesh file can be read within `limit` bytes, by meshFileSize(), before any of it is.
-// `named`: what the error names, the file itself or the one that it was made of. Errors:
-// kInvalidArgument, with the need and the limit. A file that cannot be read
-// or whose format tells no counts (an ASCII .stl) is not an error here.
+// Checks with meshFileSize(), before the mesh is loaded, that loading it takes at most `limit`
+// bytes. `named`: the file that an error names, this file or the one that it was made from. Errors:
+// kInvalidArgument, with the need and the limit. A file that cannot be read or whose format tells
+// no counts (an ASCII .stl) is not an error here.
 Result<Ok> roomToRead(const std::string& path, const std::string& named, std::size_t limit);
 
 // Makes the checks of roomForReduction() and roomForPicture() before the mesh is read, with the

@@ -99,9 +99,10 @@ Result<Ok> ask(const ShowOptions& options, const RoleRequest& request) {
   const auto answer = nlohmann::json::parse(*asked, nullptr, false);
   const auto done = awaitDone(options, answer.value("request", std::uint32_t{0}));
   if (!done) {
-    return Error{Errc::kTimeout, fmt::format("{} is not shown after {} s; merlin status says what "
-                                             "the wall does",
-                                             options.what(), options.wait_s)};
+    return Error{Errc::kTimeout,
+                 fmt::format("{} is still not shown after {} s; merlin status says what "
+                             "the wall does",
+                             options.what(), options.wait_s)};
   }
   const std::string refused(textIn(done->refused));
   if (!refused.empty()) return Error{Errc::kMalformed, refused};

@@ -43,10 +43,10 @@ Result<state::AlignRequest> requestOf(const AlignOptions& o) {
   if (!o.by.empty()) return moveRequest(o);
   if (!o.corner.empty() || !o.point.empty()) return usage("--corner and --point need --by DX DY");
   if ((o.undo || o.redo) && !o.output.empty())
-    return usage(
-        fmt::format("{} takes back the last step, whichever output it moved; leave "
-                    "--output out, or move {} by --by",
-                    o.undo ? "--undo" : "--redo", o.output));
+    return usage(fmt::format(
+        "{}, whichever output it moved; leave --output out, or move {} with --by",
+        o.undo ? "--undo takes back the last step" : "--redo repeats the step that was undone last",
+        o.output));
   if (o.undo) return state::AlignRequest{state::UndoRequest{}};
   if (o.redo) return state::AlignRequest{state::RedoRequest{}};
   if (o.reset && o.output.empty()) return usage("--reset needs --output NAME");

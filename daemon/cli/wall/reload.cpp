@@ -94,7 +94,8 @@ bool allDone(const std::vector<Reloaded>& all) {
   return std::ranges::all_of(all, [](const Reloaded& r) { return r.done(); });
 }
 
-// All or nothing holds in one process: of two, both check the file before one swaps anything.
+// Reloading is all or nothing only within one process. With several processes, therefore, all check
+// the file before the first swaps anything.
 Result<std::vector<Reloaded>> reloadAll(const ReloadOptions& options,
                                         const std::vector<FoundRole>& processes) {
   if (options.check || processes.size() > 1) {

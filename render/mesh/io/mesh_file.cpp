@@ -198,8 +198,8 @@ Result<LoadedMesh> readMesh(const std::string& path) {
   if (const MeshReader* const reader = readerFor(path)) return readMeshAs(*reader, path);
   return Error{
       Errc::kUnsupported,
-      fmt::format("{}: is no mesh that is read here, which are {}; merlin mesh import reads other "
-                  "formats and writes a model",
+      fmt::format("{}: is not a mesh file that can be read here; supported are {}. merlin mesh "
+                  "import reads other formats and writes a model",
                   path, readableEndings())};
 }
 

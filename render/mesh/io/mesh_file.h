@@ -46,8 +46,8 @@ struct LoadedMesh {
   SplitReport split;
   std::vector<std::string> notes;  // for the user: data left out, a missing texture image
   Origin origin{};                 // of the file's coordinates; positions are relative to it
-  // Of the facets of a file that has no colours of vertices, triangles x 3, each 0..1. Empty once
-  // it was read by the functions below, which make colours of vertices of them.
+  // Colours of the triangles, triangles x 3, each 0..1, if the file gives colours to facets and not
+  // to vertices. The functions below turn them into colours of vertices and return this empty.
   std::vector<float> facet_colours{};
 };
 

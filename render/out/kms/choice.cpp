@@ -86,10 +86,12 @@ Result<std::size_t> chooseMode(const Connector& connector, const std::string& wa
   }
   const Mode& mode = connector.modes[*found];
   if (picture_width > mode.width || picture_height > mode.height) {
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("the picture has {}x{} pixels, more than mode {} of {}; it has {}",
-                             picture_width, picture_height, nameOf(mode), connector.name,
-                             listOf(connector.modes, kListed))};
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format(
+            "the picture has {}x{} pixels, more than mode {} of {}; the display has the modes {}",
+            picture_width, picture_height, nameOf(mode), connector.name,
+            listOf(connector.modes, kListed))};
   }
   return *found;
 }

@@ -12,9 +12,10 @@ namespace merlin::render::points {
 // Whether the bytes begin a PCD file of HEIGHT 1.
 bool isPcdCloud(std::string_view bytes);
 
-// rgb or rgba becomes "colour", normal_x, normal_y and normal_z become "normal", any other field
-// but "_" a feature of its name. The viewpoint is used unless it is the format's default, 0 0 0.
-// Errors: those of parsePcdHeader() and readPcdBody(); kMalformed (no x, y or z).
+// rgb or rgba becomes the feature "colour"; normal_x, normal_y and normal_z become "normal"; any
+// other field except "_" becomes a feature with the field's name. The viewpoint is used unless it
+// is the format's default, 0 0 0. Errors: those of parsePcdHeader() and readPcdBody(); kMalformed
+// (no x, y or z).
 Result<PointCloud> parsePcdCloud(std::string_view bytes);
 
 }  // namespace merlin::render::points

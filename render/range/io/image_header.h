@@ -50,7 +50,8 @@ Result<Ok> applyLine(std::string_view line, ImageHeader& header);
 // The image's geometry as its file says it. REQUIRES: the geometry is not kRays.
 ImageHeader headerOf(const RangeImage& image);
 
-// The lines that applyLine() reads, each ended by a line feed and begun with `before`.
+// The header as lines that applyLine() can read back, each preceded by `before` and ended by a line
+// feed.
 std::string linesOf(const ImageHeader& header, std::string_view before);
 
 }  // namespace merlin::render::range

@@ -209,8 +209,8 @@ Result<std::vector<PcdValues>> readCompressed(std::string_view bytes, const PcdH
   if (size != needed || packed > bytes.size() - 8)
     return Error{
         Errc::kMalformed,
-        fmt::format("its {} bytes of compressed points are said to be {} and to become {}; "
-                    "{} x {} points take {}",
+        fmt::format("its {} bytes of compressed points do not fit their sizes, which say {} bytes "
+                    "that become {} bytes; {} x {} points take {} bytes",
                     bytes.size() - 8, packed, size, header.width, header.height, needed)};
   const auto unpacked = unpackLzf({p + 8, packed}, size);
   if (!unpacked)

@@ -234,8 +234,8 @@ Result<LoadedRange> loadGrid(const std::string& path, const RangeOptions& option
 std::string emptyFault(const RangeImage& image) {
   if (std::any_of(image.range.begin(), image.range.end(), isReturn)) return {};
   return fmt::format(
-      "none of its {} x {} pixels has a return: all are the value that means none "
-      "(--no-return), not numbers, not positive or beyond {:g}",
+      "none of its {} x {} pixels has a return: each is the value that means no return "
+      "(--no-return), is not a number, is not positive, or is beyond {:g}",
       image.width, image.height, kFarthest);
 }
 
