@@ -16,10 +16,9 @@ constexpr const char* kScripts[] = {"visit",     "turning", "still", "grabbing",
 
 void describePerson(std::string& person, SettingsVisitor& v) {
   v.text("person", person,
-         "Name of the person who uses the device or the hand, any text, also an empty one. Devices "
+         "Name of the person who uses the device or the hand, any text; it may be empty. Devices "
          "and hands with the same name belong to one person; while one person acts on the wall, "
-         "the input "
-         "of the others does not move what is shown (/people/turn_s).");
+         "the input of the others does not move what is shown (see /people/turn_s).");
 }
 
 // A device without a driver has an empty name of it.
@@ -84,11 +83,10 @@ void describeOwn(DeviceSettings& d, SettingsVisitor& v) {
 }
 
 void describeDevice(DeviceSettings& d, SettingsVisitor& v) {
-  v.text(
-      "name", d.name,
-      "Name of the device in shared memory, in the status and in bindings: 1 to 16 of a to z, 0 "
-      "to 9 and _, beginning with a letter. Empty: glove, tracker, ball or touch, as the driver's "
-      "kind is.");
+  v.text("name", d.name,
+         "Name of the device in shared memory, in the status and in bindings: 1 to 16 of a to z, 0 "
+         "to 9 and _, beginning with a letter. Empty: the kind of the driver: glove, tracker, ball "
+         "or touch.");
   describePerson(d.person, v);
   describeLine(d.line, v);
   describeOwn(d, v);
@@ -96,12 +94,12 @@ void describeDevice(DeviceSettings& d, SettingsVisitor& v) {
 
 void describeHand(HandSettings& h, SettingsVisitor& v) {
   v.text("name", h.name,
-         "Name of the hand in shared memory and in the status; it is formed as a device's, and no "
-         "device has the same.");
+         "Name of the hand in shared memory and in the status: 1 to 16 of a to z, 0 to 9 and _, "
+         "beginning with a letter. No device may have the same name.");
   describePerson(h.person, v);
   v.text("glove", h.glove,
          "Name of the glove that the hand wears. Empty: the first glove. none: the hand wears no "
-         "glove, and holds a tracked wand for example.");
+         "glove, for example because it holds a tracked wand.");
   v.text("tracker", h.tracker,
          "Name of the tracker whose receiver is on the hand. Empty: the first tracker.");
   v.integer(
@@ -116,7 +114,8 @@ void describeHand(HandSettings& h, SettingsVisitor& v) {
            "Increase of the cut-off frequency of the filter for the hand's pose with the hand's "
            "speed, in Hz per metre per second.");
   v.flag("gestures", h.gestures,
-         "Whether the hand's gestures in time are recognised, if /gestures/file names some.");
+         "Whether the hand's gestures in time (motions such as a swipe or a circle) are "
+         "recognised. This needs the file of trained gestures, /gestures/file.");
 }
 
 void describePostures(DevicesSettings& d, SettingsVisitor& v) {
@@ -139,9 +138,10 @@ void describePostures(DevicesSettings& d, SettingsVisitor& v) {
 
 void describeGestures(DevicesSettings& d, SettingsVisitor& v) {
   v.path("file", d.gestures,
-         "File of trained gestures in time, in JSON (`merlin gesture train`). Empty: no gesture is "
-         "recognised. /wall/scene/tracker_axes says which way is right, up and towards the person; "
-         "a merlind that only reads devices needs that setting too.");
+         "File of trained gestures in time (motions such as a swipe or a circle), in JSON; `merlin "
+         "gesture train` writes it. Empty: no gesture is recognised. /wall/scene/tracker_axes says "
+         "which way is right, up and towards the person; a merlind that only reads devices needs "
+         "that setting too.");
 }
 
 // Description of the setting action: lists all actions with the help text of each.
@@ -163,7 +163,7 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
   static const std::string kAction = actionsHelp();
   static const std::string kRepeat = fmt::format(
       "Time after which an action that happens once happens again while the input is held, in "
-      "seconds: {} or more. 0: it does not.",
+      "seconds: {} or more. 0: it happens only once.",
       kShortestRepeat_s);
   v.listOf<Binding>(
       "bindings", d.bindings,
@@ -179,7 +179,7 @@ void describeBindings(DevicesSettings& d, SettingsVisitor& v) {
                 "hold for actions that last, enter for the others.");
         v.text("with", b.with,
                "Another input of the same device, which has to be held at the same time (a chord). "
-               "Empty: none.");
+               "Empty: no other input is needed.");
         v.number("after_s", b.after_s, {0, 60},
                  "How long the input has to be held before it counts, in seconds (a long press). "
                  "Bind the short press of the same input with on: leave; it does not happen when "
@@ -193,8 +193,8 @@ void describePeople(DevicesSettings& d, SettingsVisitor& v) {
            "Time after which the buttons and postures of a device that has stopped working count "
            "as released, in seconds.");
   v.number("turn_s", d.turn_s, {0, 60},
-           "Several people: while one of them acts on the wall, and for this time after, in "
-           "seconds, the input of the others does not move what is shown.");
+           "Time, in seconds, for which a person keeps the wall after acting on it: until it has "
+           "passed, the input of other people does not move what is shown.");
 }
 
 void describeMachine(DevicesSettings& d, SettingsVisitor& v) {
@@ -202,13 +202,12 @@ void describeMachine(DevicesSettings& d, SettingsVisitor& v) {
             "Maximum time that idle CPU cores may take to wake up, for the whole machine, in "
             "microseconds. 0 keeps them from sleeping, which costs power; -1 leaves the system's "
             "setting.");
-  v.choiceOf(
-      "script", d.script, kScripts,
-      "What the emulated person does when merlind runs with --emulate. visit: turns the "
-      "model, rests, grabs it, lets go; turning: always twists the ball; still: does "
-      "nothing; grabbing: makes a fist and opens it in turn while the hand moves; "
-      "alignment: makes the movements that `merlin calibrate tracker` asks for; pushes: those "
-      "that `merlin calibrate ball` asks for.");
+  v.choiceOf("script", d.script, kScripts,
+             "What the emulated person does when merlind runs with --emulate. visit: turns the "
+             "model, rests, grabs it, lets go; turning: always twists the ball; still: does "
+             "nothing; grabbing: makes a fist and opens it in turn while the hand moves; "
+             "alignment: makes the movements that `merlin calibrate tracker` asks for; pushes: "
+             "pushes and twists the ball as `merlin calibrate ball` asks.");
 }
 
 }  // namespace
@@ -225,10 +224,11 @@ void describeDevices(DevicesSettings& d, SettingsVisitor& v) {
       "hand.",
       [&](HandSettings& hand) { describeHand(hand, v); });
   v.group("postures", "Recognition of the gloves' postures.", [&] { describePostures(d, v); });
-  v.group("gestures",
-          "Recognition of the hands' gestures in time. A motion during which an input of the same "
-          "person holds grab, fly or point_at is no gesture.",
-          [&] { describeGestures(d, v); });
+  v.group(
+      "gestures",
+      "Recognition of the hands' gestures in time (motions such as a swipe or a circle). A motion "
+      "during which an input of the same person holds grab, fly or point_at is no gesture.",
+      [&] { describeGestures(d, v); });
   describeBindings(d, v);
   v.group("people", "How the input of several devices and people is combined.",
           [&] { describePeople(d, v); });

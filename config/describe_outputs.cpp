@@ -5,9 +5,9 @@ namespace {
 
 void describeMesh(render::correct::MeshSettings& m, SettingsVisitor& v) {
   v.integer("columns", m.columns, {0, render::correct::kMostMeshSide},
-            "Number of points in a row of the grid, at least 2; 0: no mesh.");
+            "Number of points in each row of the grid, at least 2; 0: no mesh.");
   v.integer("rows", m.rows, {0, render::correct::kMostMeshSide},
-            "Number of rows of points, at least 2; 0: no mesh.");
+            "Number of rows of points in the grid, at least 2; 0: no mesh.");
   v.oneOf("interpolation", m.interpolation, render::correct::kMeshInterpolationNames,
           "How the picture is interpolated between the points: bicubic (smoothly, for curved "
           "screens) or bilinear (in each cell on its own, for screens with creases).");
@@ -18,8 +18,12 @@ void describeMesh(render::correct::MeshSettings& m, SettingsVisitor& v) {
       "its border.",
       [&](render::correct::MeshPoint& p) {
         const Range range{render::correct::kLeastMeshPlace, render::correct::kMostMeshPlace};
-        v.number("x", p.x, range, "From the left border, as a share of the output's width.");
-        v.number("y", p.y, range, "From the top border, as a share of the output's height.");
+        v.number("x", p.x, range,
+                 "Distance of the point from the output's left border, as a share of the output's "
+                 "width.");
+        v.number("y", p.y, range,
+                 "Distance of the point from the output's top border, as a share of the output's "
+                 "height.");
       });
 }
 
@@ -27,15 +31,17 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
   v.numbers("corners", c.corners,
             {-render::correct::kMostCornerOffset, render::correct::kMostCornerOffset},
             "Corner pin: how far the picture's upper left, upper right, lower left and lower right "
-            "corner are moved from the output's corners, in pixels, x to the right and y down "
-            "each. It is applied after mesh or mpcdi.");
+            "corner are moved from the output's corners, in pixels. Each corner has two numbers: x "
+            "(to the right), then y (down). The corner pin is applied after mesh or mpcdi.");
   v.group("mesh", "Warp by a grid of points, each of which is moved on its own.",
           [&] { describeMesh(c.mesh, v); });
-  v.path("mpcdi", c.mpcdi,
-         "MPCDI file (profile 2d) with a measured warp and blend, in place of mesh, the ramps of "
-         "blend and black. Empty: none.");
-  v.text("mpcdi_region", c.mpcdi_region,
-         "Region of the MPCDI file that belongs to this output. Empty: the file's only one.");
+  v.path(
+      "mpcdi", c.mpcdi,
+      "MPCDI file (profile 2d) with a measured warp and blend, which take the place of mesh, of "
+      "the strips of blend and of black: those must not be set as well. Empty: no file is used.");
+  v.text(
+      "mpcdi_region", c.mpcdi_region,
+      "Region of the MPCDI file that belongs to this output. Empty: the only region of the file.");
   v.group(
       "blend",
       "Edge blending: strips of the picture that a neighbour shows as well. The "
@@ -43,24 +49,22 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
       "of the picture.",
       [&] {
         const Range pixels{0, render::correct::kMostCornerOffset};
-        v.flag(
-            "automatic", c.blend.automatic,
-            "Whether left, right, top and bottom are computed: as wide as the strips that other "
-            "tiles of the same screen show as well, by /wall/room or by the tiles' screen_m. For "
-            "an output that shows one tile.");
-        v.number(
-            "left", c.blend.left, pixels,
-            "Width of the strip at the left border in pixels of the picture before the warp; 0: "
-            "none.");
+        v.flag("automatic", c.blend.automatic,
+               "Whether left, right, top and bottom are computed: as the widths of the strips that "
+               "other tiles on the same screen show as well, which follow from /wall/room or from "
+               "screen_m of the tiles. Only for an output that shows a single tile.");
+        v.number("left", c.blend.left, pixels,
+                 "Width of the strip at the left border, in pixels of the picture before the warp; "
+                 "0: no strip.");
         v.number("right", c.blend.right, pixels,
-                 "Width of the strip at the right border in pixels of the picture before the warp; "
-                 "0: none.");
+                 "Width of the strip at the right border, in pixels of the picture before the "
+                 "warp; 0: no strip.");
         v.number("top", c.blend.top, pixels,
-                 "Height of the strip at the top border in pixels of the picture before the warp; "
-                 "0: none.");
+                 "Height of the strip at the top border, in pixels of the picture before the warp; "
+                 "0: no strip.");
         v.number("bottom", c.blend.bottom, pixels,
-                 "Height of the strip at the bottom border in pixels of the picture before the "
-                 "warp; 0: none.");
+                 "Height of the strip at the bottom border, in pixels of the picture before the "
+                 "warp; 0: no strip.");
         v.number(
             "gamma", c.blend.gamma, {render::correct::kLeastGamma, render::correct::kMostGamma},
             "Gamma of the projector or display: light = signal ^ gamma. Blend, colour and black "
@@ -68,15 +72,17 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
       });
   v.group("colour", "Correction of colours, in linear light.", [&] {
     const Range range{-render::correct::kMostColour, render::correct::kMostColour};
-    v.numbers("matrix", c.colour.matrix, range,
-              "Matrix that the light is multiplied by: three rows for red, green and blue of the "
-              "output, of three numbers for red, green and blue of the picture.");
-    v.numbers("gain", c.colour.gain, {0, render::correct::kMostColour},
-              "Factor on the light of red, green and blue, after the matrix.");
+    v.numbers(
+        "matrix", c.colour.matrix, range,
+        "Matrix that the linear light is multiplied by, as nine numbers, row by row: the rows are "
+        "the output's red, green and blue, the columns the picture's red, green and blue.");
+    v.numbers(
+        "gain", c.colour.gain, {0, render::correct::kMostColour},
+        "Three factors on the linear light of red, green and blue, applied after the matrix.");
     v.numbers("gamma", c.colour.gamma,
               {render::correct::kLeastChannelGamma, render::correct::kMostChannelGamma},
-              "Gamma of the output's red, green and blue, as factors on blend.gamma. Above 1 the "
-              "middle tones of the channel become brighter.");
+              "Gamma of the output's red, green and blue, as three factors on the gamma of blend. "
+              "Above 1 the middle tones of the channel become brighter.");
   });
   v.group("black",
           "Raises black outside the blend strips to the level of the overlaps, where the black "
@@ -101,19 +107,20 @@ void describeWindow(render::out::WindowSettings& w, SettingsVisitor& v) {
       "Row of the window's upper left corner on the monitor, in pixels, counted from the top; "
       "-1: in the middle.");
   v.integer("width", w.width, {0, 16384},
-            "Width of the window when it opens, in pixels; 0: that of the output's picture.");
-  v.integer("height", w.height, {0, 16384},
-            "Height of the window when it opens, in pixels; 0: that of the output's picture.");
-  v.flag("fullscreen", w.fullscreen,
-         "Whether the window covers its monitor when it opens. The key F11 changes it.");
+            "Width of the window when it opens, in pixels; 0: the width of the output's picture.");
+  v.integer(
+      "height", w.height, {0, 16384},
+      "Height of the window when it opens, in pixels; 0: the height of the output's picture.");
+  v.flag(
+      "fullscreen", w.fullscreen,
+      "Whether the window covers its monitor when it opens. The key F11 switches this on and off.");
   v.flag("border", w.border, "Whether the desktop draws a frame and a title around the window.");
   v.oneOf("scale", w.scale, render::out::kWindowScaleNames,
           "How the picture is shown in a window of another size. fit: scaled to the largest size "
           "that fits, with black bars; none: at its own size, in the middle of the window.");
-  v.oneOf(
-      "on_close", w.on_close, render::out::kOnCloseNames,
-      "What happens when a person closes the window. health: only this output stops, its health "
-      "says so, and the window is back when merlind is restarted; stop: merlind ends.");
+  v.oneOf("on_close", w.on_close, render::out::kOnCloseNames,
+          "What happens when a person closes the window. health: only this output stops, and its "
+          "health says so; the window opens again when merlind is restarted. stop: merlind ends.");
   v.flag("input", w.input,
          "Whether mouse and keys in the window act on the wall; render/out/window/README.md lists "
          "what they do.");
@@ -127,7 +134,7 @@ void describeKms(render::out::kms::KmsSettings& k, SettingsVisitor& v) {
          "Name of the connector that the display is plugged in at, as in /sys/class/drm, for "
          "example HDMI-A-1. Empty: the first connector that has a display; only for a single "
          "output on its card. *: every connector of the card that has a display and that no other "
-         "output names; that there is none, or no card, is then no fault.");
+         "output names; it is then no fault if there is no such connector, or no card.");
   v.text("mode", k.mode,
          "Mode of the display, WIDTHxHEIGHT or WIDTHxHEIGHT@HZ, for example 1920x1080@60. Empty: "
          "the mode with the size of the picture if the display has one, otherwise the mode that "
@@ -154,9 +161,9 @@ void describeOutputs(std::vector<render::out::OutputSettings>& outputs, Settings
                  "seconds.");
         v.number("check_s", o.check_s, {0, 3600},
                  "Time between two checks of what an output of kind shared_memory or kms really "
-                 "shows, in seconds. What it shows is read back and compared with what was meant; "
-                 "black, frozen or another program's picture is an event of kind picture. 0: "
-                 "never checked.");
+                 "shows, in seconds. What it shows is read back and compared with what was sent; "
+                 "if it is black, frozen or the picture of another program, an event of kind "
+                 "picture reports it. 0: never checked.");
         v.group("window", "The window of an output of kind window.",
                 [&] { describeWindow(o.window, v); });
         v.group("kms", "The display of an output of kind kms.", [&] { describeKms(o.kms, v); });
@@ -177,9 +184,9 @@ void describeOutputs(std::vector<render::out::OutputSettings>& outputs, Settings
                   "Whether the tile is mirrored, for rear projection: horizontal exchanges left "
                   "and right, vertical exchanges top and bottom.");
               v.oneOf("turn_deg", p.turn, render::out::kTurnNames,
-                      "Clockwise rotation of the tile after mirroring, in degrees and in quotes, "
-                      "\"180\", for a projector or display that is mounted on its side or upside "
-                      "down.");
+                      "Clockwise rotation of the tile after mirroring, in degrees, written in "
+                      "quotes, such as \"180\": for a projector or display that is mounted on its "
+                      "side or upside down.");
             });
         v.group("correction",
                 "What is done to the picture so that it looks as meant on this output's screen: "

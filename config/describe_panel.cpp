@@ -5,8 +5,8 @@ namespace merlin {
 void describePanel(GpioSettings& g, SettingsVisitor& v) {
   v.text("chip", g.chip,
          "GPIO chip of the control panel: gpiochip0, /dev/gpiochip0, or its label as gpiodetect "
-         "prints it, which an adapter keeps when it is plugged in again while its number changes. "
-         "Empty: there is no panel.");
+         "prints it. An adapter that is plugged in again may get another number, but keeps its "
+         "label. Empty: there is no panel.");
   v.integer("projector_line", g.projector_line, {-1, 1023},
             "Number of the GPIO line that merlind sets high to power the projectors; -1: no such "
             "line.");
@@ -18,8 +18,8 @@ void describePanel(GpioSettings& g, SettingsVisitor& v) {
             "line.");
   v.flag("lamp_warns", g.lamp_warns,
          "Whether the status lamp blinks fast, whatever it was switched to, while an output of the "
-         "wall fails or shows something else than it was sent, or while the wall that ran has not "
-         "run for 15 seconds.");
+         "wall fails or shows something else than it was sent, or while the wall, after it has "
+         "run, has been stopped for 15 seconds or longer.");
   v.integer("button_line", g.button_line, {-1, 1023},
             "Number of the GPIO line that is high while the panel's button is pressed; -1: no such "
             "line.");

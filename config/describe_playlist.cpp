@@ -11,9 +11,9 @@ void describePlaylist(PlaylistSettings& p, SettingsVisitor& v) {
   v.number("hold_s", p.hold_s, {1, 86'400},
            "Time in seconds for which the playlist shows each content, and each slide.");
   v.number("turn_deg_per_s", p.turn_deg_per_s, {-90, 90},
-           "Degrees per second by which the playlist turns a model about the vertical axis, its "
-           "front to the right, and the view of a panorama to the right; negative: to the left. "
-           "Pictures and slides stand still. 0: nothing turns.");
+           "Angular speed, in degrees per second, at which the playlist turns a model about the "
+           "vertical axis (its front moves to the right) and the view of a panorama (to the "
+           "right); negative: to the left. Pictures and slides stand still. 0: nothing turns.");
   v.texts("contents", p.contents,
           "Names of the contents that the playlist shows, in this order. Empty: all contents of "
           "the configuration.");

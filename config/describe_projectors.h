@@ -1,5 +1,4 @@
-// The part of the description of the settings that is /projectors and
-// /projector_schedule.
+// The part of describe() that is /projectors and /projector_schedule.
 #pragma once
 
 #include "config/settings.h"

@@ -87,19 +87,19 @@ void describeRender(render::frame::RenderSettings& r, SettingsVisitor& v) {
   v.numbers("show_range", r.model.show.range, {-1e9, 1e9},
             "Values of the feature named by show at the first and last colour of the scale. Two "
             "equal numbers: from the 1st to the 99th percentile of the model's values.");
-  v.flag(
-      "view_dependent", r.model.view_dependent,
-      "Whether the resolution depends on the view: most triangles are in the parts of the model "
-      "that the tiles show, and more densely near the eye. Otherwise the resolution is uniform.");
+  v.flag("view_dependent", r.model.view_dependent,
+         "Whether the resolution of the model depends on the view: most triangles are in the parts "
+         "of the model that the tiles show, and more densely near the eye. Otherwise the "
+         "resolution is uniform.");
   v.number("geomorph", r.model.geomorph, {0, 0.5},
            "Share of the triangles whose vertices move gradually to the position where they will "
            "merge (geomorphs), so that a change of detail is not visible as a jump. 0: vertices "
            "jump.");
-  v.integer(
-      "picture_memory_mb", r.picture_memory_mb, {0, 65'536},
-      "Most memory that the tiles of the shown picture take, in megabytes: in main memory and in "
-      "the textures of all drawing contexts together. 0: as much as full detail takes on this "
-      "wall, and at least 192. With less than full detail takes, pictures are shown coarser.");
+  v.integer("picture_memory_mb", r.picture_memory_mb, {0, 65'536},
+            "Maximum memory for the tiles of the image pyramid that is shown, in MiB: in main "
+            "memory and in the textures of all drawing contexts together. 0: the memory that full "
+            "detail takes on this wall, but at least 192. With less memory than that, pictures are "
+            "shown in less detail.");
   v.integer("fade_frames", r.fade_frames, {1, 30},
             "Number of frames over which a finer image of a still scene is faded in over the "
             "coarser one; 1: the finer image is shown at once.");

@@ -9,8 +9,9 @@ void describeShown(ShownSettings& s, SettingsVisitor& v) {
          "Empty: INSTANCE.shown beside the file of the state (/state_file).");
   v.integer("limit_mb", s.limit_mb, {1, 1e6},
             "Maximum size of all files in the content folder together, in megabytes. After a file "
-            "is shown, the oldest are removed until they take half of it; the one that is shown "
-            "and the one before it stay.");
+            "is shown, the oldest files are removed until the rest takes at most half of this "
+            "size; the file that is shown, the one that was shown before it and those that the "
+            "configuration names stay.");
 }
 
 }  // namespace merlin

@@ -13,14 +13,15 @@ void describeHead(render::stereo::HeadSettings& h, SettingsVisitor& v) {
             "of the viewer. 0: the head is not tracked.");
   v.numbers("origin_m", h.origin_m, {-1000, 1000},
             "Place in the room, x, y, z in metres, where the viewer's eyes are when the station "
-            "reports the position 0, 0, 0: the place of the tracker's transmitter, less the way "
-            "from the eyes to the receiver on the head. Without /wall/room it is relative to the "
-            "eye for which the tiles are set.");
+            "reports the position 0, 0, 0. It is the position of the tracker's transmitter minus "
+            "the vector from the eyes to the receiver on the head. Without /wall/room it is "
+            "relative to the eye for which the tiles are set.");
   v.numbers("axes", h.axes, {-3, 3},
             "Axes of the tracker that correspond to the room's x (right), y (up) and z (towards "
             "the person): 1 is x, 2 is y, 3 is z; a negative number reverses the axis.");
   v.number("scale", h.scale, {0.01, 100},
-           "Factor on the positions that the station reports; 1: they are true metres.");
+           "Factor that the positions reported by the station are multiplied by; 1: they are true "
+           "metres.");
   v.number("dead_band_m", h.dead_band_m, {0, 1},
            "Distance in metres that a head at rest must move until that counts as motion. It must "
            "be larger than the tracker's noise, so that the picture becomes finer when the viewer "
@@ -40,13 +41,14 @@ void describeStereo(render::stereo::StereoSettings& s, bool from_room, SettingsV
           "picture above; anaglyph, one picture for glasses with red on the left eye and cyan on "
           "the right one; two_outputs, one output shows NAME.L and another one NAME.R. off: one "
           "picture for both eyes.");
-  v.oneOf("size", s.size, render::stereo::kEyeSizeNames,
-          "Size of each eye's picture in the modes side_by_side and top_bottom. half: half of the "
-          "tile's width or height, so that both together are as large as the tile, as most 3D "
-          "projectors expect. full: as large as the tile. An output without tiles is sent the "
-          "frame: with half it has a pair in the place of each tile, as several projectors on one "
-          "signal need it; with full all left eyes' pictures come first and then all right eyes', "
-          "as one 3D display of several tiles needs it.");
+  v.oneOf(
+      "size", s.size, render::stereo::kEyeSizeNames,
+      "Size of each eye's picture in the modes side_by_side and top_bottom. half: half of the "
+      "tile's width or height, so that both together are as large as the tile, as most 3D "
+      "projectors expect. full: as large as the tile. An output without tiles is sent the whole "
+      "frame: with half, the pair of pictures of each tile is in the place of that tile, as "
+      "several projectors on one signal need it; with full, the left eye's pictures of all tiles "
+      "come first, then the right eye's, as one 3D display that shows several tiles needs it.");
   v.number("eye_separation_m", s.eye_separation_m, {0, 10},
            "Distance between the viewer's eyes in metres, usually 0.05 to 0.075.");
   if (from_room) {
@@ -56,7 +58,7 @@ void describeStereo(render::stereo::StereoSettings& s, bool from_room, SettingsV
   } else {
     v.number("screen_distance_m", s.screen_distance_m, {0, 1000},
              "Distance from the eye to the screen of each tile that has no screen_m, in metres: "
-             "what is as far away is in the plane of the screen. 0: the distance "
+             "objects at this distance appear in the plane of the screen. 0: the distance "
              "/wall/scene/wall_distance_m.");
   }
   v.numbers("eyes_direction", s.eyes_direction, {-1000, 1000},
@@ -78,11 +80,14 @@ void describeView(render::tiles::TileCamera& view, render::tiles::FreeCamera& ca
           "The camera that is used if \"view\" is \"free\". Positions are relative to the midpoint "
           "between the viewer's eyes (x right, y up, z towards the person), in metres.",
           [&] {
-            v.numbers("eye_m", camera.eye_m, {-1000, 1000}, "Where the camera stands.");
+            v.numbers("eye_m", camera.eye_m, {-1000, 1000},
+                      "Position of the camera relative to the midpoint between the viewer's eyes: "
+                      "x, y, z in metres.");
             v.numbers("look_at_m", camera.look_at_m, {-1000, 1000},
-                      "Place that is in the middle of the camera's picture.");
+                      "Point that is in the middle of the camera's picture, relative to the "
+                      "midpoint between the viewer's eyes: x, y, z in metres.");
             v.numbers("up", camera.up, {-1000, 1000},
-                      "Direction that is upwards in the camera's picture.");
+                      "Direction that is upwards in the camera's picture: x, y, z, of any length.");
             v.number("field_of_view_deg", camera.field_of_view_deg, {1, 179},
                      "The camera's horizontal field of view in degrees.");
           });

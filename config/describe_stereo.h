@@ -10,7 +10,7 @@ namespace merlin {
 
 void describeView(render::tiles::TileCamera& view, render::tiles::FreeCamera& camera,
                   SettingsVisitor& visitor);
-// `from_room`: the room says how far away each screen is.
+// `from_room`: a room is given, which determines the distance of each screen.
 void describeStereo(render::stereo::StereoSettings& stereo, bool from_room,
                     SettingsVisitor& visitor);
 

@@ -26,24 +26,25 @@ void describeInput(InputSettings& in, SettingsVisitor& v) {
 }
 
 void describeContents(std::vector<ContentSettings>& contents, SettingsVisitor& v) {
-  v.listOf<ContentSettings>("contents", contents,
-                            "Further contents, which the command next_content shows in turn. "
-                            "Each names a model, a picture or a folder of slides.",
-                            [&](ContentSettings& c) {
-                              v.text("name", c.name,
-                                     "Name of the content, for `merlin show`; empty: the name of "
-                                     "its file without the ending.");
-                              v.path("model", c.model, "Multiresolution model, an .mrm file.");
-                              v.path("picture", c.picture,
-                                     "Picture or panorama, a pyramid (.tif) that `merlin image "
-                                     "import` makes.");
-                              v.path("slides", c.slides,
-                                     "Folder of pyramids (.tif), which next_content shows one "
-                                     "after another, in the order of their names.");
-                              v.oneOf("show_as", c.show_as, render::content::kShowAsNames,
-                                      "Kind of the picture or the slides. marked: a panorama if "
-                                      "it was imported with --panorama, otherwise a plane.");
-                            });
+  v.listOf<ContentSettings>(
+      "contents", contents,
+      "Further contents, which the command next_content shows in turn. "
+      "Each names a model, a picture or a folder of slides.",
+      [&](ContentSettings& c) {
+        v.text("name", c.name,
+               "Name of the content, for `merlin show`; empty: the name of "
+               "its file without the ending.");
+        v.path("model", c.model, "Multiresolution model that is this content, an .mrm file.");
+        v.path("picture", c.picture,
+               "Picture or panorama that is this content: a pyramid (.tif), which `merlin image "
+               "import` makes.");
+        v.path("slides", c.slides,
+               "Folder of slides, which are pyramids (.tif); next_content shows them one after "
+               "another, in the order of their names.");
+        v.oneOf("show_as", c.show_as, render::content::kShowAsNames,
+                "How the picture or the slides are shown: as a plane or as a panorama. marked: a "
+                "panorama if it was imported with --panorama, otherwise a plane.");
+      });
 }
 
 void describeRate(render::governor::GovernorSettings& governor, SettingsVisitor& v) {
@@ -73,8 +74,8 @@ void describeOperator(render::text::OperatorSettings& tile, SettingsVisitor& v) 
     v.flag("panel", tile.panel,
            "Whether the operator's tile (the first one of at least 320 x 240 pixels) has a panel "
            "with buttons for kind of content, content, pan, tilt, zoom, rate, detail, projectors "
-           "and lamp. A mouse or a finger in a window, a VNC client and, after the action "
-           "operator_panel, the ball work it.");
+           "and lamp. The panel is operated with a mouse or a finger in a window, from a VNC "
+           "client or, after the action operator_panel, with the ball.");
   });
 }
 
@@ -83,12 +84,12 @@ void describeOperator(render::text::OperatorSettings& tile, SettingsVisitor& v) 
 void describeWall(WallSettings& w, SettingsVisitor& v) {
   describeInput(w.input, v);
   v.path("model", w.model,
-         "Multiresolution model that is shown first, an .mrm file; empty: the first of contents is "
-         "shown first.");
+         "Multiresolution model that is shown first, an .mrm file. Empty: the first entry of "
+         "contents is shown first.");
   describeContents(w.contents, v);
   v.group("playlist",
-          "What the wall shows while nobody touches it: its contents in turn. It ends at the first "
-          "touch, with the content that is shown then, at full brightness.",
+          "What the wall shows while nobody touches it: its contents in turn. The first input ends "
+          "it; the content that is shown at that moment stays, at full brightness.",
           [&] { describePlaylist(w.playlist, v); });
   v.group("shown", "Files that `merlin show FILE` shows.", [&] { describeShown(w.shown, v); });
   describeRate(w.governor, v);

@@ -1,4 +1,5 @@
-// Checks of /devices, /hands, and of what names a device elsewhere: bindings, the viewer's head.
+// Checks of /devices and /hands, and of other settings that name a device: bindings, the viewer's
+// head.
 #pragma once
 
 #include "config/loader.h"
@@ -8,8 +9,8 @@ namespace merlin {
 // Adds a finding to `loaded` for each fault. REQUIRES: completeDevices().
 void checkDevices(LoadedSettings& loaded);
 
-// Whether the port is that at which merlind itself serves by /serve/vrpn_port: a device that is
-// read there would feed itself. By the address as it is written: names are not looked up.
+// Whether the port is merlind's own VRPN server (/serve/vrpn_port), so that a device that is read
+// there would feed itself. Compares the address as it is written; host names are not resolved.
 bool isOwnVrpnServer(const PortAddress& port, const ServeSettings& serve);
 
 // Adds the faults as findings. `group`: JSON pointer to which the faults' pointers are relative.

@@ -1,4 +1,5 @@
-// What a configuration leaves to the drivers: names and speeds of devices.
+// Completes what a configuration leaves to the drivers, names and speeds of devices, and finds
+// devices.
 #pragma once
 
 #include "config/settings.h"

@@ -5,8 +5,8 @@
 
 namespace merlin {
 
-// The same wall with the tiles of both eyes, and outputs that show them; without stereo and without
-// a tracked head, as it was. REQUIRES: loadSettings() found nothing.
+// Returns the wall with the tiles of both eyes, and outputs that show them; without stereo and
+// without a tracked head, the wall is unchanged. REQUIRES: loadSettings() found no fault.
 WallSettings drawnWall(const WallSettings& wall);
 
 }  // namespace merlin

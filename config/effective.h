@@ -17,9 +17,9 @@ struct SettingValue {
   bool operator==(const SettingValue&) const = default;
 };
 
-// Every setting, in the order of written files; a list of objects gives the settings of its entries
-// or, without any, itself. The default of an entry's setting is that of the default list's entry if
-// both lists are equally long; otherwise that of a new entry.
+// Returns every setting, in the order of written files. A list of objects is represented by the
+// settings of its entries, or by itself if it is empty. The default of an entry's setting is that
+// of the default list's entry if both lists are equally long; otherwise that of a new entry.
 std::vector<SettingValue> valuesOf(const Settings& settings, Secrets secrets = Secrets::kWritten);
 
 struct SettingChange {
@@ -28,15 +28,15 @@ struct SettingChange {
   bool operator==(const SettingChange&) const = default;
 };
 
-// What differs, in the order of written files. Cost: O(settings log settings).
+// Returns the settings that differ, in the order of written files. Cost: O(settings log settings).
 std::vector<SettingChange> changesBetween(const Settings& before, const Settings& after,
                                           Secrets secrets = Secrets::kWritten);
 
-// What differs from the defaults.
+// Returns the settings that differ from the defaults.
 std::vector<SettingChange> changesFromDefaults(const Settings& settings,
                                                Secrets secrets = Secrets::kWritten);
 
-// Names of the files that hold secrets, those that `settings` set.
+// Returns the names of files with secrets, as far as `settings` names such files.
 std::vector<std::string> secretFilesOf(const Settings& settings);
 
 }  // namespace merlin

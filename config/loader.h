@@ -1,4 +1,4 @@
-// Reads a configuration, a file and those of conf.d beside it, and reports all findings at once,
+// Reads a configuration (a file and those of conf.d beside it), and reports all findings at once,
 // each with the file, the line, the JSON pointer, what was found and what is allowed.
 #pragma once
 
@@ -41,21 +41,22 @@ struct LoadedSettings {
   Settings settings;              // meaningful unless the verdict is kInvalid
   std::vector<Finding> findings;  // the first ones, in the order of the files and their lines
   std::size_t left_out = 0;       // number of further findings, not kept
-  // Line of each setting that the files have, by pointer, counted through all files: placeAt().
+  // Line of each setting that the files have, by pointer. Lines are counted through all files;
+  // placeAt() converts them.
   std::map<std::string, int> lines;
   std::vector<Source> sources;
-  bool parsed = false;  // false: not even that; the findings say why, and settings are the defaults
+  bool parsed = false;  // false: not parsed (see findings); settings are the defaults
 
   Verdict verdict() const;
-  // Line of a setting; if no file has the setting, the line of the innermost enclosing group that
-  // one has; 0 if there is no such group. Counted through all files.
+  // Line of a setting; if no file has the setting, the line of the innermost enclosing group that a
+  // file has; 0 if there is no such group. Counted through all files.
   int lineOf(const std::string& pointer) const;
-  // The file and its line; 0 is line 0 of the configuration itself.
+  // Converts a line that is counted through all files to its file and the line there; 0 becomes
+  // line 0 of the configuration itself.
   Place placeAt(int line) const;
   // Where a setting stands, for messages: "line 3", or with the file of conf.d "FILE:3".
   std::string placeText(const std::string& pointer) const;
-  // Adds a finding; its line is counted through all files. Cost: constant, but for the files'
-  // number.
+  // Adds a finding; its line is counted through all files. Cost: O(files).
   void add(Finding finding);
   // Adds a finding that makes the file invalid.
   void addFinding(const std::string& pointer, std::string what);

@@ -1,12 +1,12 @@
-// Settings that have no effect alone.
+// Checks of settings that have no effect without another setting.
 #pragma once
 
 #include "config/loader.h"
 
 namespace merlin {
 
-// Adds a finding for each setting that the configuration sets, to another value than the default,
-// without another one that it needs. REQUIRES: the devices are complete (config/devices.h).
+// Adds a finding for each setting that the configuration sets to a value other than the default,
+// without another setting that it needs. REQUIRES: the devices are complete (config/devices.h).
 void checkNeeds(LoadedSettings& loaded);
 
 }  // namespace merlin

@@ -28,13 +28,14 @@ namespace merlin {
 
 // A device that is read: how it is reached, and what its driver is told.
 struct DeviceSettings {
-  std::string name;    // of its slots in shared memory, in the status and in bindings; unique
+  std::string name;    // unique; used for its slots in shared memory, in the status and in bindings
   std::string person;  // whose it is; devices of one person act on the wall at the same time
   LineSettings line;
-  DriverSettings own;  // of which line.driver uses its part
+  DriverSettings own;  // settings of all drivers; line.driver uses its own part
 };
 
-// "glove", "tracker" and "ball", of 1998's drivers and without ports.
+// Returns "glove", "tracker" and "ball", with the drivers cyberglove, fastrak and spaceball and
+// without ports.
 std::vector<DeviceSettings> defaultDevices();
 
 struct DevicesSettings {
@@ -42,7 +43,7 @@ struct DevicesSettings {
   std::vector<HandSettings> hands = {{}};
   GpioSettings gpio;
   std::vector<PjlinkSettings> projectors;
-  std::vector<SwitchingTimes> projector_schedule;  // also of those at gpio.projector_line
+  std::vector<SwitchingTimes> projector_schedule;  // also for projectors at gpio.projector_line
   std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
   bool posture_drift = true;  // whether slow drift of the glove's sensors is followed
@@ -59,19 +60,18 @@ struct DevicesSettings {
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 
-// What a configuration without any lacks, for messages: "has no ...", "needs ...".
+// For messages, after "has no" or "needs": what is missing in a configuration without projectors.
 inline constexpr const char* kProjectorsNeeded =
     "projectors: /projectors is empty, and /gpio has no chip with a projector_line";
 
 // Another machine whose devices the wall uses instead of this machine's.
 struct InputSettings {
-  std::string
-      endpoint;  // "tcp://HOST:PORT" of another merlind; empty: this machine's shared memory
+  std::string endpoint;    // "tcp://HOST:PORT" of another merlind; empty: use this machine's
   std::string server_key;  // that merlind's public key
   std::string keys;        // file with this machine's key pair
 };
 
-// One of the three files is named.
+// A content: exactly one of `model`, `picture` and `slides` is set.
 struct ContentSettings {
   std::string name;     // empty: the file's name without its ending
   std::string model;    // an .mrm file
@@ -82,13 +82,13 @@ struct ContentSettings {
 
 struct WallSettings {
   InputSettings input;
-  std::string model;                      // an .mrm file, shown first; empty: the first content is
+  std::string model;                      // an .mrm file, shown first; empty: contents[0] is first
   std::vector<ContentSettings> contents;  // further contents, shown in turn by next_content
   PlaylistSettings playlist;
   ShownSettings shown;
   render::governor::GovernorSettings governor;
-  render::room::RoomSettings room;     // instead of tiles by hand
-  render::tiles::TilesSettings tiles;  // loadSettings() makes them from the room if that is given
+  render::room::RoomSettings room;     // alternative to `tiles`
+  render::tiles::TilesSettings tiles;  // computed by loadSettings() if a room is given
   render::stereo::StereoSettings stereo;
   render::scene::SceneSettings scene;
   render::frame::RenderSettings render;
@@ -104,7 +104,8 @@ struct Settings {
   // Folder for sockets and the emulators' pseudo-terminals; empty: /run/merlin for root, the user's
   // own run directory for others.
   std::string run_directory;
-  // File of what people change at run time; empty: one in systemd's or the user's folder for state.
+  // File for settings that people change at run time; empty: one in systemd's or the user's folder
+  // for state.
   std::string state_file;
   DevicesSettings devices;
   WallSettings wall;

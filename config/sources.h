@@ -11,12 +11,13 @@
 
 namespace merlin {
 
-// Of conf.d. All files of a configuration together have at most kMostJsonBytes, as one alone.
+// Maximum number of files in conf.d. All files of a configuration together may have at most
+// kMostJsonBytes, like a single one.
 inline constexpr std::size_t kMostConfDFiles = 64;
 
-// Parses the text of a file that is to be an object; `file` is its name, empty for a text without
-// one. The lines of the tree follow those of the files before. After an error, which becomes a
-// finding of `loaded`, nothing.
+// Parses the text of a file, which must be a JSON object; `file` is its name, empty for a text
+// without one. Line numbers in the tree continue those of the files before. An error becomes a
+// finding of `loaded`; then nothing is returned.
 std::optional<JsonNode> parseSource(std::string_view text, const std::string& file,
                                     LoadedSettings& loaded);
 

@@ -1,5 +1,5 @@
 // The process of `merlind --role alarms`: starts the programs of /alarms when something happens. It
-// has no other role, so that it stays, and tells of it, when a merlind ends.
+// has no other role, so that it keeps running when another merlind ends, and can report that.
 #pragma once
 
 #include <functional>
@@ -10,9 +10,9 @@
 
 namespace merlin {
 
-// Runs until it is asked to stop or to start again, as askedBySignal() says, and returns which;
-// notifies systemd of its start and of progress. Events before its start are not told. REQUIRES:
-// SIGTERM, SIGINT and SIGHUP are blocked.
+// Runs until it is asked to stop or to start again, as askedBySignal() says, and returns which of
+// the two; notifies systemd of its start and its progress. Events before its start raise no alarm.
+// REQUIRES: SIGTERM, SIGINT and SIGHUP are blocked.
 Asked runAlarms(const Settings& settings, Clock& clock, const std::function<bool()>& is_valid);
 
 }  // namespace merlin

@@ -14,8 +14,8 @@ struct DaemonOptions {
   bool devices = true, wall = true;  // the roles of this process
   bool emulate = false;
   bool page = false;    // the role page; without devices and wall
-  bool alarms = false;  // the role alarms; the same
-  // Where the settings are kept with which the process runs; empty: nowhere.
+  bool alarms = false;  // the role alarms; without devices and wall
+  // The file in which the settings in effect are kept; empty: they are not kept.
   std::string last_good{};
 };
 
@@ -24,13 +24,13 @@ struct Configuration {
   // For the role wall; not to be used if the verdict is kInvalid.
   std::vector<wall::WallContent> contents;
   std::string file;
-  // Why this is not the configuration of `file`, but the one before it (daemon/last_good.h), a
-  // sentence; empty: it is that of the file.
+  // A sentence: why this is not the configuration of `file` but the previous one
+  // (daemon/last_good.h); empty: it is that of the file.
   std::string instead_of{};
 };
 
-// kAgain: merlind runs with a configuration of this file: the contents and the renderer are not
-// read, which may take long.
+// kAgain: merlind already runs with a configuration of this file; contents and renderer are not
+// read again, because that may take long.
 enum class Reading { kStart, kAgain };
 
 // Reads the file and all other files that merlind reads when it starts with these roles; files that

@@ -46,14 +46,14 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Runs until SIGTERM or SIGINT; SIGHUP: reads the configuration again. Also returns, with
-  // startsAgain(), once it was read and has changes that only a start takes. Tells systemd when the
+  // Runs until SIGTERM or SIGINT; on SIGHUP it reads the configuration again. If that has changes
+  // that only a start can apply, it returns too, and startsAgain() is true. Tells systemd when the
   // first frame is shown, and from then on that every thread still makes progress (its watchdog).
   // Errors: those of starting the servers; the first frame could not be drawn; kClosed (stopped
   // before the first frame); a thread has ended unexpectedly.
   Result<Ok> run();
   bool startsAgain() const noexcept { return starts_again_; }
-  // For the start that follows, what is to stay open meanwhile: see ProgramRestart.
+  // Returns the files that are to stay open for the next start: see ProgramRestart.
   std::vector<std::pair<std::string, UniqueFd>> handOver() { return kept_files_.handOver(); }
 
  private:
@@ -79,7 +79,7 @@ class Daemon {
   // Members are destroyed from the last to the first: an object that calls others is declared after
   // them, so that it is destroyed first.
   Settings settings_;
-  Reloader::Configured configured_;          // as the files have it; moved into reloader_
+  Reloader::Configured configured_;          // as configured in the files; moved into reloader_
   const std::string file_, instead_of_;      // Configuration's
   std::vector<wall::WallContent> contents_;  // moved into wall_ when that is created
   DaemonOptions options_;
@@ -94,18 +94,18 @@ class Daemon {
   std::atomic<bool> closed_{false};  // a person closed a window whose on_close is "stop"
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<RemoteDevices> remote_devices_;  // if /wall/input names another machine
-  // Of a process with a wall whose devices are read by another process of this machine.
+  // Only in a process with a wall whose devices are read by another process of this machine.
   std::unique_ptr<DevicesBeside> devices_beside_;
   actions::ActionReader device_actions_;
   std::unique_ptr<devices::WallFault> wall_fault_;  // if the panel's lamp warns
   std::string warned_of_;                           // what the lamp warns of; empty: nothing
-  // Of a process with a wall or projectors; used by wall_ and devices_.
+  // Only in a process with a wall or projectors; used by wall_ and devices_.
   std::unique_ptr<state::StateKeeper> keeper_;
   std::optional<Reloader> reloader_;
   std::unique_ptr<LastGoodKeeper> last_good_;  // if DaemonOptions::last_good names a file
   std::optional<RoleCommands> commands_;
   std::unique_ptr<wall::SnapshotWriter> snapshots_;  // called by wall_
-  std::unique_ptr<wall::CrashFrame> crash_frame_;    // if the wall's process before this crashed
+  std::unique_ptr<wall::CrashFrame> crash_frame_;    // only if the wall's previous process crashed
   std::unique_ptr<wall::WallRole> wall_;
   std::unique_ptr<devices::DevicesRole> devices_;
   std::optional<RoleServers> servers_;  // clients' commands call all members above

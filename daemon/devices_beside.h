@@ -1,5 +1,5 @@
-// DevicesBeside: the role devices in another process of this machine, as the process of the wall
-// sees it: gives it the commands of the operator's panel, and knows its projectors.
+// DevicesBeside: connects the wall's process to the role devices in another process of this
+// machine: passes it the commands of the operator's panel, and follows the state of its projectors.
 #pragma once
 
 #include <functional>
@@ -19,14 +19,15 @@ class DevicesBeside {
  public:
   explicit DevicesBeside(const std::string& instance);
 
-  // Has the command sent by the next update(). Thread-safe. Errors: kBusy: too many wait.
+  // Queues the command, which the next update() sends. Thread-safe. Errors: kBusy (too many wait).
   Result<Ok> send(const std::string& command, Timestamp now);
 
-  // On one thread, ten times a second: sends, and takes what has arrived; never waits. Calls
-  // `refused` with the reason for each command that was not executed.
+  // To be called on one thread, ten times a second: sends commands and takes what has arrived;
+  // never waits. Calls `refused` with the reason for each command that was not executed.
   void update(Timestamp now, const std::function<void(const std::string& why)>& refused);
 
-  // Of the newest status document; none while the role does not run. On the thread of update().
+  // The projectors in the newest status document; none while the role does not run. To be called on
+  // the thread of update().
   const std::vector<wall::ProjectorsSeen>& projectors() const noexcept { return projectors_; }
 
  private:

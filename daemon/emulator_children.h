@@ -22,14 +22,14 @@ class EmulatorChildren {
   EmulatorChildren& operator=(const EmulatorChildren&) = delete;
   ~EmulatorChildren();  // ends the processes
 
-  // Starts a process for each device of which there is an emulator, and sets the device's port in
-  // `settings` to the link to its pseudo-terminal: a port pty:PATH is kept, any other is replaced
-  // by a path in the run directory. Other devices are read as configured. REQUIRES: no thread has
-  // been started. Errors: kIo.
+  // Starts a process for each device that has an emulator, and sets the device's port in `settings`
+  // to the link to its pseudo-terminal: a port pty:PATH is kept, any other is replaced by a path in
+  // the run directory. Other devices are read as configured. REQUIRES: no thread has been started.
+  // Errors: kIo.
   static Result<EmulatorChildren> start(Settings& settings, const std::string& run_directory);
 
   struct Emulated {
-    std::string device, driver;  // its name, and what is emulated
+    std::string device, driver;  // the device's name, and the driver that is emulated
   };
   // The devices whose emulator process has ended since the last call.
   std::vector<Emulated> takeEnded();

@@ -21,11 +21,11 @@ class KeptBySystemd final : public KeptFiles {
   UniqueFd take(const std::string& name) override;
   bool keep(const std::string& name, int fd) override;
   void forget(const std::string& name) override;
-  // Forgets what the process before this one kept and nobody has taken: a card that is not used any
-  // more would show its last picture for ever.
+  // Forgets the files that the previous process kept and that nobody has taken, since a graphics
+  // card that is no longer used would otherwise show its last picture for ever.
   void forgetUntaken();
-  // What is kept, by name, for ProgramRestart: the service goes on, so that systemd hands over
-  // nothing.
+  // Returns the kept files, by name, for ProgramRestart: since the service goes on, systemd hands
+  // over nothing.
   std::vector<std::pair<std::string, UniqueFd>> handOver();
 
  private:

@@ -13,24 +13,24 @@
 
 namespace merlin {
 
-// The configuration that `file` (state::lastGoodFile()) keeps instead of that in `broken`, checked
-// as any other, with the reason why it is used; nothing if none is kept, or if what is kept is not
-// valid (any more).
+// Returns the configuration kept in `file` (state::lastGoodFile()), to replace `broken`; it is
+// checked as any other, and has the reason why it is used. Nothing if none is kept, or if the kept
+// one is not valid (any more).
 std::optional<Configuration> readLastGood(const std::string& file, const Configuration& broken,
                                           const DaemonOptions& options);
 
-// Writes on a thread of its own: a disk may take its time, and holds nobody up. Thread-bound.
+// Writes on a thread of its own, so that a slow disk delays nobody. Thread-bound.
 class LastGoodKeeper {
  public:
-  // `configuration`: the file whose settings are kept in `file`, which at most those may read who
-  // may read each file of the configuration, and never others than its owner and its group: it has
-  // all that stands in them. `watch` outlives this.
+  // `configuration`: the file whose settings are kept in `file`. Only those who may read every file
+  // of the configuration may read `file`, and at most its owner and group, since it contains
+  // everything that is in them. `watch` must outlive this object.
   LastGoodKeeper(std::string file, const std::string& configuration, ThreadWatch& watch);
   ~LastGoodKeeper();  // writes what is not written yet
   LastGoodKeeper(const LastGoodKeeper&) = delete;
   LastGoodKeeper& operator=(const LastGoodKeeper&) = delete;
 
-  // A file that cannot be written is said in the log, once for each reason.
+  // Keeps these settings. If the file cannot be written, the log says so, once for each reason.
   void keep(const Settings& settings);
 
  private:

@@ -1,5 +1,5 @@
-// Files that the configuration names and whose contents take effect as its own settings do: a file
-// that keeps its name may have changed.
+// Files that the configuration names and whose contents take effect like its own settings. They are
+// compared by content, since a file may change and keep its name.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ using NamedFiles = std::map<std::string, NamedFile>;
 // files).
 NamedFiles readNamedFiles(const Settings& settings);
 
-// A change for each file that has the same name in both and other contents. The names are compared
-// as settings are.
+// Returns a change for each file that has the same name but different contents in the two. Changed
+// names are found by comparing the settings.
 std::vector<SettingChange> changesBetween(const NamedFiles& before, const NamedFiles& after);
 
 }  // namespace merlin

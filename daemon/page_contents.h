@@ -8,8 +8,9 @@
 
 namespace merlin {
 
-// In the order in which the wall shows them; an entry that names no file is left out. Pictures and
-// the first of slides are read as the wall reads them, with its checks and limits.
+// Returns the contents in the order in which the wall shows them; an entry that names no file is
+// left out. Pictures, and the first slide of a folder, are read as the wall reads them, with its
+// checks and limits.
 std::vector<page::PageContent> pageContents(const WallSettings& wall);
 
 }  // namespace merlin

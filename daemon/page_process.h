@@ -1,5 +1,5 @@
 // The process of `merlind --role page`: serves the operator's web page. It has no other role, so
-// that it stays while the wall is restarted, and a fault of one cannot stop the other.
+// that it keeps running while the wall is restarted, and a fault in one cannot stop the other.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@
 
 namespace merlin {
 
-// Runs until it is asked to stop or to start again, as askedBySignal() says, and returns which;
-// notifies systemd of its start and of progress. A port that is in use is no error: it is tried
-// again every five seconds. With a page that is switched off it only waits. REQUIRES: SIGTERM,
+// Runs until it is asked to stop or to start again, as askedBySignal() says, and returns which of
+// the two; notifies systemd of its start and its progress. A port that is in use is no error: it is
+// tried again every five seconds. If the page is switched off, it only waits. REQUIRES: SIGTERM,
 // SIGINT and SIGHUP are blocked; no thread has been started. Errors: kBusy (another process serves
 // the page of this instance), kIo (the run directory or the token's file), a thread has ended
 // unexpectedly.

@@ -15,11 +15,11 @@ class ProgramRestart {
   // Remembers the arguments and the environment. To be made before anything changes them.
   ProgramRestart(int argc, char** argv);
 
-  // Begins the program anew as it was started: its process id stays, so that a service manager sees
-  // no end of the service, and all open files are closed but standard input, output and error.
+  // Executes the program anew, as it was started. The process id stays, so that a service manager
+  // sees no end of the service; all open files are closed except standard input, output and error.
   // `kept`: files that the new program takes over, by name, as it does those of systemd's
   // descriptor store (KeptBySystemd). Returns only if the program cannot be started: kIo. REQUIRES:
-  // everything that ends in order has ended, since other threads just stop.
+  // everything that needs an orderly end has ended, since all other threads just stop.
   Error now(const std::vector<std::pair<std::string, UniqueFd>>& kept) const;
 
  private:

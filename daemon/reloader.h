@@ -1,4 +1,4 @@
-// Reloader: has merlind read its configuration again: by SIGHUP, and by the command reload.
+// Reloader: lets merlind read its configuration again, on SIGHUP or the command reload.
 #pragma once
 
 #include <condition_variable>
@@ -25,46 +25,47 @@
 
 namespace merlin {
 
-// The file is read and checked on a thread of its own, which runs only meanwhile and gives way to
-// all others; what changed is swapped by tend(), on the main thread, or, if only a start takes it,
-// tend() says so. All or nothing. Several requests are executed one after another.
+// The file is read and checked on a thread of its own, which exists only meanwhile and gives way to
+// all others. tend(), on the main thread, then swaps what changed, or, if a change takes effect
+// only at a start, returns kRestart. Either everything is applied or nothing. Several requests are
+// executed one after another.
 class Reloader {
  public:
-  // What tend() did. kRestart: the file is valid, and whoever asked was told that the process
-  // starts again with it, which is to be done now.
+  // What tend() did. kRestart: the file is valid and needs a restart; the requester was told so,
+  // and the caller must restart the process now.
   enum class Done { kNothing, kSwapped, kRestart };
 
   struct Parts {
     devices::DevicesRole* devices;  // null: this process lacks the part
     wall::WallRole* wall;
-    status::Services& services;  // says why a reload was refused, until one is not
+    status::Services& services;  // reports why a reload was refused, until one succeeds
     ThreadWatch& watch;
     const Clock& clock;
-    std::function<void()> wake;  // has the main thread call tend() soon; called on any thread
+    std::function<void()> wake;  // makes the main thread call tend() soon; called on any thread
   };
-  // The settings of the file, and the files that they name as they were before any part of the
-  // process read them: one that changed while the process started counts as changed, whichever of
-  // its contents a part has.
+  // The settings of the file, and the state of the files that they name before any part of the
+  // process read them. So a file that changed while the process started counts as changed,
+  // whichever version a part has read.
   struct Configured {
     Settings settings;
     NamedFiles named;
   };
-  // `configured`: what is in effect of `file`. `running`: its settings with what was made of them
-  // at the start (the emulators' ports); changed by tend() alone. All must outlive this.
+  // `configured`: the settings of `file` that are in effect. `running`: the same with the changes
+  // made at the start (the emulators' ports); only tend() changes it. All must outlive this.
   Reloader(std::string file, const DaemonOptions& options, Configured configured, Settings& running,
            const Parts& parts);
 
-  // The command: "now" and "check", which only says what would be done, return {"request": N}; N
-  // as the argument returns {"pending": true} until the request was executed, then its answer
-  // (reload::answerText()). The last 32 answers are kept. Once the process is to start again, N is
-  // the request for which it does. Errors: kInvalidArgument; kBusy (8 requests wait). Returns at
-  // once. Thread-safe.
+  // Executes the command reload. "now" and "check" (which only reports what would be done) return
+  // {"request": N}. The argument N returns {"pending": true} until that request was executed, then
+  // its answer (reload::answerText()). The last 32 answers are kept. Once the process is to start
+  // again, N is the number of the request that causes it. Errors: kInvalidArgument; kBusy (8
+  // requests wait). Returns at once. Thread-safe.
   Result<std::string> run(const std::string& argument);
-  // As by "now"; whoever asks hears of it by log and events. Thread-safe.
+  // The same as "now", but the result is only reported in the log and by events. Thread-safe.
   void request();
 
-  // Begins what was requested, and swaps what was read. To be called by the main thread, from the
-  // first frame on. Takes up to 50 ms for each device that is made anew.
+  // Begins to execute a request, and swaps what was read. To be called by the main thread, from the
+  // first frame on. Takes up to 50 ms for each device that is recreated.
   Done tend();
   // The settings of the file that are in effect. On the thread of tend().
   const Settings& configured() const noexcept { return configured_.settings; }
@@ -73,12 +74,12 @@ class Reloader {
   struct Request {
     std::uint32_t number = 0;
     bool only_check = false;
-    bool is_command = true;  // whoever asked waits for the answer
+    bool is_command = true;  // the requester waits for the answer
   };
   struct ReadFile {
     reload::Answer answer;
     Settings settings;
-    NamedFiles named;  // by `settings`
+    NamedFiles named;  // the files that `settings` names
     devices::Trained trained;
   };
   ReadFile readGuarded() const;
@@ -104,7 +105,8 @@ class Reloader {
   std::optional<Request> current_;
   std::optional<ReadFile> read_;  // of current_
   std::deque<std::pair<std::uint32_t, std::string>> answers_;
-  // Once the process is to start again: when, and the request whose answer says so.
+  // Once the process is to start again: the time of the restart, and the request whose answer
+  // announces it.
   std::optional<Timestamp> restart_at_;
   std::uint32_t restart_number_ = 0;
   WatchedThread thread_;  // reads

@@ -1,5 +1,5 @@
-// RemoteDevices: another machine's devices in shared memory of this machine, for its wall and its
-// programs, which read them like the segment of local devices.
+// RemoteDevices: offers another machine's devices in shared memory of this machine, for its wall
+// and its programs, which read them like the segment of local devices.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace merlin {
 
-// To be used by the main thread; slots() may be read by any.
+// To be used by the main thread; any thread may read slots().
 class RemoteDevices {
  public:
   // Creates the segment, and connects to /wall/input/endpoint unless this process may not use the

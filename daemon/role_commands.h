@@ -25,9 +25,9 @@ class RoleCommands {
     devices::DevicesRole* devices = nullptr;
     wall::WallRole* wall = nullptr;
     wall::SnapshotWriter* snapshots = nullptr;
-    state::StateKeeper* keeper = nullptr;  // of a process with a wall or projectors
+    state::StateKeeper* keeper = nullptr;  // only in a process with a wall or projectors
     Reloader* reloader = nullptr;
-    DevicesBeside* beside = nullptr;  // of a process with a wall and without devices
+    DevicesBeside* beside = nullptr;  // only in a process with a wall and without devices
   };
   // `clock` must outlive this object.
   RoleCommands(const Parts& parts, const Clock& clock) : parts_(parts), clock_(clock) {}
@@ -36,8 +36,8 @@ class RoleCommands {
   // invalid argument, or this process lacks the part that executes the command); those of the part.
   Result<std::string> run(std::string_view name, const std::string& argument = {}) const;
 
-  // Executes what was asked for at the operator's panel, which shows why one was refused, or gives
-  // it to the process with the devices. Returns at once if there is nothing.
+  // Executes the commands requested at the operator's panel, or passes them to the process with the
+  // devices; the panel shows why one was refused. Returns at once if there are none.
   void runPanel() const;
 
   // The commands that a role's socket accepts, except `status` and `events`.

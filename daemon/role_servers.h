@@ -1,5 +1,5 @@
-// RoleServers: what a role offers to other programs: its sockets for status, events and commands,
-// and the servers for programs written for other daemons.
+// RoleServers: the servers of a role for other programs: its sockets for status, events and
+// commands, and the servers for programs written for other daemons.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@ namespace merlin {
 // Addresses of a role's sockets. REQUIRES: settings.run_directory is the directory in use.
 shm::Endpoints endpointsOf(const Settings& settings, const std::string& role);
 
-// The threads of its servers call the parts: they end with this object. To be used by the main
+// The threads of its servers call the parts, and end with this object. To be used by the main
 // thread.
 class RoleServers {
  public:
@@ -40,7 +40,7 @@ class RoleServers {
     devices::DevicesRole* devices;
     RemoteDevices* remote_devices;
     wall::WallRole* wall;
-    state::StateKeeper* keeper;  // of a process with a wall or projectors
+    state::StateKeeper* keeper;  // only in a process with a wall or projectors
   };
   // `watch` and `clock` must outlive this object.
   RoleServers(const Parts& parts, ThreadWatch& watch, const Clock& clock)
@@ -63,7 +63,7 @@ class RoleServers {
   Result<Ok> startStatus(const std::string& role, CommandOf commands,
                          status::StatusServerSettings settings);
   void startServersForOthers(const shm::DeviceSlots& devices);
-  // Of one role; for its server's thread.
+  // The sources of one role's events; for its server's thread.
   struct RoleEvents {
     explicit RoleEvents(std::string_view role) : logger(role) {}
     EventLogger logger;

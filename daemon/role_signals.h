@@ -1,5 +1,4 @@
-// What ends the processes of merlind's roles beside the wall, or has them start again: page and
-// alarms.
+// The signals that end or restart the processes of the roles page and alarms.
 #pragma once
 
 #include <functional>
@@ -16,7 +15,8 @@ enum class Asked { kNothing, kStop, kStartAgain, kTest };
 // not ignored.
 Asked askedBySignal(Duration wait, const std::function<bool()>& is_valid);
 
-// Tells the log, and systemd unless the process starts again: to systemd it goes on then.
+// Reports the end to the log, and to systemd unless the process starts again, because to systemd it
+// then goes on.
 void tellEnd(Asked asked);
 
 }  // namespace merlin

@@ -23,7 +23,7 @@ void describeOwn(DriverSettings& s, SettingsVisitor& visitor) {
   describe(s.*kOwn, visitor);
 }
 
-// The faults, with pointers relative to the device instead of the driver's own settings.
+// Returns the faults with pointers relative to the device instead of the driver's own settings.
 SettingFaults within(const std::string& driver, SettingFaults faults) {
   for (SettingFault& fault : faults) {
     fault.pointer = "/" + driver + fault.pointer;
@@ -32,7 +32,7 @@ SettingFaults within(const std::string& driver, SettingFaults faults) {
   return faults;
 }
 
-// All drivers of merlind, and all that is needed of a new one beside its folder and, if it has
+// All drivers of merlind. A new driver needs only an entry here, its folder, and, if it has
 // settings of its own, a member of DriverSettings. This is a table, not self-registration, because
 // a linker drops unreferenced objects of a static library.
 constexpr DriverEntry kDrivers[] = {

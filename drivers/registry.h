@@ -41,18 +41,19 @@ struct DriverSettings {
 struct DriverEntry {
   const char* name = nullptr;  // also the key of its settings in the configuration
   SampleKind kind = SampleKind::kGlove;
-  int baud = 0;  // default speed of its line; 0: it has none
+  int baud = 0;  // default speed of its line; 0: the line has no speed
   const char* help = nullptr;
   std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&) = nullptr;
   // Describes the driver's own settings; null: it has none.
   void (*describe)(DriverSettings&, SettingsVisitor&) = nullptr;
-  // Finds faults in them, also together with the device's line; null: none is possible. Pointers
-  // are relative to the device: "/port", "/cyberglove/rate_hz".
+  // Finds faults in the driver's settings, also in combination with the device's line; null: no
+  // fault is possible. Pointers are relative to the device: "/port", "/cyberglove/rate_hz".
   SettingFaults (*validate)(const DriverSettings&, const LineSettings&) = nullptr;
   bool has_keys = false;  // whether it knows the kernel's keys and buttons by name
-  // Whether several devices may be read from one tcp:// port, each by a connection of its own.
+  // Whether several devices can share one tcp:// port, each with its own connection.
   bool shares_server = false;
-  // Of a tracker: whether poses of this station (1 to kStations) can come; null: of each.
+  // For a tracker: whether poses of this station (1 to kStations) can arrive; null: poses of all
+  // stations can.
   bool (*has_station)(const DriverSettings&, int station) = nullptr;
 };
 

@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::size_t kPasses = 120;
 constexpr float kRate = 0.004F;
-constexpr float kNoise = 0.5F;           // standard deviations; added to the new hands
+constexpr float kNoise = 0.5F;           // of the noise on the new hands, in standard deviations
 constexpr std::size_t kRehearsed = 100;  // hands of each posture, drawn from the statistics
 constexpr float kRehearsedNoise =
     1.15F;  // standard deviations: other people differ more than those in the statistics
-constexpr double kMostForgotten = 0.005;  // share of the hands drawn from the statistics
-constexpr double kEnough = 0.999;         // share of the new hands recognised; more is not needed
+constexpr double kMostForgotten = 0.005;  // share of the drawn hands that may be lost
+constexpr double kEnough = 0.999;         // share of new hands recognised at which training ends
 constexpr double kShares[] = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
 
 Slots usedBy(const Weights& weights) {

@@ -8,9 +8,9 @@
 namespace merlin::nn {
 namespace {
 
-constexpr double kLeastGain = 1e-9;  // a smaller gain is rounding, and exchanges might never end
+constexpr double kLeastGain = 1e-9;  // smaller gains are rounding and could repeat for ever
 
-// A permutation of the pool: the first K codes belong to the postures, the others are free.
+// Returns a permutation of the pool: first the K codes of the postures, then the free ones.
 std::vector<std::uint32_t> inUseFirst(const std::vector<std::uint32_t>& pool,
                                       const std::vector<std::uint32_t>& codes) {
   std::vector<std::uint32_t> all = codes;
@@ -43,7 +43,7 @@ double cost(const Likeness& likeness, const std::vector<std::uint32_t>& code) {
   return sum;
 }
 
-// Exchanges each of the first `postures` codes with any other as long as that gains something.
+// Exchanges each of the first `postures` codes with any other, until no exchange has a gain.
 template <typename Gain>
 bool exchange(std::vector<std::uint32_t>& code, std::size_t postures, Gain gain) {
   bool any = false;
@@ -93,7 +93,7 @@ std::vector<std::uint32_t> assignCodes(const Likeness& likeness,
   return best;
 }
 
-// sum_k (o_k - bit)^2 without the terms that are the same for every code.
+// The price of a code is sum_k (o_k - bit_k)^2 without the terms that are the same for every code.
 bool exchangeCodes(const std::vector<std::array<double, kOutputs>>& mean,
                    const std::vector<std::uint32_t>& pool, std::vector<std::uint32_t>& codes) {
   const std::size_t postures = codes.size();

@@ -10,7 +10,7 @@
 
 namespace merlin::nn {
 
-inline constexpr std::size_t kEvenCodes = 16;  // have an even number of ones: two bits apart
+inline constexpr std::size_t kEvenCodes = 16;  // of even parity: at least two bits apart
 
 // Returns the codes from which `postures` postures get theirs. If codes of even parity suffice,
 // only those are returned: one wrong output then gives no posture and never another one. 00000, the

@@ -25,7 +25,7 @@ Fold splitFold(std::span<const LabelledHand> hands, std::size_t folds, std::size
 struct FoldScore {
   std::size_t hands = 0;  // number of hands tested; of a mean, the sum
   double accuracy = 0;    // share of them that the network recognises correctly
-  Neighbours neighbours;  // the same of the simplest classifiers
+  Neighbours neighbours;  // the same for the simplest classifiers
 };
 
 // Trains on all folds but `fold`, and tests on `fold`. Errors: those of fit(). Cost: that of fit()

@@ -30,8 +30,7 @@ Result<std::vector<Example>> toExamples(std::span<const LabelledHand> hands,
 struct Score {
   std::size_t total = 0;
   std::size_t right = 0;
-  std::size_t rejected =
-      0;  // recognised as no posture; total - right - rejected were taken for another one
+  std::size_t rejected = 0;  // recognised as no posture; the rest were taken for another one
 
   double accuracy() const noexcept {
     return total == 0 ? 0.0 : static_cast<double>(right) / static_cast<double>(total);

@@ -10,7 +10,7 @@ namespace merlin::nn {
 namespace {
 
 constexpr std::size_t kBatch = 32;
-constexpr std::size_t kFewest = 640, kMost = 2048;  // bounds on the samples of a pass
+constexpr std::size_t kFewest = 640, kMost = 2048;  // limits of the number of samples in a pass
 constexpr std::size_t kNoisePool = 1 << 14;
 constexpr float kFirst = 0.9F, kSecond = 0.999F, kLittle = 1e-8F;
 constexpr float kDecay = 1e-4F;
@@ -48,7 +48,7 @@ Descent::Descent(Phi phi, std::span<const Sample> samples, std::span<const Input
   for (const Sample& sample : samples) own_side_.push_back(nearest(sample.u) == sample.posture);
 }
 
-// By |u - m|^2 = |u|^2 + 2 (|m|^2 / 2 - u m), for all postures at a time.
+// Computes |u - m|^2 = |u|^2 + 2 (|m|^2 / 2 - u m) for all postures at once.
 std::uint32_t Descent::nearest(const Input& u) const noexcept {
   std::array<float, kCodes> far = half_square_;
   for (std::size_t i = 0; i < kInputs; ++i) {
@@ -57,8 +57,8 @@ std::uint32_t Descent::nearest(const Input& u) const noexcept {
   return static_cast<std::uint32_t>(std::min_element(far.begin(), far.end()) - far.begin());
 }
 
-// A hand that strays beyond the border to another posture would teach the wrong code, so it comes
-// back half of the way to its posture's mean, until it is on its own side.
+// A varied hand that is nearer to another posture's mean would teach the wrong code. It is moved
+// half of the way to its own posture's mean, repeatedly, until that mean is the nearest.
 Input Descent::stray(std::size_t n, const Straying& straying) {
   constexpr int kHalvings = 3;
   const Sample& sample = samples_[n];

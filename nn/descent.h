@@ -27,9 +27,9 @@ struct Descending {
 
 // How far hands stray in a pass. Each hand's distance from the mean of its posture is multiplied by
 // `shrink`, then noise of standard deviation `noise` is added to every component: the smoothed
-// bootstrap, which keeps the spread about as it is. A hand to which another posture's mean is
-// nearer already strays by the figures `beyond`; no other hand gets nearer to another posture's
-// mean.
+// bootstrap, which keeps the spread about as it is. A hand that is nearer to another posture's mean
+// even without noise strays by noise_beyond and shrink_beyond. Any other hand that noise brings
+// nearer to another posture's mean is moved back towards its own.
 struct Straying {
   float noise = 0, shrink = 1;
   float noise_beyond = 0, shrink_beyond = 1;
@@ -37,11 +37,12 @@ struct Straying {
 
 class Descent {
  public:
-  // Borrows both: the hands, and the mean of each posture.
+  // Borrows `samples` and `means`, the mean of each posture.
   Descent(Phi phi, std::span<const Sample> samples, std::span<const Input> means, Random random);
 
-  // Makes one pass over the samples: a part of very many, several rounds over few. Each hand strays
-  // as `straying` says. Returns the mean squared error of [GOU] A.5.3 over these samples.
+  // Makes one pass: over a part of the samples if there are very many, and several times over them
+  // if there are few. Each hand strays as `straying` says. Returns the mean squared error of [GOU]
+  // A.5.3 over these samples.
   double pass(Descending& at, std::span<const std::uint32_t> codes, float rate,
               const Straying& straying);
 

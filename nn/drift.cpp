@@ -5,10 +5,11 @@
 namespace merlin::nn {
 namespace {
 
-// No hand of a posture is further from its mean; what is, is another posture taken for this one. A
-// sensor's range is 6 standard deviations over all postures.
+// Limit of the drift, as a share of a sensor's range (6 standard deviations over all postures). A
+// larger distance from a posture's mean is not drift, but another posture that was mistaken for
+// this one.
 constexpr float kFurthest = 0.15F;
-constexpr float kMostHands = 1e4F;  // of a visit: more of the same hand tell nothing new
+constexpr float kMostHands = 1e4F;  // counted in a visit: more of the same hand add nothing
 
 }  // namespace
 
@@ -34,8 +35,8 @@ Recognition DriftFollower::operator()(const Angles& value) noexcept {
   return seen;
 }
 
-// A posture that is held for long counts once, however many hands of it there are: otherwise the
-// way in which it happens to be held would be taken for drift.
+// A posture that is held for long counts once, however many samples it gives: otherwise the way in
+// which it happens to be held would be taken for drift.
 void DriftFollower::learn(std::uint32_t code, const Input& hand) noexcept {
   if (code != visited_) {
     endVisit();

@@ -32,7 +32,7 @@ struct Evaluation {
 };
 Evaluation evaluate(const PostureNetwork& network, std::span<const LabelledHand> hands,
                     double least_margin);
-// The same of a follower, which is shown the hands in the order given.
+// The same for a follower, which is shown the hands in the order given.
 Evaluation evaluate(DriftFollower& follower, std::span<const LabelledHand> hands,
                     double least_margin);
 

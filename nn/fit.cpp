@@ -18,15 +18,15 @@ namespace {
 constexpr int kRestarts = 10;            // random starts of each assignment of codes
 constexpr std::size_t kFirstRound = 20;  // passes of each start before the worse half is dropped
 constexpr float kRate = 0.02F, kLastRate = 1e-5F;
-// The noise grows while the error with noise is below this limit. So the network is trained with as
-// much noise as it tolerates, and the margins between postures are as wide as possible.
+// The noise grows while the error with noise is below this limit. Thus the network is trained with
+// as much noise as it tolerates, which makes the margins between postures as wide as possible.
 constexpr double kBearableError = 0.005;
 constexpr float kNoiseStep = 1.05F, kFirstNoise = 0.7F, kLeastNoise = 0.35F, kMostNoise = 4.0F;
-constexpr float kMostBeyond = 2.0F;  // of hands to which another posture's mean is nearer
+constexpr float kMostBeyond = 2.0F;  // limit for hands that are nearer to another posture's mean
 constexpr std::size_t kEvaluationPeriod =
     4;                                   // passes between two evaluations of the validation hands
 constexpr std::size_t kPatience = 8;     // evaluations without a better error before training ends
-constexpr std::size_t kLastPasses = 40;  // final passes over all hands, those of the validation too
+constexpr std::size_t kLastPasses = 40;  // final passes, with the validation hands too
 constexpr float kLastRates = 0.1F;       // rate of the final passes, share of kRate
 
 struct Start {
@@ -35,7 +35,7 @@ struct Start {
   double error = 0;
 };
 
-// The working data of one fit().
+// Working data of one call of fit().
 class Fit {
  public:
   Fit(const FitSettings& settings, const FitProgress& progress, const WhitenedSpace& space)
@@ -61,7 +61,7 @@ class Fit {
   std::vector<CurvePoint> takeCurve() { return std::move(curve_); }
 
  private:
-  // Uses codes of even parity if the network can learn them.
+  // Prefers a start with codes of even parity if the network can learn them.
   static double price(const Start& s) {
     const bool bearable = s.pool.size() < kCodes - 1 && s.error < kBearableError;
     return bearable ? s.error * 1e-3 : s.error;
@@ -140,7 +140,8 @@ class Fit {
     const std::size_t settled = settings_.passes * 4 / 5;
     for (std::size_t i = 0; i < settings_.passes && !stopped_; ++i) {
       const double error = pass(s, descent, kRate * left(i, settings_.passes) + kLastRate);
-      // The margins grow with the noise, and the error without noise does not show them.
+      // Until the noise has settled, no network is kept as the best: the margins still grow with
+      // the noise, and the error without noise does not show that.
       if (i < settled) {
         adapt(error);
         continue;
@@ -192,8 +193,8 @@ std::optional<Error> invalid(std::span<const LabelledHand> hands,
   return std::nullopt;
 }
 
-// Sets the last hands of each posture aside for validation. Hands chosen at random would have
-// nearly equal neighbours of the recording among the training hands.
+// Sets the last hands of each posture aside for validation. If they were chosen at random, their
+// neighbours in the recording, which are nearly equal, would be among the training hands.
 std::vector<bool> setAside(const std::vector<std::size_t>& posture, std::size_t postures,
                            double share) {
   std::vector<std::size_t> all(postures, 0), seen(postures, 0);

@@ -20,9 +20,8 @@ struct FitSettings {
   Phi phi = Phi::kSigmoid;  // not signum
   InputUnit unit = InputUnit::kRadians;
   std::uint64_t seed = 1998;
-  std::size_t starts =
-      20;  // number of starts: random assignments of codes with initial weights, >= 1
-  std::size_t passes = 480;       // most passes with the best start, >= 1
+  std::size_t starts = 20;        // random assignments of codes with initial weights, >= 1
+  std::size_t passes = 480;       // maximum number of passes with the best start, >= 1
   double validation_share = 0.1;  // share of each posture's hands, from the end; [0, 0.5]
 };
 

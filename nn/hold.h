@@ -22,7 +22,7 @@ class PostureHold {
  public:
   explicit PostureHold(const HoldSettings& settings) : settings_(settings) {}
 
-  // `now_ns` never falls.
+  // REQUIRES: `now_ns` never decreases.
   const Held& update(const Recognition& seen, std::int64_t now_ns) noexcept;
 
  private:

@@ -17,7 +17,8 @@ namespace merlin::nn {
 inline constexpr std::uint32_t kCodes = 1U << kOutputs;
 inline constexpr std::size_t kLongestName = 19;  // characters
 
-// 1 to kLongestName letters, digits, '-' or '_': safe in JSON, in CSV and on a command line.
+// Whether `name` has 1 to kLongestName letters, digits, '-' or '_': it is then safe in JSON, in CSV
+// and on a command line.
 bool isPostureName(std::string_view name) noexcept;
 
 // Maps codes to names and back, one to one. Cheap to copy; a look-up allocates nothing.

@@ -13,8 +13,8 @@ using Eigen::VectorXd;
 
 constexpr double kReach = 3.0;            // half width of a range, standard deviations
 constexpr double kLeastDeviation = 1e-6;  // least deviation of a measured slot, share of its size
-// Share of the mean variance that is added to each variance: the next hand may vary in a direction
-// in which no recorded hand has.
+// Share of the mean variance that is added to each variance, because the next hand may vary in a
+// direction in which no recorded hand did.
 constexpr double kShrinkage = 0.1;
 
 VectorXd wide(const Input& x) {
@@ -124,7 +124,7 @@ Input WhitenedSpace::toSpace(const Input& x) const noexcept {
 }
 
 std::vector<std::vector<double>> WhitenedSpace::likeness() const {
-  // Limits the likeness of two postures that are the same for every sensor.
+  // Limits the likeness of postures that are equal or nearly equal for all sensors.
   constexpr double kNearest = 0.25;
   const std::size_t postures = means_.size();
   std::vector<std::vector<double>> like(postures, std::vector<double>(postures, 0.0));

@@ -42,7 +42,7 @@ class WhitenedSpace {
   // Standard deviation of every component within a posture.
   float sigma() const noexcept { return sigma_; }
 
-  // Returns the likeness of each two postures: 1 / squared distance in standard deviations.
+  // Returns the likeness of each pair of postures: 1 / squared distance in standard deviations.
   std::vector<std::vector<double>> likeness() const;
   const std::vector<Input>& means() const noexcept { return means_; }  // the postures' means in u
 

@@ -31,7 +31,7 @@ MatrixXd withOnes(std::span<const Input> means) {
   return m;
 }
 
-// Returns the least squares hyperplane for targets -1 and 1, scaled to the spread of a posture.
+// Returns the least-squares hyperplane for the targets -1 and 1, scaled to the spread of a posture.
 VectorXd plane(const MatrixXd& means, const VectorXd& target, const VectorXd& weight,
                double variance) {
   const MatrixXd weighted = weight.asDiagonal() * means;

@@ -34,7 +34,7 @@ void accumulate(std::array<double, N + 1>& row, double delta,
   row[N] += delta;
 }
 
-// Adds one example's share to `slope`; `scale` is 1 / (5 n).
+// Adds one example's part of the gradient to `slope`; `scale` is 1 / (5 n).
 void addExample(Phi phi, const TrainingWeights& weights, const Example& example, double scale,
                 Slope& slope) noexcept {
   const auto x = widen(example.x);
@@ -86,7 +86,7 @@ void descend(TrainingWeights& weights, TrainingWeights& step, const TrainingWeig
   });
 }
 
-// False where a weight is not a finite float.
+// Returns false if a weight is not a finite float.
 bool narrow(const TrainingWeights& from, Weights& to) {
   bool finite = true;
   forRows(from, to, [&](const auto& f, auto& t) {

@@ -1,5 +1,5 @@
-// ActionReader: reads from shared memory which actions have begun since it was last asked, and
-// which are held.
+// ActionReader: reads from shared memory which actions have begun since the last read, and which
+// are held.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@ struct ActionCounts {
 
 struct Actions {
   ActionCounts all;
-  // What `all` is the sum of. Index: DeviceSlots::actions.
+  // The summands of `all`, indexed like DeviceSlots::actions.
   std::vector<ActionCounts> by_source;
-  // The actions that have begun, device by device, in the order in which they began; at most the
-  // last twelve of each device.
+  // The actions that have begun, source by source, in the order in which they began; at most the
+  // last twelve of each source.
   std::vector<std::size_t> in_order;
-  // What in_order is joined from; by source.
+  // The parts of in_order, by source.
   std::vector<std::vector<std::size_t>> in_order_by_source;
 };
 

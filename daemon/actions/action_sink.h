@@ -13,13 +13,13 @@
 namespace merlin::actions {
 
 // One for each device. Takes no lock and allocates nothing, except in reload(). The actions are
-// published before the sample, so that a reader that waits for the sample finds them. A device that
-// works and lacks a key that a binding names says so in its health, unless that says something
-// else.
+// published before the sample, so that a reader that waits for the sample finds them. If a device
+// works but lacks a key that a binding names, its health gets a text about it, unless the health
+// has another text.
 class ActionSink final : public SampleSink, public HealthSink {
  public:
   // `postures`: where the current posture is published before each glove sample; null: not a glove.
-  // `stale_after`: a device that has not worked for this time counts as lost: its inputs end.
+  // `stale_after`: a device that has not worked for this time counts as lost, and its inputs end.
   struct Parts {
     const shm::SeqSlot<PostureState>* postures;
     SampleSink& samples;
@@ -29,14 +29,15 @@ class ActionSink final : public SampleSink, public HealthSink {
   ActionSink(ActionWriter writer, const Parts& parts)
       : writer_(std::move(writer)), parts_(parts), stale_after_(parts.stale_after) {}
 
-  // For one other thread: see ActionWriter::rebind(). A device that sends nothing has the new
-  // bindings with its next health, within 250 ms.
+  // For one other thread: see ActionWriter::rebind(). A device that sends nothing uses the new
+  // bindings from its next health record on, within 250 ms.
   void reload(const std::vector<Binding>& bindings, Duration stale_after) {
     stale_after_ = stale_after;
     writer_.rebind(bindings);
   }
 
-  // The device is closed: all its inputs end. REQUIRES: no thread of the device runs.
+  // To be called when the device was closed: ends all its inputs. REQUIRES: no thread of the device
+  // runs.
   void release(std::int64_t now_ns) noexcept { writer_.release(now_ns); }
 
   void publish(const GloveSample& sample) noexcept override {

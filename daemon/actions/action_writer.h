@@ -24,8 +24,8 @@ namespace merlin::actions {
 // action begins or ends.
 class ActionWriter {
  public:
-  // Uses the bindings whose input is of `source`; others, and invalid ones, are ignored.
-  // `generation`: of the daemon; a new one tells readers that the counters began again at 0.
+  // Uses the bindings to inputs of `source`; others, and invalid ones, are ignored. `generation`:
+  // that of the daemon; a new one tells readers that the counters restarted at 0.
   ActionWriter(const std::vector<Binding>& bindings, Source source, std::uint64_t generation,
                shm::SeqSlot<shm::ActionState>& slot);
 
@@ -33,28 +33,29 @@ class ActionWriter {
   void update(const TouchSample& touch) noexcept;
   // `posture`: the current posture, after its minimum hold time; may be null.
   void update(const GloveSample& glove, const PostureState* posture) noexcept;
-  // The panel's button was pressed.
+  // To be called when the panel's button was pressed.
   void press(std::int64_t now_ns) noexcept;
-  // The hand has made the gesture of this name.
+  // To be called when the hand has made the gesture of this name.
   void gesture(std::string_view name, std::int64_t now_ns) noexcept;
-  // The device is lost: all its inputs end.
+  // To be called when the device is lost: ends all its inputs.
   void release(std::int64_t now_ns) noexcept;
 
-  // Writes a sentence, ended by NUL, if bindings name a key of this device by the device's name,
-  // and it is not among `keys`: about the first such key. Otherwise `sentence` stays as it is. A
-  // key of any device is not meant.
+  // If a binding names this device and a key that is not among `keys`, writes a NUL-ended sentence
+  // about the first such key; otherwise `sentence` stays as it is. Bindings that name no device do
+  // not count.
   void sayLackingKey(const DeviceKeys& keys, std::span<char> sentence) const noexcept;
 
   // For one other thread: replaces the bindings; the writer uses them from its next call on. A
-  // binding that was there before goes on; what one held that is no more ends; and a new one does
-  // nothing until its input has been seen released, so that a button that is pressed at this moment
+  // binding that existed before continues; an action held by a removed binding ends; a new binding
+  // does nothing until its input has been released, so that a button that is pressed at this moment
   // triggers nothing.
   void rebind(const std::vector<Binding>& bindings);
-  // Uses new bindings, if there are any, and begins what time alone begins; each of the calls above
-  // does so too. To be called now and then while the device sends nothing, and when it is due.
+  // Starts to use new bindings, if there are any, and begins the actions that are due by time alone
+  // (after_s, repeat_s); each of the calls above does so too. To be called now and then while the
+  // device sends nothing, and at due().
   void adopt(std::int64_t now_ns) noexcept;
-  // When time alone begins something next, as long as the inputs stay as they are;
-  // Timestamp::max(): never.
+  // When the next action begins by time alone if the inputs stay as they are; Timestamp::max():
+  // never.
   Timestamp due() const noexcept;
 
  private:
@@ -66,14 +67,15 @@ class ActionWriter {
     std::int64_t after_ns = 0, repeat_ns = 0;
     std::int64_t since_ns = 0;  // when `pressed` began
     std::int64_t again_ns = 0;  // when the action repeats
-    // Index of the first binding to this input alone, which is not a chord, and to `with` alone.
+    // Indexes of the first bindings, other than chords, to this input alone and to `with` alone.
     std::size_t alone = kNone, with_alone = kNone;
     bool lasts = false, on_leave = false;
-    bool pressed = false;   // the input, and the one with it
+    bool pressed = false;   // the input is pressed, and so is `with`
     bool was_held = false;  // pressed for long enough
-    bool waits = false;     // until the input has been seen released
-    bool in_chord = false;  // of the first binding to an input alone: a chord with it is pressed
-    bool chorded = false;   // one was at some time of this press, so that nothing begins any more
+    bool waits = false;     // does nothing until the input has been seen released
+    // Only in the first binding to an input alone: whether a chord with this input is pressed.
+    bool in_chord = false;
+    bool chorded = false;  // a chord was pressed during this press, so that nothing begins any more
   };
   using ParsedBindings = std::vector<ParsedBinding>;
   ParsedBindings parse(const std::vector<Binding>& bindings) const;
@@ -93,7 +95,7 @@ class ActionWriter {
   void updateHeld() noexcept;
 
   Source source_;
-  std::uint32_t axes_ = 0;  // that are pushed: pushedAxes()
+  std::uint32_t axes_ = 0;  // axes that are pushed: pushedAxes()
   Pinch pinch_;             // of a touch surface's fingers
   ParsedBindings bindings_;
   std::unique_ptr<Handover<ParsedBindings>> rebound_;  // a pointer, since a writer is moved

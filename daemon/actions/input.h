@@ -10,7 +10,8 @@
 
 namespace merlin::actions {
 
-// Whose inputs trigger actions: a device, a hand, which makes gestures, or the control panel.
+// A source of inputs that trigger actions: a device, a hand (which makes gestures), or the control
+// panel.
 struct Source {
   std::string name;                // of the device or the hand
   std::optional<SampleKind> kind;  // of the device; none: a hand, or the panel
@@ -23,7 +24,7 @@ struct Input {
   enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton, kGesture, kKey, kPinch };
 
   Kind kind = Kind::kButton;
-  // Whose input it is, a device or a hand; empty: that of every one that has such a one.
+  // The device or the hand whose input it is; empty: any one that has such an input.
   std::string device;
   // kButton: its bit in BallSample::buttons; of an axis that is pushed: a bit of pushedAxes().
   // kKey: the kernel's number, 0 until Source::key_code() gave it. kPinch: a bit of
@@ -34,14 +35,14 @@ struct Input {
   bool isOf(const Source& source) const;
   // Whether it is over as soon as it begins, so that nothing can last or be timed with it.
   bool isMomentary() const { return kind == Kind::kPanelButton || kind == Kind::kGesture; }
-  // Whether one event can be both: the same part of the same device.
+  // Whether one event can be both inputs, i.e. they are the same part of the same device.
   bool overlaps(const Input& other) const;
   bool operator==(const Input&) const = default;
 };
 
 // The axes of a ball that are pushed or twisted by more than half, as bits above those of the
 // buttons: x+ x- y+ y- z+ z- rx+ ... rz-. An axis that was among `before` stays until it falls
-// below a third, so that one that trembles there begins nothing twice.
+// below a third, so that an axis that trembles around the threshold triggers nothing twice.
 std::uint32_t pushedAxes(const BallSample& ball, std::uint32_t before) noexcept;
 
 // Parses the name of an input (kInputForms); nothing if the name is not valid.

@@ -8,13 +8,14 @@
 
 namespace merlin::actions {
 
-// Compares how far the fingers are from their middle with how far they were when the last of them
-// came; a finger that comes or goes ends a pinch. Thread-bound; allocates nothing.
+// Compares the fingers' distance from their centre with that at the time when the last finger
+// touched; a finger that touches or leaves the surface ends a pinch. Thread-bound; allocates
+// nothing.
 class Pinch {
  public:
-  // Bits of update(): the fingers are closer together, or farther apart, than by kBegins. Either
-  // lasts until they are within kEnds again, so that fingers that tremble there begin nothing
-  // twice.
+  // Bits of update(): the fingers are closer together, or farther apart, by more than the ratio
+  // kBegins. Either lasts until the ratio is within kEnds again, so that trembling fingers trigger
+  // nothing twice.
   static constexpr std::uint32_t kTogether = 1, kApart = 2;
   // Ratios of the distances.
   static constexpr float kBegins = 1.4F, kEnds = 1.25F;
@@ -24,7 +25,8 @@ class Pinch {
  private:
   std::array<std::uint32_t, kFingers> id_{};  // of the fingers that touch, ascending
   std::uint32_t fingers_ = 0;
-  float began_ = 0;  // their distance from their middle when they came, in heights
+  // Distance from their centre when the last one touched, in heights of the surface.
+  float began_ = 0;
   std::uint32_t pinched_ = 0;
 };
 

@@ -17,12 +17,12 @@ struct Binding {
   When when = When::kByAction;
   std::string with = {};  // another input of the same device that has to be held too; empty: none
   double after_s = 0;     // how long the input has to be held before it counts
-  // Of what happens once: again after each such time, kShortestRepeat_s to kLongestRepeat_s; 0:
-  // once.
+  // Period at which an action that happens once is repeated while the input is held, from
+  // kShortestRepeat_s to kLongestRepeat_s; 0: not repeated.
   double repeat_s = 0;
 };
 
-// A shorter one would do hundreds of steps before a person lets go.
+// With a shorter period, hundreds of steps would happen before a person lets go.
 inline constexpr double kShortestRepeat_s = 0.05;
 inline constexpr double kLongestRepeat_s = 60;
 
@@ -48,8 +48,8 @@ inline std::vector<Binding> defaultBindings() {
 
 // Finds unknown inputs, actions that cannot be combined with their `when` or times, and pairs of
 // actions that one input would trigger at the same moment although they exclude each other or are
-// the same. A binding without an action is no fault here: the caller knows whether the file gives
-// none, or a name that is none. Pointers: "/INDEX/input" ... Cost: linear.
+// the same. A binding without an action is no fault here: only the caller knows whether the file
+// gives no action or an unknown one. Pointers: "/INDEX/input" ... Cost: linear.
 SettingFaults validate(const std::vector<Binding>& bindings);
 
 }  // namespace merlin

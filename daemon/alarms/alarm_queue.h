@@ -1,5 +1,5 @@
-// AlarmQueue: which events one alarm's program is started for, and when. Pure: the caller passes
-// the time.
+// AlarmQueue: decides for which events one alarm's program is started, and when. Pure: the caller
+// passes the time.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct AlarmEvent {
   Severity severity = Severity::kFault;
 };
 
-// The kind of an event by which a person tests that an alarm arrives: every alarm is for it.
+// The kind of the event with which a person tests alarms: it starts the program of every alarm.
 inline constexpr const char* kTestKind = "test";
 
 // The event as one line of JSON: {"instance", "role", "time_utc", "kind", "what", "left_out"}.
@@ -32,21 +32,21 @@ class AlarmQueue {
  public:
   explicit AlarmQueue(const AlarmSettings& settings);
 
-  // Takes an event, if it is of a kind that the alarm is for and not routine. At most kMost wait;
-  // of more the oldest that is no fault is left out, and if all are faults the oldest.
+  // Adds an event, if it is of a kind that the alarm is for and not routine. At most kMost events
+  // wait; beyond that, the oldest that is not a fault is left out, or the oldest if all are faults.
   void add(const AlarmEvent& event);
 
   std::size_t waiting() const noexcept { return waiting_.size(); }
 
   struct Next {
     AlarmEvent event;
-    std::uint64_t left_out = 0;  // events since the last one that nobody was told of
+    std::uint64_t left_out = 0;  // number of events left out since the last one that was told
   };
   // The event for which the program is to be started now, faults first; nothing if none waits, or
-  // while the program was started most_per_hour times within the last hour. The last start that is
-  // allowed at once is for a fault. A test is told whatever was told before. Those that wait longer
-  // than kLongestWait, or as a fault kLongestFaultWait, are left out, since an alarm of yesterday
-  // would mislead.
+  // while the program was started most_per_hour times within the last hour. Of the starts that are
+  // allowed at once after a quiet time, the last is reserved for a fault. A test is exempt from the
+  // limit. Events that wait longer than kLongestWait (faults: kLongestFaultWait) are left out,
+  // since an old alarm would mislead.
   std::optional<Next> next(Timestamp now);
 
   static constexpr std::size_t kMost = 32;
@@ -56,7 +56,7 @@ class AlarmQueue {
  private:
   struct Waiting {
     AlarmEvent event;
-    std::optional<Timestamp> since;  // of the first call of next() that saw it
+    std::optional<Timestamp> since;  // time of the first call of next() that saw it
   };
   static bool isFault(const Waiting& waiting) { return waiting.event.severity == Severity::kFault; }
   bool isFor(const AlarmEvent& event) const;

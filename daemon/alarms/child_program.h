@@ -16,17 +16,18 @@
 namespace merlin::alarms {
 
 // Whether this process may execute the program now, as far as the file and its first line tell.
-// Errors, a sentence that begins with the path: kNotFound (there is no such file, it is none, may
-// not be executed, or is a script without an interpreter).
+// Errors, each a sentence that begins with the path: kNotFound (there is no such file, it is not a
+// regular file, it may not be executed, or it is a script whose interpreter is missing).
 Result<Ok> checkProgram(const std::string& path);
 
 // Thread-bound. Waits in start(), until the program is loaded, and in the destructor, which ends
 // it.
 class ChildProgram {
  public:
-  // Starts the program `run[0]` with the arguments behind it, in a process group of its own, with
-  // `input` as its standard input. Errors: kNotFound (there is no such program, or it cannot be
-  // executed, as a script without an interpreter), kIo. The process may have several threads.
+  // Starts the program `run[0]` with the arguments that follow it, in a process group of its own,
+  // with `input` as its standard input. Errors: kNotFound (there is no such program, or it cannot
+  // be executed, for example a script whose interpreter is missing), kIo. The process may have
+  // several threads.
   static Result<ChildProgram> start(const std::vector<std::string>& run, const std::string& input,
                                     Timestamp deadline);
   ChildProgram(ChildProgram&& other) noexcept;
@@ -35,13 +36,13 @@ class ChildProgram {
   ChildProgram& operator=(const ChildProgram&) = delete;
   ~ChildProgram();
 
-  // What became of it: nothing while it runs; then once a sentence, empty if it ended with status
-  // 0. Ends it and all that it started once the deadline has passed, except a process in a session
-  // of its own (setsid), which no signal to the group reaches.
+  // Returns nothing while the program runs; then, once, a sentence about how it ended, empty if
+  // with status 0. After the deadline, kills it and all processes that it started, except one in a
+  // session of its own (setsid), which no signal to the group reaches.
   std::optional<std::string> ended(Timestamp now);
 
-  // What it wrote so far, to standard output or error: the lines of the first kMostKept bytes, each
-  // safe to print; then, if there was more, how many bytes were left out.
+  // The program's output so far, to standard output or error: the lines of the first kMostKept
+  // bytes, each safe to print; then, if there was more, how many bytes were left out.
   std::vector<std::string> written() const;
   static constexpr std::size_t kMostKept = 2048;
 

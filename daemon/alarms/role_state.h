@@ -1,4 +1,4 @@
-// RoleState: whether a role of merlind is missed, for who can be told of it. Pure.
+// RoleState: decides whether a role of merlind is missing and somebody is to be told of it. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@ namespace merlin::alarms {
 
 class RoleState {
  public:
-  // `expected`: the configuration has work for the role on this machine, so that it is missed also
-  // if it never came. `now`: when somebody began to look.
+  // `expected`: the configuration has work for the role on this machine, so it is reported as
+  // missing also if it never came. `now`: when the observation begins.
   RoleState(std::string role, bool expected, Timestamp now)
       : role_(std::move(role)), expected_(expected), started_(now) {}
 
-  // What is to be told, a sentence, once: that it ended, never came, is back, or does not stay.
-  // `generation`: of its present run; 0: it does not run.
+  // Returns a sentence to be told, each once: that the role ended, never came, is back, or restarts
+  // again and again. `generation`: that of its present run; 0: it does not run.
   std::optional<std::string> update(std::uint64_t generation, Timestamp now);
 
-  // A role reads large models and compiles shaders before it runs.
+  // Time for the first start, since a role reads large models and compiles shaders before it runs.
   static constexpr Duration kFirstStart = std::chrono::minutes(3);
-  // One that is back within this time was restarted, and nobody is told.
+  // A role that is back within this time was restarted, and nobody is told.
   static constexpr Duration kRestart = std::chrono::seconds(15);
-  // One that starts so often within this time does not stay.
+  // A role that starts kOftenStarts times within kOften restarts again and again.
   static constexpr Duration kOften = std::chrono::minutes(10);
   static constexpr std::size_t kOftenStarts = 5;
 

@@ -12,8 +12,8 @@ struct AlarmSettings {
   std::vector<std::string> run;  // a program, as an absolute path, and its arguments
   std::vector<std::string>
       kinds;                 // kinds of events that start the program (event_kinds.h); empty: all
-  int most_per_hour = 12;    // times that it is started at most
-  double time_limit_s = 30;  // after which it is ended
+  int most_per_hour = 12;    // maximum number of starts in an hour
+  double time_limit_s = 30;  // the program is ended after this time
 };
 
 // Finds an alarm without a program, a program that is no absolute path, and kinds that no event

@@ -7,8 +7,8 @@
 
 namespace merlin {
 
-// Without "." and ".."; links are kept. A relative name is taken from the working directory; an
-// empty one stays empty.
+// Returns the absolute path without "." and ".."; symbolic links are not resolved. A relative
+// `path` is taken from the working directory; an empty one stays empty.
 inline std::string absolutePath(const std::string& path) {
   std::error_code error;
   return path.empty() ? "" : std::filesystem::absolute(path, error).lexically_normal().string();

@@ -13,12 +13,12 @@ struct Pipe {
   UniqueFd to;
 };
 
-// Neither end is passed on by exec(). kIo where the process has no descriptors left.
+// Neither end is passed on by exec(). Errors: kIo (the process has no descriptors left).
 Result<Pipe> makePipe();
 
-// fork(): 0 in the child, the child's number in the parent. kIo where the user or the machine may
-// have no more processes, or no memory is left. The child of a process with several threads may
-// call only what signal handlers may, until it becomes another program.
+// Calls fork(): returns 0 in the child, and the child's process id in the parent. Errors: kIo (the
+// limit of processes is reached, or no memory is left). The child of a process with several threads
+// may call only what signal handlers may, until it becomes another program.
 Result<pid_t> startChild();
 
 // Waits until `child` has ended, whatever signals arrive meanwhile, and returns its status as

@@ -11,7 +11,8 @@
 
 namespace merlin {
 
-// The role of merlind that executes a command; the role devices executes the panel's.
+// The role of merlind that executes a command. kPanel: a command of the control panel, which the
+// role devices executes.
 enum class CommandOf { kEachRole, kDevices, kPanel, kWall };
 
 // Whether inputs may be bound to a command. kOnce: the command is executed when the input begins
@@ -32,11 +33,12 @@ inline constexpr CommandInfo kCommands[] = {
     {"events", CommandOf::kEachRole, "", "Show the last events of the role.", Bindable::kNo, false},
     {"reload", CommandOf::kEachRole, "now|check|NUMBER",
      "Read the configuration again and swap what changed, all or nothing (now), or only say what "
-     "would be swapped (check). The answer has the number of the request, which asks what became "
-     "of it.",
+     "would be swapped (check). The answer contains the number of the request; with this NUMBER, "
+     "the command says what became of that request.",
      Bindable::kNo, false},
     {"flight", CommandOf::kDevices, "",
-     "Write the last minutes of every device's bytes into files.", Bindable::kNo, false},
+     "Write the bytes that went to and from every device in the last minutes into files.",
+     Bindable::kNo, false},
     {"reset_view", CommandOf::kWall, "",
      "Return the model and the viewer to their initial positions.", Bindable::kOnce, true},
     {"next_mode", CommandOf::kWall, "", "Switch whether the ball moves the model or the viewer.",
@@ -47,12 +49,12 @@ inline constexpr CommandInfo kCommands[] = {
      "Show the previous slide, or the previous content of the configuration.", Bindable::kOnce,
      true},
     {"show", CommandOf::kWall, "NAME",
-     "Show the content of that name: one of the configuration, or else one of the content folder, "
-     "where what `merlin show FILE` has shown stays.",
+     "Show the content with this name: that of the configuration or, if it has none, that of the "
+     "content folder, which keeps what `merlin show FILE` has shown.",
      Bindable::kNo, false},
     {"show_file", CommandOf::kWall, "NAME",
-     "Show a model, a pyramid or a folder of pyramids of the content folder, by the name that it "
-     "has there; `merlin show FILE` puts it there.",
+     "Show a model, a pyramid or a folder of pyramids from the content folder, by its name in that "
+     "folder; `merlin show FILE` puts it there.",
      Bindable::kNo, false},
     {"notice", CommandOf::kWall, "TEXT|off",
      "Show a sentence over the picture for five seconds; off ends it.", Bindable::kNo, true},
@@ -72,12 +74,12 @@ inline constexpr CommandInfo kCommands[] = {
      "degrees about X or Y move it by 1.5 radii down or to the right.",
      Bindable::kNo, false},
     {"operator_panel", CommandOf::kWall, "",
-     "Switch the ball between the panel on the operator's tile and what it moved before.",
+     "Switch the ball between operating the panel on the operator's tile and moving what it moved "
+     "before.",
      Bindable::kOnce, true},
     {"operator_pointer", CommandOf::kWall, "X Y 0|1",
      "Move the pointer of the operator's panel to a pixel of the frame, with its button pressed "
-     "(1) "
-     "or not (0); out takes it away.",
+     "(1) or not (0); the argument out removes the pointer.",
      Bindable::kNo, false},
     {"snapshot", CommandOf::kWall, "",
      "Write the newest frame into the folder that /wall/snapshots names.", Bindable::kOnce, false},
@@ -89,29 +91,34 @@ inline constexpr CommandInfo kCommands[] = {
      "Set the frame rate, 1 to 240 per second; auto returns to the configured rate.", Bindable::kNo,
      false},
     {"align", CommandOf::kWall, "REQUEST",
-     "Move the corners of an output's picture; the request list shows them.", Bindable::kNo, false},
+     "Move the corners of an output's picture; the REQUEST list shows where they are.",
+     Bindable::kNo, false},
     {"testcard", CommandOf::kWall, "NAME|off",
      "Show a test card instead of the picture: grid, edges, ramps, names, focus, black, grey, "
      "white; off ends it.",
      Bindable::kNo, false},
-    {"next_testcard", CommandOf::kWall, "", "Show the next test card, and none after the last.",
-     Bindable::kOnce, false},
+    {"next_testcard", CommandOf::kWall, "",
+     "Show the next test card, or the picture again after the last one.", Bindable::kOnce, false},
     {"signal", CommandOf::kWall, "OUTPUT",
-     "Put the next signal of an output into shared memory, as `merlin snapshot --output` reads it.",
+     "Put the next frame that is sent to an output into shared memory, from where `merlin snapshot "
+     "--output` reads it.",
      Bindable::kNo, false},
     {"align_output_next", CommandOf::kWall, "",
-     "Choose the next output for align_left, align_right, align_up and align_down.",
+     "Choose the next output for alignment: align_left, align_right, align_up and align_down then "
+     "move a corner of it.",
      Bindable::kOnce, false},
-    {"align_corner_next", CommandOf::kWall, "", "Choose the next corner of that output.",
-     Bindable::kOnce, false},
-    {"align_left", CommandOf::kWall, "", "Move the chosen corner left by one pixel.",
-     Bindable::kOnce, false},
-    {"align_right", CommandOf::kWall, "", "Move the chosen corner right by one pixel.",
-     Bindable::kOnce, false},
-    {"align_up", CommandOf::kWall, "", "Move the chosen corner up by one pixel.", Bindable::kOnce,
+    {"align_corner_next", CommandOf::kWall, "",
+     "Choose the next corner of the output that is chosen for alignment.", Bindable::kOnce, false},
+    {"align_left", CommandOf::kWall, "",
+     "Move the corner that is chosen for alignment to the left by one pixel.", Bindable::kOnce,
      false},
-    {"align_down", CommandOf::kWall, "", "Move the chosen corner down by one pixel.",
-     Bindable::kOnce, false},
+    {"align_right", CommandOf::kWall, "",
+     "Move the corner that is chosen for alignment to the right by one pixel.", Bindable::kOnce,
+     false},
+    {"align_up", CommandOf::kWall, "",
+     "Move the corner that is chosen for alignment up by one pixel.", Bindable::kOnce, false},
+    {"align_down", CommandOf::kWall, "",
+     "Move the corner that is chosen for alignment down by one pixel.", Bindable::kOnce, false},
     {"align_undo", CommandOf::kWall, "", "Undo the last step of the alignment.", Bindable::kOnce,
      false},
     {"align_redo", CommandOf::kWall, "", "Redo the step of the alignment that was undone last.",

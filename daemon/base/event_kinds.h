@@ -1,5 +1,5 @@
-// Events: a sentence each, and their kinds: what the topic "event" tells of, and which of them
-// alarms can be for.
+// Events, which the topic "event" publishes: a sentence and a severity each; and their kinds, for
+// most of which alarms can be set.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace merlin {
 
-// kFault: somebody should look; a warning in the log. kNews: a recovery, or a change by itself.
-// kRoutine: what people did, and what each start does: no alarm is told of it.
+// kFault: somebody should look; a warning in the log. kNews: a recovery, or a change that nobody
+// requested. kRoutine: what people did, or what happens at every start; it raises no alarm.
 enum class Severity { kFault, kNews, kRoutine };
 
 inline constexpr std::array<std::string_view, 3> kSeverityNames = {"fault", "news", "routine"};
@@ -19,7 +19,8 @@ constexpr std::string_view nameOf(Severity severity) {
   return kSeverityNames[static_cast<std::size_t>(severity)];
 }
 
-// Of a name that is none of them: kFault, so that nobody misses what a newer release says.
+// The severity of that name; kFault for an unknown name, so that nobody misses what a newer release
+// reports.
 constexpr Severity severityOf(std::string_view name) {
   for (const Severity severity : {Severity::kNews, Severity::kRoutine}) {
     if (nameOf(severity) == name) return severity;
@@ -85,7 +86,7 @@ inline constexpr EventKind kRoleEvent{
 // Routine: it happens whenever somebody moves a hand in that way.
 inline constexpr EventKind kGestureEvent{"gesture", "a hand has made a gesture"};
 
-// Those that alarms can be for.
+// The kinds for which alarms can be set.
 inline constexpr std::array kEventKinds = {
     kDeviceEvent,  kWallEvent,   kPictureEvent, kModelEvent,  kProjectorEvent,
     kServiceEvent, kServerEvent, kStateEvent,   kFlightEvent, kRoleEvent};

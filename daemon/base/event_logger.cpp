@@ -12,7 +12,8 @@ constexpr double kSentencesPerSecond = 1.0 / 60, kEventsPerSecond = 1.0 / 10;
 
 LogLevel levelOf(bool is_fault) { return is_fault ? LogLevel::kWarning : LogLevel::kInfo; }
 
-// The sentence without its figures: "rate reduced to 14.9 of 30 Hz" is the same as "... 15.1 ...".
+// Removes the figures from a sentence, so that "rate reduced to 14.9 of 30 Hz" equals "... 15.1
+// ...".
 std::string withoutFigures(std::string_view sentence) {
   std::string text;
   for (const char c : sentence) {

@@ -15,10 +15,10 @@
 namespace merlin {
 
 // A device with a loose plug, or a program that connects again and again, must not fill the
-// journal. The same sentence (figures do not count) is logged kSentences times at once and then
-// once a minute; events of one kind kEvents times at once and then once in ten seconds. What was
-// left out is counted, and a line says how many, as soon as a line may be written again.
-// Thread-bound.
+// journal. The same sentence (digits are ignored) is logged up to kSentences times at once, then
+// once a minute; events of one kind up to kEvents times at once, then once in ten seconds. Events
+// beyond that are counted, and a line reports their number as soon as the limit allows another
+// line. Thread-bound.
 class EventLogger {
  public:
   using Write = std::function<void(LogLevel, std::string_view text, const LogFields&)>;
@@ -38,7 +38,7 @@ class EventLogger {
   // What is limited: a sentence of a kind, or a kind.
   struct Subject {
     EventKind kind;
-    std::string sentence;  // the last one; empty: a kind
+    std::string sentence;  // the last one; empty if this is a kind
     bool is_fault = false;
     TokenBucket bucket;
     int left_out = 0;

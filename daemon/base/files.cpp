@@ -183,8 +183,8 @@ std::string folderOf(const std::string& path) {
   return slash == std::string::npos ? "." : path.substr(0, slash + 1);
 }
 
-// The file that becomes `path` once it is complete. If the file system supports it (O_TMPFILE), it
-// has no name until then, so that a killed process leaves nothing behind.
+// A new file that becomes `path` once it is complete. If the file system supports O_TMPFILE, the
+// file has no name until then, so that a killed process leaves nothing behind.
 class FreshFile {
  public:
   FreshFile(const std::string& path, mode_t mode)

@@ -28,7 +28,7 @@ struct FileStamp {
 };
 // The stamp of the file at `path` (links are followed); nothing if it is not a regular file.
 std::optional<FileStamp> fileStamp(const std::string& path);
-// The same, also of a folder, whose stamp changes when a file in it comes or goes.
+// The same, also for a folder, whose stamp changes when a file in it is added or removed.
 std::optional<FileStamp> fileOrFolderStamp(const std::string& path);
 
 // A whole file, copied into our own memory. Reentrant.
@@ -39,7 +39,7 @@ class FileCopy {
   // larger than this machine's memory, or changed while it was read); kMalformed (not a regular
   // file).
   static Result<FileCopy> read(const std::string& path, std::size_t most = kAll);
-  // The same of a file that is open. `path`: for messages.
+  // The same for an open file. `path`: its name, for messages.
   static Result<FileCopy> read(int fd, const std::string& path, std::size_t most = kAll);
 
   std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
@@ -71,7 +71,8 @@ class MappedFile {
   ~MappedFile();
 
   std::span<const std::byte> bytes() const noexcept { return {data_, size_}; }
-  // The same bytes but for a UTF-8 byte order mark at their beginning, which belongs to no format.
+  // The same bytes, without a UTF-8 byte order mark at their beginning, since no format includes
+  // it.
   std::string_view text() const noexcept {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     const std::string_view all(reinterpret_cast<const char*>(data_), size_);

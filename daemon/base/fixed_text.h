@@ -13,7 +13,7 @@ constexpr std::string_view textIn(const char (&field)[N]) noexcept {
   return std::string_view(field, N).substr(0, std::string_view(field, N).find('\0'));
 }
 
-// Writes the text into a field, without what is too long, and zero bytes after it, at least one.
+// Writes the text into a field, cut to at most N - 1 bytes, and fills the rest with zero bytes.
 template <std::size_t N>
 constexpr void setText(char (&field)[N], std::string_view text) noexcept {
   const std::size_t length = std::min(text.size(), N - 1);

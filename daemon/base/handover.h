@@ -21,7 +21,7 @@ class Handover {
   Handover(const Handover&) = delete;
   Handover& operator=(const Handover&) = delete;
 
-  // Offers a value in place of one that was not taken yet.
+  // Offers a value, which replaces an offered one that was not taken yet.
   void offer(T value) {
     auto fresh = std::make_unique<Node>(Node{std::move(value), nullptr});
     delete offered_.exchange(fresh.release(), std::memory_order_acq_rel);
@@ -49,15 +49,15 @@ class Handover {
  private:
   struct Node {
     T value;
-    Node* next;  // of those given back
+    Node* next;  // in the list given_back_
   };
   static void free(Node* node) noexcept {
     while (node) delete std::exchange(node, node->next);
   }
 
   std::atomic<Node*> offered_{nullptr};
-  // All that were given back since the last offer. Were there room for one only, a taker that gave
-  // one back just after the last offer could never take that offer.
+  // A list of all nodes given back since the last offer. If it had room for only one, a taker that
+  // gave one back just after the last offer could never take that offer.
   std::atomic<Node*> given_back_{nullptr};
 };
 

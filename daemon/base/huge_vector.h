@@ -1,5 +1,5 @@
 // Large vectors on huge pages: huge_array.h says why. A page fault costs as much as writing the
-// page, or, on a virtual machine, many times that; of huge pages there are 512 times fewer.
+// page, or, on a virtual machine, many times that; huge pages cause 512 times fewer faults.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace merlin {
 
-// v.resize(size), on huge pages where the vector gets new memory of some size. Throws
+// v.resize(size), on huge pages if the vector gets new memory that is large enough. Throws
 // std::bad_alloc.
 template <typename T>
 void resizeHuge(std::vector<T>& v, std::size_t size) {

@@ -1,6 +1,6 @@
-// systemd's journal: lines with fields. Its native protocol is spoken here, and not
-// sd_journal_send() of libsystemd called, because that waits while the journal hangs, and a log
-// must never stop the daemon. Source: https://systemd.io/JOURNAL_NATIVE_PROTOCOL
+// systemd's journal: lines with fields. This code speaks its native protocol itself; libsystemd's
+// sd_journal_send() would wait while the journal hangs, and a log must never stop the daemon.
+// Source: https://systemd.io/JOURNAL_NATIVE_PROTOCOL
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace merlin {
 
-// Name, of A-Z and _, and value.
+// Name (of the characters A-Z and _) and value.
 using JournalField = std::pair<std::string_view, std::string_view>;
 
 // Whether the descriptor is the stream to the journal whose "DEVICE:INODE" systemd puts into the

@@ -14,11 +14,12 @@ class KeptFiles {
  public:
   virtual ~KeptFiles() = default;
 
-  // The file that the process before this one kept under this name, once; invalid if there is none.
+  // Returns the file that the previous process kept under this name; invalid if there is none, and
+  // from the second call on.
   virtual UniqueFd take(const std::string& name) = 0;
 
-  // Keeps the file under this name, instead of one that was kept before, until forget() or until
-  // the service is stopped. False if nobody would keep it.
+  // Keeps the file under this name until forget() or until the service is stopped; replaces a file
+  // kept under it before. Returns false if the file could not be kept.
   virtual bool keep(const std::string& name, int fd) = 0;
   virtual void forget(const std::string& name) = 0;
 };

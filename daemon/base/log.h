@@ -1,10 +1,10 @@
 // Logging: one line per event, to systemd's journal or to stderr.
 //
 // Where stderr is the journal, a line is sent there with the fields PRIORITY, MESSAGE,
-// SYSLOG_IDENTIFIER and those of LogFields. If the journal takes it not that way, and where
-// JOURNAL_STREAM is set but stderr leads elsewhere, a line on stderr starts with its syslog
-// priority, "<4>", and has no time; in a terminal it starts with the time of day. Pure folders do
-// not log: they return Results, and the composition root logs them.
+// SYSLOG_IDENTIFIER and those of LogFields. If the journal does not accept the line that way, or if
+// JOURNAL_STREAM is set but stderr leads elsewhere, the line is written to stderr, begins with its
+// syslog priority, "<4>", and has no time. In a terminal, a line begins with the time of day. Pure
+// folders do not log: they return Results, and the composition root logs them.
 #pragma once
 
 #include <cstdio>

@@ -16,13 +16,13 @@ namespace {
 
 constexpr int kAsItIs = O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY;
 
-// O_NOFOLLOW makes a link ELOOP, and with O_DIRECTORY ENOTDIR.
+// For a link, O_NOFOLLOW gives ELOOP, or ENOTDIR together with O_DIRECTORY.
 Error failedAt(const std::string& path, int error) {
   if (error == ELOOP)
     return {Errc::kMalformed, path + ": is a link, and links are not followed here"};
   if (error == ENOTDIR)
     return {Errc::kMalformed, path + ": is not a folder (links are not followed here)"};
-  // A socket, or a device that is not there.
+  // ENXIO: the path is a socket, or a device that is not present.
   if (error == ENXIO) return {Errc::kMalformed, path + ": is not a regular file"};
   return {error == ENOENT ? Errc::kNotFound : Errc::kIo,
           fmt::format("{}: {}", path, std::strerror(error))};

@@ -17,8 +17,8 @@ void PanelPointer::place(const std::optional<Place>& place) {
   place_ = place;
 }
 
-// A motion takes the place of one that waits. If too much waits, the oldest is dropped: the newest
-// tells how things are.
+// A motion replaces a motion that waits at the end of the queue. If the queue is full, the oldest
+// entry is dropped, since the newest one describes the present state.
 void PanelPointer::tell(const Told& told) {
   if (told == last_) return;
   const bool moves = told.pressed == last_.pressed && told.out == last_.out;

@@ -21,18 +21,19 @@ class PanelPointer {
 
     bool operator==(const Place&) const = default;
   };
-  // Nothing: the picture does not show it; what is held is let go.
+  // Sets where the picture shows the panel; nothing: it does not, and a held button is released.
   void place(const std::optional<Place>& place);
 
-  // The pointer is at a pixel of the picture. `pressed`: its (left) button. Returns true if the
-  // panel takes the event: it is to have no other effect. A drag belongs to where it began.
+  // The pointer is at a pixel of the picture. `pressed`: whether its (left) button is pressed.
+  // Returns true if the panel takes the event, which must then have no other effect. A drag belongs
+  // to the panel only if it began there.
   bool point(int x, int y, bool pressed);
   // The pointer has left the picture, or the finger the screen.
   void leave();
 
   // The argument of the next command operator_pointer; nothing if there is none. While the button
-  // is held it is told again every kRepeat, so that merlind can let it go if nothing is heard any
-  // more. Motions since the last call are one; presses and releases stay as they are.
+  // is held, the command is repeated every kRepeat, so that merlind can release the button if the
+  // commands cease. Motions since the last call are merged into one; presses and releases are not.
   std::optional<std::string> take(Timestamp now);
 
   static constexpr Duration kRepeat = std::chrono::milliseconds(500);

@@ -10,8 +10,8 @@
 
 namespace merlin {
 
-// Like writeFile() (daemon/base/files.h), with these permissions, of which the process' umask takes
-// away: at no moment may more people read the file.
+// Like writeFile() (daemon/base/files.h), with the permissions `mode` less the process' umask; also
+// while it is being written, nobody else can read the file.
 Result<Ok> writeRestrictedFile(const std::string& path, std::string_view content, mode_t mode);
 
 }  // namespace merlin

@@ -31,8 +31,8 @@ class SettingsVisitor {
   virtual void texts(const char* key, std::vector<std::string>& values, const char* help) = 0;
   // A file name, relative to the folder of the configuration.
   virtual void path(const char* key, std::string& value, const char* help) = 0;
-  // The name of a file that holds a secret: a password, a secret key. What is meant for strangers
-  // leaves the name out too, since people also write the secret itself in its place.
+  // The name of a file that holds a secret: a password, a secret key. Output that is meant for
+  // strangers omits the name as well, since some people enter the secret itself there.
   virtual void secretFile(const char* key, std::string& value, const char* help) {
     path(key, value, help);
   }

@@ -52,7 +52,7 @@ std::string userName(uid_t user) {
   return found ? found->pw_name : fmt::format("number {}", user);
 }
 
-// Removes an object that has our name. Only root can remove another user's.
+// Removes an object that has our name. Only root can remove that of another user.
 Result<Ok> removeObject(const std::string& name) {
   if (::shm_unlink(name.c_str()) == 0 || errno == ENOENT) return Ok{};
   const int error = errno;

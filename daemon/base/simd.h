@@ -73,7 +73,8 @@ MERLIN_INLINE void store(float* p, const Floats& v) { std::memcpy(p, &v, sizeof 
 MERLIN_INLINE void store(std::uint32_t* p, const Ints& v) { std::memcpy(p, &v, sizeof v); }
 
 // sum + a * b, for products that a double holds exactly, as those of two floats: one rounding then
-// gives the same bits as two. The four at a time may only be used in a function with MERLIN_WIDE.
+// gives the same bits as two. The overload for four lanes may only be used in a function with
+// MERLIN_WIDE.
 MERLIN_INLINE Vector<double, 16> addExact(const Vector<double, 16>& sum,
                                           const Vector<double, 16>& a, double b) {
   return sum + a * b;
@@ -109,7 +110,7 @@ MERLIN_WIDE MERLIN_INLINE Ints gather(const std::uint32_t* from, const Ints& ind
 MERLIN_INLINE Floats toFloats(const Ints& v) { return __builtin_convertvector(v, Floats); }
 MERLIN_INLINE Ints toInts(const Floats& v) { return __builtin_convertvector(v, Ints); }
 
-// The lesser and the greater of each two lanes; b if they cannot be compared.
+// Lane by lane, the lesser or the greater value; that of b if they cannot be compared.
 template <typename V>
 MERLIN_INLINE V least(const V& a, const V& b) {
   return a < b ? a : b;

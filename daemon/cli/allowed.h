@@ -7,8 +7,8 @@
 
 namespace merlin::cli {
 
-// Checks that this user may write to the file or socket, or into the folder. What is absent is no
-// error here. Errors: kIo, with the group that may and how to join it.
+// Checks that this user may write to the file or socket, or into the folder. A missing file is no
+// error here. Errors: kIo, with the group that may write and how to join it.
 Result<Ok> checkAllowed(const std::string& path);
 
 }  // namespace merlin::cli

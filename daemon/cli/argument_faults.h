@@ -1,5 +1,5 @@
-// What is wrong with a program's arguments, as one sentence: CLI11's own names neither the
-// subcommand nor the word that it did not know. For the files that include CLI11 already.
+// Describes what is wrong with a program's arguments, in one sentence; CLI11's own sentence names
+// neither the subcommand nor the unknown word. For the files that include CLI11 already.
 #pragma once
 
 #include <string>
@@ -55,7 +55,8 @@ inline std::vector<std::string> optionsOf(const CLI::App& app) {
   return names;
 }
 
-// Of a word that nothing expected; `needs_command`: where a command's name has to stand.
+// The sentence about an unexpected word. `needs_command`: the name of a command was expected in its
+// place.
 inline std::string unknownWord(const GivenCommand& given, const std::string& word,
                                bool needs_command) {
   const CLI::App& app = *given.app;

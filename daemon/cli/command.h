@@ -9,8 +9,8 @@
 
 namespace merlin::cli {
 
-// What the given subcommand does; returns the exit status. The subcommand's callback sets it during
-// parsing, and main() calls it after parsing.
+// Executes the given subcommand and returns the exit status. The subcommand's callback sets it
+// during parsing, and main() calls it after parsing.
 using Run = std::function<int()>;
 
 class RemoteOptions;
@@ -36,8 +36,8 @@ void addSnapshot(Command app, Run& run);
 void addTrace(Command app, Run& run);
 void addWall(Command app, Run& run);
 
-// The same for those that can also speak with a daemon of another machine. `remote` must outlive
-// what the subcommand does.
+// The same for subcommands that can also communicate with a daemon of another machine. `remote`
+// must outlive the execution of `run`.
 void addCommandsByName(Command app, Run& run, RemoteOptions& remote);
 void addStatus(Command app, Run& run, RemoteOptions& remote);
 void addWatch(Command app, Run& run, RemoteOptions& remote);

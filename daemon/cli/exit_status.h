@@ -32,8 +32,8 @@ inline int exitStatus(const Error& error) {
 }
 
 // Runs `main` and returns its exit status. After an uncaught exception (usually bad_alloc), and if
-// stdout could not be written, prints one line to stderr and returns `failed`, or in the latter
-// case the status of `main` if that is greater.
+// stdout could not be written, prints one line to stderr and returns `failed`; in the latter case,
+// returns the status of `main` if that is greater.
 template <typename Main>
 int runGuarded(const char* program, Main main, int failed = kExitFailed) noexcept {
   try {

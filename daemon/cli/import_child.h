@@ -1,5 +1,5 @@
 // ImportChild: runs the program merlin-import, which reads a file in a sandbox (daemon/import), and
-// follows what it says.
+// follows its reports.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@
 
 namespace merlin::cli {
 
-// What merlin-import says, one line each; see daemon/import/merlin_import.cpp. Pure.
+// Parses the reports of merlin-import, one a line; see daemon/import/merlin_import.cpp. Pure.
 class ImportReport {
  public:
-  // Takes bytes as they come. Lines that are too long or not understood are left out.
+  // Takes bytes as they arrive. Lines that are too long or not understood are ignored.
   void take(std::string_view bytes);
 
-  double share() const noexcept { return share_; }           // of the work that is done, 0..1
+  double share() const noexcept { return share_; }           // share of the work that is done, 0..1
   std::uint64_t items() const noexcept { return items_; }    // pixels so far
   std::uint64_t pixels() const noexcept { return pixels_; }  // of the picture; 0: not known yet
   const std::vector<std::string>& lacks() const noexcept { return lacks_; }
@@ -45,18 +45,18 @@ class ImportReport {
 
 class ImportChild {
  public:
-  // Starts merlin-import, which lies beside this program, with these arguments. Errors:
-  // kUnsupported (it is not installed), kIo.
+  // Starts merlin-import, which is in the same folder as this program, with these arguments.
+  // Errors: kUnsupported (it is not installed), kIo.
   static Result<ImportChild> start(const std::vector<std::string>& arguments);
   ~ImportChild();  // ends it
   ImportChild(ImportChild&& other) noexcept;
   ImportChild(const ImportChild&) = delete;
   ImportChild& operator=(const ImportChild&) = delete;
 
-  // Follows it until it ends. `stop`: a descriptor that is readable when it is to be ended.
-  // `on_progress` is called about ten times a second. Returns the name of the result. Errors: those
-  // of the import; kClosed (`stop`); kTimeout (no progress for `patience`); kMalformed (it ended by
-  // a signal, or above a limit).
+  // Follows the process until it ends. `stop`: a descriptor that becomes readable when the process
+  // is to be ended. `on_progress` is called about ten times a second. Returns the name of the
+  // result. Errors: those of the import; kClosed (`stop`); kTimeout (no progress for `patience`);
+  // kMalformed (it ended by a signal, or above a limit).
   Result<std::string> follow(int stop, const std::function<void(const ImportReport&)>& on_progress,
                              Duration patience = kPatience);
 

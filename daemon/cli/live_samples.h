@@ -18,10 +18,10 @@ namespace merlin::cli {
 template <typename Sample>
 class LiveSamples {
  public:
-  // `slot`: name of the samples' slot in shared memory, "tracker1"; `device`: of the device whose
-  // health they depend on, "tracker". Errors: kNotFound (there is no shared memory of `instance`),
-  // kClosed (its merlind has ended), kInvalidArgument (that merlind has no such device), those of
-  // DevicesReader::open() and SlotTable::channel().
+  // `slot`: name of the samples' slot in shared memory, "tracker1"; `device`: name of the device
+  // whose health they depend on, "tracker". Errors: kNotFound (there is no shared memory of
+  // `instance`), kClosed (its merlind has ended), kInvalidArgument (that merlind has no such
+  // device), those of DevicesReader::open() and SlotTable::channel().
   static Result<LiveSamples> open(const std::string& instance, const std::string& slot,
                                   const std::string& device) {
     const std::string segment = shm::segmentName(instance, "devices");

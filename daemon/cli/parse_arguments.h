@@ -17,13 +17,13 @@
 
 namespace merlin {
 
-// `page`: of the manual; it is used while `app` parses.
+// `page`: settings of the manual page; must outlive the parsing.
 inline void addManualOptions(CLI::App& app, const manual::PageSettings& page) {
   app.add_flag_callback(
       "--print-manual",
       [&] {
         const std::string text = manPage(cli::programOf(app), page, MERLIN_VERSION);
-        throw CLI::CallForVersion(text, 0);  // as --version ends: the text is printed
+        throw CLI::CallForVersion(text, 0);  // handled like --version: the text is printed
       },
       "Print this program's manual page, for man -l -, and exit");
   app.add_flag_callback(

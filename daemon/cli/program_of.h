@@ -1,5 +1,5 @@
-// What a CLI11 command line says of itself, as data for manual pages and completion. For the files
-// that include CLI11 already.
+// Extracts the description of a CLI11 command line, as data for manual pages and completion. For
+// the files that include CLI11 already.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,9 @@ inline std::vector<std::string> divided(std::string_view text, char by) {
   }
 }
 
-// CLI11 puts a value's placeholder and what its checks say into one text: "FLOAT:FLOAT in [1 - 9]",
-// "TEXT:{left,right}". The project's own placeholder for words is "on|off"; "NAME|FILE" is none.
+// CLI11 puts a value's placeholder and the descriptions of its checks into one text: "FLOAT:FLOAT
+// in [1 - 9]", "TEXT:{left,right}". The project's own placeholder for words is "on|off";
+// "NAME|FILE" is none.
 inline void setValue(const CLI::Option& option, manual::ProgramOption& facts) {
   const std::string whole = option.get_type_name();
   const std::size_t colon = whole.find(':');
@@ -62,7 +63,7 @@ inline manual::ProgramOption optionOf(const CLI::Option& option) {
   return facts;
 }
 
-// `top`: only there the options --help and --version are worth a word.
+// `top`: whether this is the top command; only there --help and --version are included.
 inline void addOptions(const CLI::App& app, bool top, manual::ProgramCommand& command) {
   for (const CLI::Option* option : app.get_options({})) {
     if (option->get_group().empty() || (!top && option == app.get_help_ptr())) continue;

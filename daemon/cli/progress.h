@@ -8,8 +8,8 @@
 
 namespace merlin::cli {
 
-// Is told how far an operation is: its title, as the bar has it ("reducing"), and the share that is
-// done, 0..1. Called often, on the thread that works.
+// Receives the progress of an operation: its title, as in the bar ("reducing"), and the share that
+// is done, 0..1. Called often, on the thread that works.
 using ProgressListener = std::function<void(const std::string& title, double share)>;
 
 // On a terminal, redraws one line up to ten times a second; otherwise prints a line after each

@@ -11,8 +11,9 @@
 
 namespace merlin::cli {
 
-// What was given before the subcommand: merlin --endpoint ... --keys ... --server-key ... COMMAND.
-// Valid once the command line has been parsed; must outlive what the subcommands do.
+// The options given before the subcommand: merlin --endpoint ... --keys ... --server-key ...
+// COMMAND. Valid once the command line has been parsed; must outlive the execution of the
+// subcommand.
 class RemoteOptions {
  public:
   // Adds the options to the program's own.
@@ -21,12 +22,11 @@ class RemoteOptions {
   RemoteOptions(const RemoteOptions&) = delete;
   RemoteOptions& operator=(const RemoteOptions&) = delete;
 
-  // To be called by the callback of a subcommand that can speak with another machine's daemon: the
-  // daemon that it speaks with.
+  // Returns the daemon that the subcommand communicates with. To be called by the callback of a
+  // subcommand that can use another machine's daemon.
   DaemonAddress daemon(const std::string& instance);
 
-  // Checks that the subcommand that was given can do what these options ask. Errors:
-  // kInvalidArgument.
+  // Checks that the given subcommand supports these options. Errors: kInvalidArgument.
   Result<Ok> check() const;
 
  private:

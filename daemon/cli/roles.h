@@ -14,8 +14,8 @@
 
 namespace merlin::cli {
 
-// Which daemon a subcommand speaks with: one of this machine or, if an endpoint is given, one of
-// another machine, encrypted.
+// The daemon that a subcommand communicates with: one of this machine or, if an endpoint is given,
+// one of another machine, encrypted.
 struct DaemonAddress {
   std::string instance = "merlin";     // of this machine
   std::vector<std::string> endpoints;  // "tcp://HOST:PORT", one for each role of another machine
@@ -31,7 +31,7 @@ struct FoundRole {
   std::string role;  // "devices" or "wall"; empty: that of the other machine's endpoint
   shm::Endpoints endpoints;
   std::uint32_t pid = 0;         // of its process; one may have both roles
-  std::uint64_t generation = 0;  // another one after each start
+  std::uint64_t generation = 0;  // differs after each start
   std::optional<status::ClientKeys> keys = {};
 
   status::CommandAddress commands() const { return {endpoints.command, keys}; }
@@ -42,7 +42,7 @@ struct FoundRole {
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 
 // A role whose process has left its shared memory behind, or gives no sign of life: it was killed,
-// has crashed or hangs. One that ended in order removes its shared memory.
+// has crashed or hangs. A process that ends normally removes its shared memory.
 struct LostRole {
   std::string role;
   Duration silent{};      // since its last heartbeat
@@ -55,8 +55,9 @@ struct LostRole {
 // The lost roles of this instance; none if no merlind ever ran under this name.
 std::vector<LostRole> lostRoles(const std::string& instance);
 
-// The same for any daemon. One of another machine is not asked, and its roles are unknown. Errors:
-// those of findRoles() and of reading the keys; kInvalidArgument (a key is missing or invalid).
+// The same for any daemon. A daemon of another machine is not contacted, so its roles are unknown.
+// Errors: those of findRoles() and of reading the keys; kInvalidArgument (a key is missing or
+// invalid).
 Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon);
 
 // Whether this process runs the program merlind, whatever its role, and also while it starts.
@@ -71,15 +72,17 @@ struct RoleRequest {
   Duration patience = std::chrono::seconds(5);  // maximum time to wait for the answer
 };
 
-// Whether this user may write to the socket of an endpoint: ZeroMQ would try again until the
-// patience is over. Of another machine's nothing is checked. Errors: those of checkAllowed().
+// Checks that this user may write to the socket of an endpoint, because ZeroMQ would only retry
+// until the patience is over. Endpoints of another machine are not checked. Errors: those of
+// checkAllowed().
 Result<Ok> checkMayAsk(std::string_view endpoint);
 
 // Sends a command to the role and returns the answer as JSON. Errors: those of findRoles(),
 // checkAllowed() and status::ask(); kIo if this daemon does not run the role.
 Result<std::string> askRole(const std::string& instance, const std::string& role,
                             const RoleRequest& request);
-// The same for any daemon. Of several endpoints the one is asked that has the role.
+// The same for any daemon. If there are several endpoints, the command goes to the one with the
+// role.
 Result<std::string> askRole(const DaemonAddress& daemon, const std::string& role,
                             const RoleRequest& request);
 

@@ -17,11 +17,11 @@
 
 namespace merlin::cli {
 
-// Its files go with this object. Thread-bound.
+// The folder and its files are removed with this object. Thread-bound.
 class WorkFolder {
  public:
-  // Makes a folder of a new name where `result` lies or will lie. In a folder that is shared by its
-  // group, the group may clear up what a process that was killed has left. Errors: kIo.
+  // Makes a folder with a new name beside `result`. If the parent folder is shared by a group, the
+  // group may remove what a killed process has left. Errors: kIo.
   static Result<WorkFolder> make(const std::filesystem::path& result) {
     const auto folder = std::filesystem::absolute(result).parent_path();
     std::string name = (folder / ".merlin-import-XXXXXX").string();

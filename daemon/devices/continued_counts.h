@@ -1,5 +1,5 @@
-// ContinuedCounts: lets a device's counters go on where they were when a changed configuration
-// makes the device anew. The first of the sinks that its samples and health pass through.
+// ContinuedCounts: continues a device's counters when a changed configuration recreates the device.
+// It is the first of the sinks that the device's samples and health pass through.
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ class ContinuedCounts final : public SampleSink, public HealthSink {
     health_.publish(sum);
   }
 
-  // What follows comes from a new device, whose counters begin at 0. REQUIRES: no thread of the
-  // device runs.
+  // To be called before samples of a new device follow, whose counters begin at 0. REQUIRES: no
+  // thread of the device runs.
   void restart() noexcept {
     before_ = last_;
     if (last_.samples > 0) ++before_.reconnects;

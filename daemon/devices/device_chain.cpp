@@ -7,7 +7,7 @@
 namespace merlin::devices {
 namespace {
 
-// Those of a hand whose gestures are not to be recognised are none.
+// Returns the gestures to recognise for a hand; nothing if its gestures are switched off.
 std::optional<nn::GestureModel> gesturesOf(const HandSettings& hand, const Trained& trained) {
   return hand.gestures ? trained.gestures : std::nullopt;
 }
@@ -30,7 +30,7 @@ Result<Trained> loadTrained(const Settings& settings) {
   return trained;
 }
 
-// A glove sends about a hundred hands a second: fifteen of them are a posture that is held.
+// A glove sends about 100 samples a second; fifteen samples in a row are a posture that is held.
 PostureSink::Settings postureSettings(const DevicesSettings& settings) {
   nn::DriftSettings drift;
   drift.least_hands = 15;

@@ -1,4 +1,5 @@
-// DeviceChain: what one device's samples and health pass through on their way to shared memory.
+// DeviceChain: the sinks that one device's samples and health pass through on their way to shared
+// memory.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@
 
 namespace merlin::devices {
 
-// What recognises postures and gestures: read from the files that the settings name; nothing for
-// those that name none.
+// The models that recognise postures and gestures, read from the files that the settings name;
+// nothing where they name no file.
 struct Trained {
   std::optional<nn::TrainedPostures> postures;
   std::optional<nn::GestureModel> gestures;
@@ -31,14 +32,14 @@ struct Trained {
 // Errors: those of nn::loadNetwork() and nn::loadGestures().
 Result<Trained> loadTrained(const Settings& settings);
 
-// How postures are recognised with these settings.
+// The part of these settings that concerns the recognition of postures.
 PostureSink::Settings postureSettings(const DevicesSettings& settings);
 
-// A glove's samples are first recognised as postures, and a glove's and a ball's begin and end
-// actions; each writes its own result before the sample itself is written. A tracker's become hands
-// after they were written, and then gestures, so that these delay no sample. Made once, while the
-// device itself may come and go. Thread-bound to the device's thread, except for what says
-// otherwise.
+// A glove's sample first passes the recognition of postures; samples of gloves and balls begin and
+// end actions. These results are written before the sample itself. A tracker's sample is written
+// first and only then used for hands and gestures, so that these delay no sample. The chain is made
+// once, while the device itself may be recreated. Thread-bound to the device's thread, except for
+// what says otherwise.
 class DeviceChain {
  public:
   // `device`: index in the list of devices. `generation`: of the daemon.
@@ -49,14 +50,14 @@ class DeviceChain {
   SampleSink& samples() { return *counts_; }
   HealthSink& health() { return *counts_; }
 
-  // For one other thread: these settings from the device's next sample on.
+  // For one other thread: applies these settings from the device's next sample on.
   void rebind(const DevicesSettings& settings);
   void reloadHands(const DevicesSettings& settings);
   void reloadPostures(const Trained& trained, const DevicesSettings& settings);
   void reloadGestures(const Trained& trained, const DevicesSettings& settings);
 
-  // The device is closed: what its inputs hold ends, and its counters will go on where they are.
-  // REQUIRES: no thread of the device runs.
+  // To be called when the device was closed: ends the actions that its inputs hold; its counters
+  // will continue from their values. REQUIRES: no thread of the device runs.
   void close(std::int64_t now_ns) noexcept;
 
  private:
@@ -74,10 +75,11 @@ class DeviceChain {
                                          std::size_t hand) const;
 
   shm::DevicesSegment& segment_;
-  // Each passes on to the one before it; counts_ is the first that a sample reaches.
+  // Each sink passes samples on to the one declared before it; counts_ is the first that a sample
+  // reaches.
   shm::ShmSink memory_;
   shm::ShmHealthSink health_;
-  std::unique_ptr<actions::ActionSink> actions_;  // null for those that have no inputs
+  std::unique_ptr<actions::ActionSink> actions_;  // null for devices without inputs
   std::unique_ptr<PostureSink> postures_;         // null except for a glove
   std::vector<Hand> hands_;                       // that follow a tracker
   std::unique_ptr<ContinuedCounts> counts_;

@@ -36,8 +36,8 @@ struct KnownNames {
   std::vector<std::string> names;
 };
 
-// Calls each(place, input, name in it) for the inputs of this kind in the file's bindings, also for
-// those that have to be held with another.
+// Calls each(place, input, name in it) for the inputs of this kind in the file's bindings,
+// including those that must be held together with another input.
 template <typename Each>
 void forBindings(const LoadedSettings& loaded, actions::Input::Kind kind, const Each& each) {
   if (!loaded.lines.contains("/bindings")) return;
@@ -76,11 +76,12 @@ void checkNoGestures(LoadedSettings& loaded) {
               });
 }
 
-constexpr std::string_view kButtonPrefix = "btn_";  // as long as that of the others, "key_"
+constexpr std::string_view kButtonPrefix = "btn_";  // as long as the other prefix, "key_"
 
 bool isButton(std::string_view key) { return key.starts_with(kButtonPrefix); }
 
-// The input that most resembles this key, "button.south" for "btn_sout"; empty if none does.
+// Returns the input that most resembles this key, "button.south" for "btn_sout"; empty if none
+// does.
 std::string nearestKey(const std::string& name) {
   std::vector<std::string> names;
   for (std::uint16_t code = 0; code < io::kKeyCodes; ++code) {
@@ -93,7 +94,8 @@ std::string nearestKey(const std::string& name) {
   return (isButton(name) ? "button." : "key.") + near;
 }
 
-// The kernel's name of a key without KEY_ or BTN_, in lower case, as an opened input device has it.
+// Returns the kernel's name of a key in lower case without KEY_ or BTN_, as an opened input device
+// reports it.
 std::string shortKeyName(std::uint16_t code) {
   std::string name = io::keyRecord(code).text.data();
   std::ranges::transform(name, name.begin(),
@@ -101,8 +103,8 @@ std::string shortKeyName(std::uint16_t code) {
   return name;
 }
 
-// The name that the list "buttons" has for what is called so elsewhere ("btn_south", "a" of BTN_A),
-// or else the nearest one; empty if there is none.
+// Returns the name in the list "buttons" for a key's other names ("btn_south", or "a" for BTN_A),
+// otherwise the most similar name; empty if there is none.
 std::string nearestButton(const std::string& name, const std::vector<std::string>& names) {
   for (const char* const prefix : {"", "btn_", "key_"}) {
     if (const auto code = io::keyCode(prefix + name)) return shortKeyName(*code);
@@ -128,8 +130,8 @@ void checkButtons(LoadedSettings& loaded) {
   }
 }
 
-// The address with the path of the file that its links lead to. A device that is not there keeps
-// its path: it is compared when it is opened.
+// Returns the address with links resolved. The path of a device that is not present is unchanged;
+// it is compared when the device is opened.
 PortAddress withoutLinks(PortAddress address) {
   if (!address.service.empty()) return address;
   std::error_code unreadable;
@@ -138,8 +140,8 @@ PortAddress withoutLinks(PortAddress address) {
   return address;
 }
 
-// Two names of one device, such as its link in by-id and its number; the loader finds ports that
-// are the same as they stand.
+// Finds two names of one device, such as its link in by-id and its number; the loader already finds
+// ports with equal text.
 void checkLinks(LoadedSettings& loaded) {
   const auto& list = loaded.settings.devices.list;
   if (list.size() > kMostDevices) return;  // the loader refuses them

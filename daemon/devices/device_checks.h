@@ -11,17 +11,17 @@ namespace merlin::devices {
 // is bound by default.
 void checkPostures(LoadedSettings& loaded);
 
-// The same of the gestures' file and the bindings to gestures; also for a binding to a gesture
+// The same for the gestures' file and the bindings to gestures; also for a binding to a gesture
 // while /gestures/file names none.
 void checkGestures(LoadedSettings& loaded);
 
-// Adds a finding for each binding to a key or button of which the kernel knows none of that name,
-// and for each such key in the list "buttons" of an input device.
+// Adds a finding for each binding to a key or button whose name the kernel does not know, and for
+// each such name in the list "buttons" of an input device.
 void checkKeys(LoadedSettings& loaded);
 
 // Adds a finding for each port whose text is invalid, and for each transcript ("replay:FILE") that
-// cannot be played, and for each that is another name of a port before it, by a link. A missing
-// device is not a fault: it may be connected later.
+// cannot be played, and for each port that is, through a link, the same as an earlier one. A
+// missing device is not a fault: it may be connected later.
 void checkPorts(LoadedSettings& loaded);
 
 // Adds a finding for each projector whose password cannot be read from its file.

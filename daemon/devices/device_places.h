@@ -17,10 +17,10 @@ struct DevicePlace {
   std::size_t of_kind;  // how many devices of its kind are before it: the index of its samples
 };
 
-// In the order of the list. REQUIRES: every driver exists.
+// The places of all devices, in the order of the list. REQUIRES: every driver exists.
 std::vector<DevicePlace> devicePlaces(const DevicesSettings& settings);
 
-// What the slots are named after. REQUIRES: as above.
+// The names from which the slots' names are formed. REQUIRES: as above.
 shm::SlotNames slotNames(const DevicesSettings& settings);
 
 // How many devices of this kind are before the one named `name`, or 0 for the first one if `name`

@@ -60,7 +60,8 @@ DeviceHealth absent(bool configured, Timestamp now) {
   return health;
 }
 
-// Only a Fastrak is aligned by its settings; another tracker's samples are in its server's frame.
+// Only a Fastrak is aligned by its settings; the samples of other trackers are in their server's
+// frame.
 TrackerFrames framesOf(const DeviceSettings& device) {
   const FastrakSettings settings =
       device.line.driver == "fastrak" ? device.own.fastrak : FastrakSettings{};
@@ -217,7 +218,7 @@ void DevicesRole::start(Line& line) {
       });
 }
 
-// Stops the device's thread, if it has one. What its inputs hold ends.
+// Stops the device's thread, if it has one, and ends the actions that its inputs hold.
 void DevicesRole::close(std::size_t device) {
   Line& line = *lines_[device];
   line.thread.stop();

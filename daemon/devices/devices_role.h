@@ -26,7 +26,7 @@ namespace merlin::devices {
 // What changed in the settings of the devices while they are read.
 struct DevicesChanges {
   bool bindings = false, hand = false, postures = false, gestures = false;
-  std::vector<bool> lines;  // by device: its line or the settings of its driver
+  std::vector<bool> lines;  // by device: whether its line or the settings of its driver changed
 };
 
 class DevicesRole {
@@ -46,15 +46,15 @@ class DevicesRole {
   // it.
   void start();
 
-  // Gives the devices that run these settings, of which `changes` differ. Only the threads of
-  // `changes.lines` are stopped, which takes up to 50 ms for each, and made again; all else is
-  // swapped between two samples. `trained`: what these settings name.
-  // REQUIRES: start() was called; every driver exists and every port can be parsed; devices and
-  // hands are as many as before, with the same names and kinds.
+  // Applies these settings while the devices run. `changes`: the groups that differ. Only the
+  // threads of `changes.lines` are stopped, which takes up to 50 ms for each, and recreated;
+  // everything else is swapped between two samples. `trained`: loadTrained() of these settings.
+  // REQUIRES: start() was called; every driver exists and every port can be parsed; the devices and
+  // hands have the same number, names and kinds as before.
   void reload(const Settings& settings, const DevicesChanges& changes, const Trained& trained);
 
   void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
-  Result<std::string> mend();  // SegmentWriter::mend(), and of the flight recorder's memory
+  Result<std::string> mend();  // SegmentWriter::mend(), also for the flight recorder's memory
   // The role's own slots, found as any reader finds them.
   const shm::DeviceSlots& slots() const { return slots_; }
   // Null if no panel is configured. Thread-safe.
@@ -63,10 +63,10 @@ class DevicesRole {
   const shm::SeqSlot<DeviceHealth>* panelHealth() const {
     return panel_ ? &segment_->gpio_health : nullptr;
   }
-  // Null if no projector is configured, at the panel or by PJLink. Thread-safe, as it says.
+  // Null if no projector is configured, at the panel or by PJLink. For its thread-safe members.
   Projectors* projectors() { return projectors_.get(); }
-  // The projectors at the panel's line, as a projector named "panel"; nothing if there are none.
-  // Thread-safe.
+  // The projectors at the panel's GPIO line, as one projector named "panel"; nothing if there are
+  // none. Thread-safe.
   std::optional<pjlink::ProjectorState> panelProjectors() const;
   // The flight recorder of all devices that have a port. For the status server's thread.
   FlightRecorder& flight() { return flight_; }
@@ -80,7 +80,7 @@ class DevicesRole {
               Clock& clock);
   void addPanel(const DevicesSettings& settings);
   void addProjectors(const DevicesSettings& settings);
-  // A device's line; `loop` and `thread` are of the present connection.
+  // One configured device; `loop` and `thread` belong to the present connection.
   struct Line {
     std::string name;  // of the device
     std::unique_ptr<DeviceChain> chain;
@@ -107,7 +107,7 @@ class DevicesRole {
   int cpu_latency_us_ = -1;
   UniqueFd cpu_latency_;                      // the limit is in effect while this is open
   std::vector<std::unique_ptr<Line>> lines_;  // in the order of the list of devices
-  std::vector<WatchedThread> threads_;        // of panel and projectors
+  std::vector<WatchedThread> threads_;        // threads of panel and projectors
 };
 
 }  // namespace merlin::devices

@@ -1,5 +1,5 @@
-// FlightRecorder: writes the last minutes of a device's bytes to a file when it fails, or on
-// command; and those of a process that crashed.
+// FlightRecorder: writes the last minutes of a device's bytes to a file when the device fails, on
+// command, and after merlind crashed.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ class FlightRecorder {
   FlightRecorder(const shm::DevicesSegment& segment, std::string folder, std::string instance)
       : segment_(segment), folder_(std::move(folder)), instance_(std::move(instance)) {}
 
-  // Has the rings of this many devices in shared memory, /INSTANCE-flight, and takes what a process
-  // that crashed left there; check() writes it to files. To be called before ringOf(). Without it,
-  // or if it fails, the rings end with the process. Errors: as for FlightStore::make().
+  // Places the rings of this many devices in shared memory, /INSTANCE-flight. Takes over the bytes
+  // that a crashed process left there, which check() writes to files. To be called before ringOf().
+  // Without it, or if it fails, the rings end with the process. Errors: as for FlightStore::make().
   Result<Ok> keepForNextRun(std::size_t devices);
 
   // Returns the ring of the device with this index in DevicesSegment::health, which lives as long
@@ -34,12 +34,13 @@ class FlightRecorder {
   // speed into their headers. Thread-safe.
   FlightRing& ringOf(std::size_t device, std::string name, std::string driver, int baud);
   Result<std::string> mend() { return store_ ? store_->mend() : std::string(); }
-  // The device was stopped on purpose: no reason for a dump. Thread-safe.
+  // Tells the recorder that the device is stopped on purpose, which is no reason for a dump.
+  // Thread-safe.
   void expectEnd(std::size_t device);
 
-  // Dumps each device that has stopped working since the last call, unless it did so in the same
-  // way before and worked only briefly since then (shm::kBriefly), and those of a run before that
-  // crashed; returns a sentence for each.
+  // Dumps each device that has stopped working since the last call, unless it had failed in the
+  // same way before and worked only briefly since then (shm::kBriefly). Also dumps the devices of
+  // an earlier run that crashed. Returns a sentence for each dump.
   std::vector<Event> check();
 
   // Dumps every device and returns the files' names. Errors: kIo.
@@ -51,8 +52,8 @@ class FlightRecorder {
     FlightDevice device;
     std::unique_ptr<FlightRing> ring;
     bool was_well = false;
-    std::int64_t well_ns = 0;  // since when it was well, the last time
-    std::string fell;          // why it fell, the last time
+    std::int64_t well_ns = 0;  // begin of the last period in which it was well
+    std::string fell;          // why it failed last
   };
   struct Dump {
     const FlightDevice& device;
@@ -67,7 +68,7 @@ class FlightRecorder {
   std::string folder_, instance_;
   std::optional<FlightStore> store_;  // outlives the rings
   std::mutex mutex_;
-  LeftFlight left_;             // guarded by mutex_; of none once it is written
+  LeftFlight left_;             // guarded by mutex_; empty once it is written
   std::vector<Entry> entries_;  // guarded by mutex_
 };
 

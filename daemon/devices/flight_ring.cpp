@@ -10,8 +10,8 @@ using Cell = FlightMemory::Cell;
 
 constexpr std::int64_t kTogether_ns = 1'000'000;  // bytes that arrive within this time share a cell
 
-// `last`: the track's last cell, which the writer has of its own. `wraps`: a full track begins
-// again, otherwise it takes no more.
+// `last`: the writer's own copy of the track's last cell. `wraps`: whether a full track overwrites
+// its oldest cells; otherwise it ignores further bytes.
 template <std::size_t kSize>
 void addTo(FlightMemory::Track<kSize>& track, Cell& last, const Cell& what,
            std::span<const std::byte> bytes, bool wraps) noexcept {
@@ -33,7 +33,8 @@ void addTo(FlightMemory::Track<kSize>& track, Cell& last, const Cell& what,
   }
 }
 
-// A length that no writer wrote, of memory that is not ours, counts as no cell.
+// Returns nothing if the length is invalid, because the memory may have been written by another
+// process.
 template <std::size_t kSize>
 std::optional<Cell> cellOf(const FlightMemory::Track<kSize>& track, std::uint64_t i) {
   auto cell = track.cells[i % kSize].read();

@@ -37,9 +37,9 @@ struct FlightMemory {
 };
 
 // The contents as the chunks of a transcript: the beginning of the connection, then the newest
-// bytes of the same connection; without a gap if no bytes between them were overwritten. The writer
-// may write meanwhile, or may have ended anywhere. `left_out`: set to the length of the gap, whose
-// bytes are no longer stored.
+// bytes of the same connection; there is no gap if no bytes between them were overwritten. The
+// writer may write meanwhile, or may have been killed at any point. `left_out`: set to the length
+// of the gap, whose bytes are no longer stored.
 std::vector<io::TranscriptChunk> chunksOf(const FlightMemory& memory, Duration* left_out);
 
 // Written by the device's thread, wait-free, without locks or allocations; read by any other
@@ -49,14 +49,14 @@ std::vector<io::TranscriptChunk> chunksOf(const FlightMemory& memory, Duration* 
 class FlightRing final : public ByteTap {
  public:
   FlightRing() : own_(std::make_unique<FlightMemory>()), memory_(*own_) {}
-  // `memory`: new, and outlives this.
+  // `memory`: newly made; must outlive this object.
   explicit FlightRing(FlightMemory& memory) : memory_(memory) {}
 
   void opened(Timestamp at) noexcept override;
   void heard(Timestamp at, std::span<const std::byte> bytes) noexcept override;
   void said(Timestamp at, std::span<const std::byte> bytes) noexcept override;
 
-  // chunksOf() what was written.
+  // chunksOf() the ring's memory.
   std::vector<io::TranscriptChunk> take(Duration* left_out) const {
     return chunksOf(memory_, left_out);
   }

@@ -11,21 +11,21 @@
 
 namespace merlin::devices {
 
-// What a ring's device was called, for the dump's name and header.
+// Name and driver of a ring's device, for the dump's name and header.
 struct FlightDevice {
   std::string name, driver;
   int baud = 0;
 };
 
-// Memory that a process of before left, since it ended without order. Read only.
+// Memory left by an earlier process that was killed or crashed. Read only.
 class LeftFlight {
  public:
-  LeftFlight() = default;  // of none
-  // What lies under the shared memory's name, if its process is gone. What is damaged, or was
-  // written by another version of this program, is left out.
+  LeftFlight() = default;  // empty
+  // The content of the shared memory with this name, if its process is gone; without what is
+  // damaged or was written by another version of this program.
   static LeftFlight under(const std::string& name);
 
-  std::vector<FlightDevice> devices() const;        // without a name: there was none
+  std::vector<FlightDevice> devices() const;        // an empty name: no device
   const FlightMemory& memory(std::size_t i) const;  // of devices()[i]
 
  private:
@@ -34,8 +34,8 @@ class LeftFlight {
 
 class FlightStore {
  public:
-  // For this many devices, under a name such as "/merlin-flight". Replaces what lies there. Errors:
-  // as for SharedMemory::create().
+  // Creates the memory for this many devices, under a name such as "/merlin-flight". Replaces an
+  // existing one. Errors: as for SharedMemory::create().
   static Result<FlightStore> make(const std::string& name, std::size_t devices);
 
   // Names the device whose bytes the memory has. REQUIRES: i < devices.

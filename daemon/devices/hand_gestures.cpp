@@ -42,8 +42,8 @@ void HandGestures::update(const HandSample& sample) noexcept {
   if (gesture) publish(*gesture, sample);
 }
 
-// The follower is told of every pose, also while the model is held, since it learns from ordinary
-// motion how fast this person usually moves.
+// The follower gets every pose, also while the model is held, since it learns from ordinary motion
+// how fast this person usually moves.
 void HandGestures::publish(const nn::Gesture& gesture, const HandSample& sample) noexcept {
   if (gesture.began_ns <= recognition_->held_ns) {
     ++state_.passed_over;

@@ -23,24 +23,24 @@ class HandGestures {
  public:
   struct Settings {
     nn::WallAxes axes;  // of the tracker
-    // The actions of the devices that are of the hand's person.
+    // The actions of the devices that belong to the hand's person.
     std::vector<const shm::SeqSlot<shm::ActionState>*> actions;
   };
-  // `writer`: of the actions that the hand's gestures are bound to. Without a model none is
-  // recognised, and none published.
+  // `writer`: for the actions that the hand's gestures are bound to. Without a model no gesture is
+  // recognised or published.
   HandGestures(const std::optional<nn::GestureModel>& model, const Settings& settings,
                actions::ActionWriter writer, shm::SeqSlot<GestureState>& slot);
 
-  // For one other thread: recognises these gestures in this way from the next sample on. A gesture
-  // that is under way, and the pace that was learned, are forgotten.
+  // For one other thread: uses this model and these settings from the next sample on. A gesture in
+  // progress and the pace that was learnt are forgotten.
   void reload(const std::optional<nn::GestureModel>& model, const Settings& settings) {
     fresh_.offer(made(model, settings));  // NOLINT(*NewDeleteLeaks): the handover owns it
   }
   // For one other thread: see ActionWriter::rebind().
   void rebind(const std::vector<Binding>& bindings) { writer_.rebind(bindings); }
 
-  // Takes the next sample of the hand. The action of a gesture that ended with it has begun when
-  // this returns; the gesture itself is published before.
+  // Takes the next sample of the hand. If the sample completes a gesture, the gesture is published
+  // and then its action begun, before this returns.
   void update(const HandSample& sample) noexcept;
 
  private:

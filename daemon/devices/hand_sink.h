@@ -1,5 +1,5 @@
 // HandSink: for each tracker record of the hand's station, combines it with the newest glove sample
-// into a HandSample, of which the hand's gestures are recognised; passes all samples on. Runs on
+// into a HandSample, from which the hand's gestures are recognised; passes all samples on. Runs on
 // the tracker's thread.
 #pragma once
 
@@ -26,7 +26,7 @@ class HandSink final : public SampleSink {
         gestures_(gestures),
         next_(next) {}
 
-  // For one other thread: station and filter from the tracker's next record on.
+  // For one other thread: replaces station and filter from the tracker's next record on.
   void reload(const HandSettings& settings) { fresh_.offer(settings); }
 
   void publish(const GloveSample& sample) noexcept override { next_.publish(sample); }

@@ -7,7 +7,8 @@
 namespace merlin::devices {
 namespace {
 
-// Another person may have the glove after this time without a sample, as when its plug was pulled.
+// After this time without a sample, for example because the plug was pulled, another person may
+// wear the glove.
 constexpr std::int64_t kSilence_ns = 1'000'000'000;
 
 }  // namespace
@@ -18,7 +19,8 @@ void PostureSink::publish(const GloveSample& sample) noexcept {
   next_.publish(sample);
 }
 
-// Between two recognitions there is a sample without a posture, so that what a posture holds ends.
+// Publishes a sample without a posture between two recognitions, so that the actions held by the
+// posture end.
 void PostureSink::endPosture(const GloveSample& sample) noexcept {
   entered_before_ = entered_;
   PostureSample shown{};

@@ -26,15 +26,15 @@ class PostureSink final : public SampleSink {
     shm::Channel<PostureSample>& shown;
     shm::SeqSlot<PostureState>& held;
   };
-  // Without `postures` none is recognised, and none published.
+  // Without `postures` no posture is recognised or published.
   PostureSink(const std::optional<nn::TrainedPostures>& postures, const Settings& settings,
               Outputs outputs, SampleSink& next)
       : recognition_(made(postures, settings)),  // NOLINT(*NewDeleteLeaks): the member owns it
         outputs_(outputs),
         next_(next) {}
 
-  // For one other thread: recognises these postures in this way from the next sample on. The
-  // posture that is held ends, and is recognised anew; the drift that was followed is forgotten.
+  // For one other thread: uses these postures and settings from the next sample on. The posture
+  // that is held ends and is recognised anew; the sensor drift tracked so far is forgotten.
   void reload(const std::optional<nn::TrainedPostures>& postures, const Settings& settings) {
     fresh_.offer(made(postures, settings));  // NOLINT(*NewDeleteLeaks): the handover owns it
   }
@@ -69,7 +69,7 @@ class PostureSink final : public SampleSink {
   Outputs outputs_;
   SampleSink& next_;
   Handover<std::unique_ptr<Recognition>> fresh_;
-  std::uint32_t entered_ = 0;         // postures that have begun so far
+  std::uint32_t entered_ = 0;         // number of postures that have begun so far
   std::uint32_t entered_before_ = 0;  // those of earlier recognitions
 };
 

@@ -23,7 +23,7 @@ Projectors::Projectors(const DevicesSettings& settings, Parts parts)
     : parts_(std::move(parts)),
       schedule_(settings.projector_schedule),
       panel_due_(parts_.clock.now()) {
-  ::tzset();  // localtime_r() need not
+  ::tzset();  // localtime_r() need not read TZ
   for (const PjlinkSettings& projector : settings.projectors) add(projector);
 }
 
@@ -93,8 +93,8 @@ Result<Ok> Projectors::switchAll(bool on) {
   return Error{code, refused};
 }
 
-// What is to be from now on. A restart is no switching point: what a person did after the last one
-// holds.
+// Returns the state that is wanted from now on. A restart is not a switching point: if a person has
+// switched after the last point, that stays in effect.
 std::optional<bool> Projectors::due() {
   const pjlink::LocalMinute now = parts_.local_minute();
   std::optional<bool> wanted = schedule_.step(now);
@@ -150,7 +150,7 @@ std::vector<Event> Projectors::takeEvents() {
     entry->last = sentence;
     const bool is_fault = state.health != pjlink::Health::kOk;
     const bool was_fault = std::exchange(entry->was_fault, is_fault);
-    // One that works is switched on and off every day.
+    // Daily switching of a projector without a fault is routine.
     const Severity severity = was_fault ? Severity::kNews : Severity::kRoutine;
     events.push_back({std::move(sentence), is_fault ? Severity::kFault : severity});
   }

@@ -44,26 +44,26 @@ class Projectors {
   // REQUIRES: the settings' faults have been found; every address is valid.
   Projectors(const DevicesSettings& settings, Parts parts);
 
-  // What a person did last before merlind was restarted: it goes on to hold until the schedule's
-  // next switching point. `keep` is called with each further switching by a person, by the thread
-  // that calls switchAll(). To be called before start() and tend().
+  // Restores the last switching by a person before merlind was restarted, which stays in force
+  // until the schedule's next switching point. `keep` is called with each further switching by a
+  // person, on the thread that calls switchAll(). To be called before start() and tend().
   void remember(std::optional<PersonsSwitch> last, std::function<void(const PersonsSwitch&)> keep);
 
   // Adds a thread for each PJLink projector.
   void start(ThreadWatch& watch, std::vector<WatchedThread>& threads);
 
-  // Switches all projectors for a person; that holds until the schedule's next switching point.
-  // Returns at once: PJLink projectors are switched by their threads. Thread-safe. Errors: a
+  // Switches all projectors for a person; this stays in force until the schedule's next switching
+  // point. Returns at once: PJLink projectors are switched by their threads. Thread-safe. Errors: a
   // sentence for each projector that cannot be switched now, with the reason; it is switched as
-  // soon as it can be, and the others are switched all the same. kBusy: the panel's projectors cool
-  // down or were just switched. kIo: otherwise.
+  // soon as it can be, and the others are switched anyway. kBusy: the panel's projectors are
+  // cooling down or were just switched. kIo: otherwise.
   Result<Ok> switchAll(bool on);
 
-  // Follows the schedule, at the first call at once; repeats, once a second, what the panel
-  // refused. To be called by one thread, several times a second.
+  // Follows the schedule, which is applied at once by the first call; once a second, repeats a
+  // command that the panel refused. To be called by one thread, several times a second.
   void tend();
 
-  // One connection to each PJLink projector for which one is due. For tests without threads.
+  // Makes one connection to each PJLink projector for which one is due. For tests without threads.
   void round();
 
   // When the schedule switches next. Thread-safe.
@@ -84,7 +84,7 @@ class Projectors {
     Progress* progress = nullptr;  // set when its thread starts
     std::string name;
     std::string last;        // its last event
-    bool was_fault = false;  // by the last event
+    bool was_fault = false;  // whether the last event was a fault
   };
   Entry& add(const PjlinkSettings& settings);
   Result<Ok> switchPanel(bool on);
@@ -97,8 +97,8 @@ class Projectors {
   std::function<void(const PersonsSwitch&)> keep_ = [](const PersonsSwitch&) {};
   bool follows_schedule_ = false;           // since the first tend() with a schedule
   mutable std::mutex mutex_;                // guards all below; held while the panel is switched
-  std::optional<bool> panel_wanted_;        // what the panel has refused so far
-  std::optional<PersonsSwitch> by_person_;  // the last one
+  std::optional<bool> panel_wanted_;        // the state that the panel has refused so far
+  std::optional<PersonsSwitch> by_person_;  // the last switching by a person
   std::vector<Event> notices_;
 };
 

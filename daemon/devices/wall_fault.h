@@ -1,5 +1,5 @@
-// WallFault: whether the wall needs somebody, for the lamp of the control panel: read from the
-// shared memory of the role wall, which may be another process.
+// WallFault: determines whether the wall needs attention, for the lamp of the control panel. Reads
+// the shared memory of the role wall, which may be another process.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ class WallFault {
  public:
   explicit WallFault(const std::string& instance) : wall_(shm::segmentName(instance, "wall")) {}
 
-  // Why the wall needs somebody, a sentence: an output fails, or shows something else than it was
-  // sent, or the wall has not run for kGone. Empty: it does not, or none has run here yet.
+  // A sentence: why the wall needs attention (an output fails, or shows something else than it was
+  // sent, or the wall has not run for kGone). Empty if it does not, or if no wall has run here yet.
   std::string look(Timestamp now);
 
   static constexpr Duration kGone = std::chrono::seconds(15);  // restarts take less
@@ -26,7 +26,7 @@ class WallFault {
   std::optional<Timestamp> seen_;  // when it last ran
 };
 
-// The fault among a wall's outputs, a sentence; empty: there is none. Pure.
+// A sentence about a fault among a wall's outputs; empty if there is none. Pure.
 std::string faultAmong(const shm::WallOutputs& outputs);
 
 }  // namespace merlin::devices

@@ -28,11 +28,11 @@ namespace merlin::net {
 
 struct ServerLimits {
   Places places;
-  Duration opening = std::chrono::seconds(2);  // for the handshake; then the client is closed
+  Duration opening = std::chrono::seconds(2);  // then a client without a handshake is closed
   std::size_t input_bytes = 8192;              // buffered input; a longer message closes the client
   std::size_t output_bytes = 65536;            // buffered output; more closes the client
-  std::size_t messages_per_round = 16;         // of one client, before the next one's turn
-  double messages_per_s = 500, messages_burst = 500;  // of one client; more wait in the socket
+  std::size_t messages_per_round = 16;         // from one client, before the next client's turn
+  double messages_per_s = 500, messages_burst = 500;  // from one client; more wait in the socket
   // Accepted connections of all listeners together; more wait in the system's queue. Without this
   // limit a client that connects and is closed in a loop would take a third of a processor core.
   double accepts_per_s = 1000, accepts_burst = 200;
@@ -67,7 +67,7 @@ class Session {
   virtual bool farPending() const noexcept { return false; }
   // Called when farFd() is writable.
   virtual Result<Ok> writeFar() { return Ok{}; }
-  // Called when farFd() is readable: appends at most `room` bytes of it to `output`.
+  // Called when farFd() is readable: appends at most `room` bytes from it to `output`.
   virtual Result<Ok> readFar(std::size_t /*room*/, std::string& /*output*/) { return Ok{}; }
 };
 

@@ -1,5 +1,5 @@
 // Checks whether this process may use network sockets: a service's sandbox may forbid them, and
-// libzmq ends the process if it runs into that.
+// libzmq then aborts the process.
 #pragma once
 
 #include "daemon/base/result.h"

@@ -45,8 +45,8 @@ class ServerKeeper {
 
   ServerHealth health() const;
 
-  // Changes since the last call, as sentences: that it failed and why, that it runs again, and, at
-  // most every five seconds, how many connections were refused or closed.
+  // Changes since the last call, as sentences: that the server failed and why, that it runs again,
+  // and, at most every five seconds, how many connections were refused or closed.
   std::vector<Event> takeEvents(Timestamp now);
 
  private:
@@ -62,7 +62,7 @@ class ServerKeeper {
 
 // A sentence about refused and closed connections, for any server: "VRPN: 154 connections were
 // refused or closed; the last: refused ...". `told`: their number at the last call, which is
-// updated; empty if there are none since.
+// updated. Returns an empty text if none were added since.
 std::string sentAwaySentence(const ServerReport& report, std::uint64_t& told);
 
 }  // namespace merlin::net

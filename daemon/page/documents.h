@@ -26,10 +26,10 @@ struct ContentState {
   std::string fault;            // why its file cannot be read; empty: nothing is known
 };
 
-// A code for a phone's camera, and what it says.
+// The QR code for a phone's camera, and the address that it contains.
 struct PhoneState {
   std::string address;  // of the page, without the token; empty: a phone cannot reach it
-  std::string why;      // why not
+  std::string why;      // why a phone cannot reach the page
   QrCode code;
 };
 
@@ -48,9 +48,9 @@ std::string contentsDocument(const std::vector<ContentState>& contents);
 // {"address": TEXT or null, "why": TEXT, "rows": ["1101...", ...]}: 1 is dark.
 std::string phoneDocument(const PhoneState& phone);
 
-// {"commands": [{"name", "role", "argument", "help", "button", "choices"}]}: those that the page
-// may send; `button`: whether it needs no argument; `choices`: arguments that it may have, if these
-// are known (names of test cards). The same for every daemon of one release.
+// {"commands": [{"name", "role", "argument", "help", "button", "choices"}]}: the commands that the
+// page may send; `button`: whether the command needs no argument; `choices`: the possible
+// arguments, if these are known (names of test cards). The same for every daemon of one release.
 std::string commandList();
 
 // The answer to a command: {"ok": true, "result": ...}, or {"ok": false, "error": ...} with a

@@ -20,24 +20,25 @@ struct LoggedEvent {
   Severity severity = Severity::kFault;
 };
 
-// Thread-safe. Keeps 500 events, in memory that is taken at the start: a page that has run for
-// hours is as large as one that has just started, unless its events are longer than is usual.
+// Thread-safe. Keeps 500 events in memory that is allocated at the start, so that the process does
+// not grow over hours, unless events are longer than usual.
 class EventLog {
  public:
   // `first`: number of the first event, 1 or more. If it is the time of the start, in milliseconds,
   // numbers grow over restarts, so that a client with a number of an earlier run gets everything.
   explicit EventLog(std::uint64_t first);
 
-  // Adds what a role published as `event`. What is malformed is left out; long texts are cut.
+  // Adds a document that a role published as `event`. A malformed document is ignored; long texts
+  // are cut.
   void addDocument(const std::string& role, const std::string& document);
   // Adds an event of the page itself, with the time of day.
   void add(const std::string& role, const std::string& kind, const std::string& what);
 
-  // Those that are kept and have a number above `number`, the oldest first.
+  // The kept events with a number above `number`, the oldest first.
   std::vector<LoggedEvent> after(std::uint64_t number) const;
 
-  // {"next": N, "events": [{"number", "role", "time_utc", "kind", "what"}]}: those after number
-  // `since`, the oldest first, at most the last 200.
+  // {"next": N, "events": [{"number", "role", "time_utc", "kind", "what"}]}: the events after
+  // number `since`, the oldest first, at most the last 200.
   std::string since(std::uint64_t since) const;
 
  private:

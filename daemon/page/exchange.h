@@ -18,14 +18,14 @@ struct Request {
   std::string method;                        // "GET"
   std::string path;                          // "/api/status", decoded, without the query
   std::map<std::string, std::string> query;  // decoded
-  // Headers that matter, by their name in lower case. A header that was sent twice is not in it but
-  // in `repeated`.
+  // The headers in kKeptHeaders, by their name in lower case. A header that was sent twice is left
+  // out, and sets `repeated`.
   std::map<std::string, std::string> headers;
   bool repeated = false;
   std::string body;
-  bool passed_on = false;  // it has one of kProxyHeaders
+  bool passed_on = false;  // the request has one of kProxyHeaders
 
-  // Empty if the request lacks it.
+  // The value of a header; empty if the request lacks it.
   const std::string& header(const std::string& name) const {
     static const std::string kNone;
     const auto found = headers.find(name);
@@ -38,8 +38,8 @@ inline constexpr const char* kKeptHeaders[] = {"host",           "origin",      
                                                "sec-fetch-mode", "authorization", "content-type",
                                                "if-none-match",  "accept"};
 
-// Headers by which a proxy says that it passes on the request of another machine. How often and
-// with which value does not matter.
+// Headers by which a proxy says that it passes on the request of another machine. Their number and
+// values do not matter.
 inline constexpr const char* kProxyHeaders[] = {
     "forwarded", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip", "via"};
 

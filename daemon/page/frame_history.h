@@ -23,8 +23,8 @@ class FrameHistory {
   // from that of the last call, the numbers continue, but older frames are forgotten.
   void follow(const shm::Channel<shm::FrameTrace>& trace, std::uint64_t generation);
 
-  // {"next": N, "frames": [[number, work_ms, cost, flags], ...]}: those after number `since`, at
-  // most the last 1,200; flags: 1 moving, 2 late.
+  // {"next": N, "frames": [[number, work_ms, cost, flags], ...]}: the frames after number `since`,
+  // at most the last 1,200; flags: 1 moving, 2 late.
   std::string since(std::uint64_t since) const;
 
  private:

@@ -11,8 +11,8 @@
 namespace merlin::page {
 
 struct GateSettings {
-  std::string token;                    // of commands, and of reading where that is not free
-  std::vector<std::string> host_names;  // besides addresses and localhost
+  std::string token;  // required for commands, and for reading where that is not free
+  std::vector<std::string> host_names;  // names accepted besides addresses and localhost
   bool loopback = true;                 // the server listens at a loopback address
 };
 

@@ -1,4 +1,4 @@
-// Names of hosts in HTTP headers: which are the page's own. Pure.
+// Names of hosts in HTTP headers, and the check whether they are the page's own. Pure.
 //
 // A browser that was led to another site's name whose address is this machine's (DNS rebinding)
 // sends that name. So only addresses, which cannot be rebound, localhost and the configured names
@@ -13,7 +13,7 @@
 
 namespace merlin::page {
 
-// Letters, digits, - and dots; at most 253 of them.
+// Whether the text has only letters, digits, '-' and dots, and at most 253 of them.
 bool isHostName(std::string_view name);
 
 // The words of a text that spaces separate.
@@ -26,7 +26,7 @@ std::optional<std::string> hostOf(std::string_view authority);
 // Whether this host, as hostOf() returns it, means the machine that the browser runs on.
 bool isLoopbackHost(std::string_view host);
 
-// Whether it is an address, localhost, or one of `names`.
+// Whether the host is an address, localhost, or one of `names`.
 bool isOwnHost(std::string_view host, std::span<const std::string> names);
 
 }  // namespace merlin::page

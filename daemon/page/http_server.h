@@ -30,10 +30,10 @@ namespace merlin::page {
 
 struct HttpLimits {
   net::Places places{.all = 64, .per_peer = 48};
-  Duration patience = std::chrono::seconds(15);  // from one request's end to that of the next one
+  Duration patience = std::chrono::seconds(15);  // from the end of a request to that of the next
   double accepts_per_s = 200, accepts_burst = 100;
-  // Requests that each connection may send whatever the others do, and how many beyond those all of
-  // them may send together; what is more is answered by 429.
+  // own_...: requests that each connection may send whatever the others do; requests_...: further
+  // requests of all connections together. Requests beyond both are answered with 429.
   double own_per_s = 20, own_burst = 10;
   double requests_per_s = 300, requests_burst = 300;
 };

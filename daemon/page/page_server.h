@@ -1,4 +1,4 @@
-// PageServer: the web page of the operator: its thread, with all that it shows and sends.
+// PageServer: serves the operator's web page, with all documents and pictures, on its own thread.
 #pragma once
 
 #include <atomic>
@@ -28,7 +28,7 @@ namespace merlin::page {
 
 struct PageServerSettings {
   PageSettings page;
-  std::string instance;  // of the merlind whose wall it shows
+  std::string instance;  // name of the instance of merlind whose wall it shows
   std::string version;   // of this program
   std::string token, token_file;
   std::vector<PageContent> contents;  // of the configuration
@@ -55,7 +55,7 @@ class PageServer final : public net::Server {
   // A request that waits for a picture.
   struct WaitingPicture {
     PictureRoute route;
-    Timestamp until{};  // then there is none that is newer
+    Timestamp until{};  // then it is answered without a newer picture
   };
 
   PageServer(PageServerSettings settings, EventLog& events, ThreadWatch& watch, Clock& clock);

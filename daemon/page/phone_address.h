@@ -9,15 +9,16 @@
 namespace merlin::page {
 
 struct PagePlace {
-  std::string address;                // at which the page listens, IPv4
-  int port = 0;                       // likewise
+  std::string address;                // IPv4 address at which the page listens
+  int port = 0;                       // port at which the page listens
   std::vector<std::string> networks;  // this machine's own addresses in networks
 };
 
-// "http://10.0.0.5:7480/". If the browser that asks is not on this machine, a phone goes the same
-// way: `origin`, which the gate has accepted, may be a proxy's. Otherwise it is the address at
-// which the page listens, or this machine's first. Pure. Errors: kNotFound, with what to do (the
-// page listens on this machine alone, or the machine is in no network).
+// "http://10.0.0.5:7480/". If the requesting browser is not on this machine, a phone uses the same
+// address as the browser: `origin`, which the gate has accepted and which may be a proxy's.
+// Otherwise it uses the address at which the page listens, or this machine's first network address.
+// Pure. Errors: kNotFound, with what to do (the page listens on this machine alone, or the machine
+// is in no network).
 Result<std::string> phoneAddress(const std::string& origin, const PagePlace& place);
 
 // IPv4 addresses of this machine's interfaces that are up, without loopback.

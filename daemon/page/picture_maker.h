@@ -19,7 +19,7 @@
 
 namespace merlin::page {
 
-// What a browser wants to see: a view of the wall in a size.
+// The kind of picture that a browser requests: a view of the wall, and its size.
 struct PictureKind {
   rfb::View view;
   int width = 0;  // at most [px]
@@ -35,8 +35,7 @@ struct MadePicture {
   std::optional<PanelPointer::Place> panel;  // where the view shows the operator's panel
 };
 
-// Thread-safe. The memory that it needs: for each view that is looked at a copy of the wall's
-// frame.
+// Thread-safe. Memory: one copy of the wall's frame for each view that somebody looks at.
 class PictureMaker {
  public:
   // `first`: the first picture's number, above 0. `rate_hz`: pictures of each kind per second at
@@ -47,8 +46,8 @@ class PictureMaker {
   PictureMaker(const PictureMaker&) = delete;
   PictureMaker& operator=(const PictureMaker&) = delete;
 
-  // The newest picture of this kind, which is made from now on until it was not asked for during 3
-  // s. Nothing if kMostKinds others are looked at.
+  // The newest picture of this kind. Pictures of the kind are made from the first call until it has
+  // not been requested for 3 s. Nothing if kMostKinds other kinds are in use.
   std::optional<MadePicture> newest(const PictureKind& kind);
 
   // Readable when a picture was made since the last clear().
@@ -63,7 +62,7 @@ class PictureMaker {
     PictureKind kind;
     Timestamp wanted{};  // asked for last
     MadePicture made;
-    std::uint64_t changes = 0;  // of its view, when `made` was encoded
+    std::uint64_t changes = 0;  // View::changes when `made` was encoded
   };
   struct View {
     rfb::View view;
@@ -86,7 +85,7 @@ class PictureMaker {
   std::condition_variable_any wake_;  // with mutex_
   std::vector<Kind> kinds_;           // guarded by mutex_, as is what follows
   std::uint64_t next_, made_ = 0;
-  std::vector<View> views_;  // of the thread alone
+  std::vector<View> views_;  // used by the thread only
   WatchedThread thread_;
 };
 

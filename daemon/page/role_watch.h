@@ -1,4 +1,4 @@
-// RoleWatch: what one role of merlind publishes, followed over its restarts.
+// RoleWatch: follows what one role of merlind publishes, over its restarts.
 #pragma once
 
 #include <string>
@@ -18,13 +18,14 @@ class RoleWatch {
   // `role`: "wall" or "devices", of this instance of merlind. `events` must outlive this.
   RoleWatch(const std::string& instance, std::string role, EventLog& events);
 
-  // Takes what has arrived, and adds events to the log: the role's own, and that it runs, was
-  // started again or is gone. Never waits; takes a microsecond if nothing has arrived.
+  // Takes the documents that have arrived, and adds events to the log: those of the role, and that
+  // the role runs, has restarted or has ended. Never waits; takes a microsecond if nothing has
+  // arrived.
   void update(Timestamp now);
 
   const std::string& role() const noexcept { return follower_.role(); }
   bool isRunning() const noexcept { return segment() != nullptr; }
-  // Of the run that is followed; 0: none.
+  // Generation of the run that is followed; 0: none.
   std::uint64_t generation() const noexcept { return follower_.generation(); }
   // The role's segment; null while it does not run. Valid until the next update().
   const typename Reader::View* segment() const noexcept { return follower_.segment(); }

@@ -38,15 +38,15 @@ struct ContentsRoute {};
 struct ThumbnailRoute {
   std::uint64_t content = 0;  // its place in the list of contents
 };
-// A code by which a phone opens the page.
+// The QR code with which a phone opens the page.
 struct PhoneRoute {
-  std::string origin;  // of the page, as the browser sees it; empty: it does not say
+  std::string origin;  // the page's origin as the browser sends it; empty: it sends none
 };
 struct CommandRoute {
   const CommandInfo* command;
   std::string argument;
 };
-// An Answer: the request is answered already, or refused.
+// What a request asks for. An Answer: it is answered already, or refused.
 using Route = std::variant<Answer, FileRoute, StatusRoute, CommandListRoute, EventsRoute,
                            FramesRoute, MetricsRoute, PictureRoute, ContentsRoute, ThumbnailRoute,
                            PhoneRoute, CommandRoute>;
@@ -56,8 +56,8 @@ inline constexpr int kPictureWidths[] = {320, 640, 960, 1280, 1920};
 // Checks the request (gate.h) and finds what it asks for.
 Route route(const Request& request, const RouteSettings& settings);
 
-// Whether the page may send a command: those that `merlin NAME` sends, those that inputs may be
-// bound to once, and those that the page has controls of its own for.
+// Whether the page may send a command: true for those that `merlin NAME` sends, those that inputs
+// may be bound to with Bindable::kOnce, and those for which the page has controls of its own.
 bool isPageCommand(const CommandInfo& command);
 
 }  // namespace merlin::page

@@ -1,4 +1,5 @@
-// ShowingWatch: decides when the wall's picture shows a content as people know it. Pure.
+// ShowingWatch: decides when the wall's picture is suitable as the thumbnail of the content that it
+// shows. Pure.
 #pragma once
 
 #include <optional>
@@ -11,8 +12,8 @@ namespace merlin::page {
 // What the wall shows.
 struct Showing {
   std::string content;       // its name
-  bool covered = false;      // it is black, frozen, dimmed, or a test card hides it
-  bool full_detail = false;  // and stands still
+  bool covered = false;      // the picture is black, frozen or dimmed, or a test card hides it
+  bool full_detail = false;  // the wall shows full detail and stands still
 
   bool operator==(const Showing&) const = default;
 };
@@ -20,9 +21,9 @@ struct Showing {
 // Thread-bound.
 class ShowingWatch {
  public:
-  // Whether the picture is to be kept as that of the content: once each time that it comes up, when
-  // it has been at full detail for kSettled, or uncovered for kPatience. To be called several times
-  // a second.
+  // Returns whether the picture is now to be kept as the content's thumbnail. This happens once
+  // each time that the content is shown, when it has been at full detail for kSettled or uncovered
+  // for kPatience. To be called several times a second.
   bool update(const Showing& showing, Timestamp now);
 
   static constexpr Duration kSettled = std::chrono::milliseconds(700);

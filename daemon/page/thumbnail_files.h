@@ -17,10 +17,10 @@ class ThumbnailFiles {
   ThumbnailFiles(std::string folder, std::string prefix)
       : folder_(std::move(folder)), prefix_(std::move(prefix)) {}
 
-  // The picture of the content with this key; nothing if there is none, or what is there is not a
+  // The picture of the content with this key; nothing if there is none, or if the file is not a
   // JPEG picture of a thumbnail's size.
   std::optional<std::string> read(const std::string& key) const;
-  // Errors: writeFile()'s.
+  // Writes the picture of the content with this key. Errors: writeFile()'s.
   Result<Ok> write(const std::string& key, const std::string& jpeg) const;
   // Removes the pictures of contents that are not among `keys`.
   void removeOthers(const std::vector<std::string>& keys) const;

@@ -1,8 +1,8 @@
 // Thumbnails: the wall's contents, with a small picture of each, made on a thread of its own.
 //
-// Those of pictures, panoramas and slides are read from their files. That of a model is what the
-// wall showed of it last, taken from its shared memory: a model's file may be larger than this
-// machine's memory, and drawing it would cost the wall time.
+// The small pictures of pictures, panoramas and slides are read from their files. That of a model
+// is the wall's last picture of it, taken from the wall's shared memory, because a model's file may
+// be larger than this machine's memory, and drawing it would cost the wall time.
 #pragma once
 
 #include <condition_variable>
@@ -37,7 +37,7 @@ struct ReadPicture {
 struct PageContent {
   std::string name;
   std::string kind;  // "model", "picture", "panorama" or "slides"
-  std::string path;  // of its file, or of its folder
+  std::string path;  // path of its file, or of its folder
   // Reads its picture, of a few million pixels at most; called on the thumbnails' thread. Empty:
   // only the wall can show it.
   std::function<Result<ReadPicture>()> read;
@@ -54,7 +54,8 @@ class Thumbnails {
   Thumbnails(const Thumbnails&) = delete;
   Thumbnails& operator=(const Thumbnails&) = delete;
 
-  // The contents in their order. While somebody asks, their files are read again once a minute.
+  // The contents in their order. Their files are read again once a minute as long as this is
+  // called.
   std::vector<ContentState> contents();
   // The JPEG picture of the content at `place`; null if there is none.
   std::shared_ptr<const std::string> jpeg(std::uint64_t place) const;
@@ -66,7 +67,7 @@ class Thumbnails {
   struct Entry {
     ContentState state;
     std::shared_ptr<const std::string> jpeg;
-    std::optional<Timestamp> read_at;  // of the thread alone
+    std::optional<Timestamp> read_at;  // used by the thread only
   };
   void loop(const std::stop_token& stop, Progress& progress);
   void readOne(Timestamp now, Progress& progress);
@@ -85,7 +86,7 @@ class Thumbnails {
   std::vector<Entry> entries_;        // guarded by mutex_, except read_at
   std::optional<Timestamp> asked_;    // guarded by mutex_, as is next_
   std::uint64_t next_;
-  // Of the thread alone.
+  // Used by the thread only.
   shm::SegmentFollower<shm::SegmentReader<shm::WallSegment>> wall_;
   rfb::ShownPicture picture_;
   ShowingWatch watch_;

@@ -12,10 +12,10 @@ namespace merlin::page {
 // starts.
 class TokenFile {
  public:
-  // Keeps the token that the file holds, so that browsers need not be told a new one after a
-  // restart, or makes a new one: 32 characters of 64 (192 bits) from the system's random numbers,
-  // mode 0640. A file that another user owns, that others could have read or written, or that holds
-  // anything else is replaced. Errors: kBusy (a running process has locked it), kIo.
+  // Keeps the token that the file holds, so that browsers need no new one after a restart, or makes
+  // a new one: 32 characters of 64 (192 bits) from the system's random numbers, mode 0640. A file
+  // that another user owns, that others could have read or written, or that holds anything else is
+  // replaced. Errors: kBusy (a running process has locked it), kIo.
   static Result<TokenFile> open(const std::string& path);
 
   const std::string& token() const noexcept { return token_; }

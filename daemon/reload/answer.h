@@ -1,4 +1,4 @@
-// What a reload did, or why it did nothing, as JSON for whoever asked for it.
+// The answer to a reload, as JSON: what it did, or why it did nothing.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@
 namespace merlin::reload {
 
 // kInvalid: the file has faults, or a changed number that is out of range. kFailed: the outside
-// world, for example no memory. After these two nothing was changed. kRestarts: a setting changed
-// that is taken only at the start; the process starts again at once, with all of the file.
+// world, for example no memory. After these two nothing was changed. kRestarts: a changed setting
+// takes effect only at a start; the process starts again at once, with the whole new file.
 enum class Outcome { kDone, kInvalid, kRestarts, kFailed };
 inline constexpr const char* kOutcomeNames[] = {"done", "invalid", "restarts", "failed"};
 
 struct Answer {
   Outcome outcome = Outcome::kDone;
-  bool only_checked = false;          // nothing was to be swapped: what would be is in `plan`
-  std::string file;                   // the configuration
+  bool only_checked = false;  // only a check was requested: `plan` has what would be swapped
+  std::string file;           // the configuration
   std::vector<std::string> findings;  // a line each, as merlind --check-config prints them
   Plan plan;
-  std::string failure;  // of kFailed
+  std::string failure;  // for kFailed: the reason
 };
 
 // {"outcome": "done", "only_checked": false, "file": "merlin.json", "findings": [...], "swapped":

@@ -1,5 +1,5 @@
-// Which part of a running merlind takes which setting of a changed configuration: the one table of
-// it, and what a reload would do.
+// The only table of which part of a running merlind each setting belongs to, and the plan of what a
+// reload does with a changed configuration.
 #pragma once
 
 #include <array>
@@ -11,18 +11,18 @@
 
 namespace merlin::reload {
 
-// What can be swapped while merlind runs; kRestart: the process has to start again.
+// The parts that can be swapped while merlind runs; kRestart: the process has to start again.
 enum class Part : std::size_t {
   kRestart,
-  kBindings,    // bindings, and when a silent device lets go
-  kLine,        // of a device, which is closed and opened again
+  kBindings,    // bindings, and the time after which a silent device counts as lost
+  kLine,        // line of a device, which is closed and opened again
   kHand,        // station and filter of a hand
   kPostures,    // network, hold times and margin
   kGestures,    // which gestures, of which hands
   kRate,        // frame rate and limits of the triangles
   kPlaylist,    // what the wall shows while nobody is there, and its light then
   kScene,       // how a person's input moves the model
-  kCorrection,  // of outputs: warp, blend, colours and black level
+  kCorrection,  // corrections of outputs: warp, blend, colours and black level
   kCount
 };
 
@@ -34,30 +34,31 @@ inline constexpr Readers kAlarms = 16;
 inline constexpr Readers kAll = kDevices | kWall | kPage | kMirror | kAlarms;
 
 struct Taker {
-  std::string_view pointer;  // of a setting, a list or a group; "*" stands for any list index
+  std::string_view pointer;  // to a setting, a list or a group; "*" stands for any list index
   Readers readers;
   Part part;
 };
 
 // The row of the table with the longest pointer that is `pointer` or a group around it. A pointer
-// that no row covers, such as that of a new setting, needs a restart of every process: it is never
-// passed over.
+// that no row covers, such as that of a new setting, needs a restart of every process, so that no
+// change is ignored.
 Taker takerOf(std::string_view pointer);
 
 // The rows of the table, for tests.
 std::vector<Taker> takers();
 
 struct Plan {
-  std::vector<SettingChange> swapped;    // that this process can take while it runs
-  std::vector<SettingChange> restart;    // that it takes only when it starts
-  std::vector<SettingChange> elsewhere;  // that only other processes read
+  std::vector<SettingChange> swapped;    // changes that this process can apply while it runs
+  std::vector<SettingChange> restart;    // changes that it applies only at its start
+  std::vector<SettingChange> elsewhere;  // changes to settings that only other processes read
   std::array<bool, static_cast<std::size_t>(Part::kCount)> parts{};  // of `swapped`
-  std::vector<bool> lines;  // of kLine: by the index of the device; those beyond its end: false
+  std::vector<bool> lines;  // for kLine: whether each device has changes, by index; devices beyond
+                            // the end have none
 
   bool has(Part part) const { return parts[static_cast<std::size_t>(part)]; }
 };
 
-// Divides the changes for a process that is these readers.
+// Sorts the changes for a process; `process`: which readers it is.
 Plan planFor(const std::vector<SettingChange>& changes, Readers process);
 
 // Gives `running` the settings of these parts from `fresh`, and leaves all others alone.

@@ -1,4 +1,4 @@
-// The picture that VNC clients see while there is no wall: what is missing, in plain words. Pure.
+// The picture that VNC clients see while there is no wall: a text that says what is missing. Pure.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// What the process of one client does: it shows the picture, and sends the client's input as
-// commands. Each client has a process of its own, since libvncserver waits for a client that does
-// not read and since nothing that a client sends may reach another one.
+// The process that serves one client: it shows the picture, and sends the client's input as
+// commands. Each client has a process of its own, because libvncserver blocks on a client that does
+// not read, and because nothing that a client sends may affect another one.
 #pragma once
 
 #include "daemon/base/clock.h"
@@ -17,8 +17,8 @@ enum class Report : char {
 // Exit status of the process.
 inline constexpr int kClientLeft = 0, kWrongPassword = 10;
 
-// How long the handshake may take: with a password, a person types it meanwhile. Afterwards, how
-// long one message may take. Then SIGALRM ends the process.
+// Time limit of the handshake, during which a person may have to type the password; afterwards, of
+// one message. SIGALRM then ends the process.
 constexpr unsigned handshakeLimit_s(const RfbSettings& settings) {
   return settings.password.empty() ? 10 : 60;
 }

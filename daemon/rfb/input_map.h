@@ -1,5 +1,5 @@
-// InputMap: what pointer and keys of a VNC client mean for the wall, as commands of
-// daemon/base/commands.h. Pure.
+// InputMap: translates pointer and keys of a VNC client into commands for the wall
+// (daemon/base/commands.h). Pure.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +23,15 @@ class InputMap {
  public:
   // The pointer in a picture of `height` pixels. `buttons`: as in RFB, bit 0 left, 1 middle, 2
   // right, 3 wheel up, 4 wheel down.
-  // What the operator's panel takes goes to panel() and does nothing else.
+  // Events that belong to the operator's panel go to panel() and have no other effect.
   void pointer(unsigned buttons, int x, int y, int height);
   PanelPointer& panel() noexcept { return panel_; }
   // A key is pressed or released; `keysym`: an X11 keysym, as in RFB.
   void key(std::uint32_t keysym, bool pressed);
 
-  // The next request for the wall, nothing if there is none. Motion since the last call is one
-  // request, so that nothing piles up while the wall is slow to answer. At most 8 others wait; more
-  // are dropped.
+  // The next request for the wall; nothing if there is none. All motion since the last call becomes
+  // one request, so that nothing piles up while the wall is slow to answer. At most 8 other
+  // requests wait; more are dropped.
   std::optional<Request> take();
 
  private:

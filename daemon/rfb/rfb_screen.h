@@ -16,14 +16,14 @@
 namespace merlin::rfb {
 
 struct ScreenSettings {
-  std::string name;      // which clients show as their window's title
+  std::string name;      // shown by clients as their window's title
   std::string password;  // empty: none is asked for
-  // How long a client may keep it waiting for its next bytes, or not take what it is sent; then it
-  // is disconnected.
+  // Time after which a client is disconnected if it does not send the bytes that are due, or does
+  // not read.
   Duration patience = std::chrono::seconds(10);
 };
 
-// Thread-bound. One at a time, since the library has global variables.
+// Thread-bound. Only one may exist at a time, since the library has global variables.
 class RfbScreen {
  public:
   // `socket`: a connected client; the library closes it. `input`: where its pointer and keys go;
@@ -35,12 +35,12 @@ class RfbScreen {
   RfbScreen(const RfbScreen&) = delete;
   RfbScreen& operator=(const RfbScreen&) = delete;
 
-  // Another picture takes the place of the present one.
+  // Replaces the picture by another one, which may have another size.
   void setPixels(std::span<std::uint8_t> pixels, int width, int height);
   void markChanged(const Rectangle& rectangle);
 
-  // Waits at most `at_most` for the client, and serves it: may take as long as `patience` for every
-  // part of a message.
+  // Waits at most `at_most` for the client, then serves it, which may take up to `patience` for
+  // every part of a message.
   void process(Duration at_most);
 
   bool isGone() const noexcept;         // the client has left, or was disconnected

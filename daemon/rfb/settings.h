@@ -11,13 +11,13 @@ namespace merlin::rfb {
 // Where VNC clients connect.
 struct Listen {
   std::string address = "127.0.0.1";  // IPv4
-  int port = 5900;                    // 0: any that is free, which the log then names
+  int port = 5900;                    // 0: any free port, which the log then names
 };
 // Parses "ADDRESS:PORT". Errors: kInvalidArgument.
 Result<Listen> parseListen(const std::string& text);
 
 struct RfbSettings {
-  std::string instance = "merlin";  // of the merlind whose wall is shown
+  std::string instance = "merlin";  // name of the merlind instance whose wall is shown
   View view;
   Listen listen;
   std::string password;      // empty: none is asked for
@@ -29,9 +29,9 @@ struct RfbSettings {
 // Errors: kInvalidArgument (an address that other machines can reach, without a password).
 Result<Ok> validate(const RfbSettings& settings);
 
-// The first line of the file. Errors: kNotFound; kIo; kInvalidArgument (the file belongs to another
-// user, or others have access to it; the password has 0 or more than 8 characters, or characters
-// outside printable ASCII).
+// Reads the password, the first line of the file. Errors: kNotFound; kIo; kInvalidArgument (the
+// file belongs to another user, or others have access to it; the password has 0 or more than 8
+// characters, or characters outside printable ASCII).
 Result<std::string> readPassword(const std::string& path);
 
 }  // namespace merlin::rfb

@@ -19,11 +19,11 @@ namespace merlin::rfb {
 // Thread-bound.
 class ShownPicture {
  public:
-  // `instance`: of the merlind. `from`: whose shared memory is accepted.
+  // `instance`: name of merlind's instance. `from`: whose shared memory is accepted.
   ShownPicture(std::string instance, View view, SharedMemory::From from);
 
   struct Change {
-    bool resized = false;  // pixels() has another size and place, and all of it changed
+    bool resized = false;  // pixels() has a new size and address, and all pixels have changed
     std::vector<Rectangle> changed;
   };
   // Looks for a newer frame. Never waits. Costs a copy of the frame if there is one.
@@ -35,7 +35,7 @@ class ShownPicture {
   std::span<std::uint8_t> pixels() noexcept { return pixels_; }
   // The text of the card; empty while the wall is shown.
   const std::string& card() const noexcept { return card_; }
-  // Where pixels() shows the operator's panel; nothing while they do not.
+  // Where pixels() shows the operator's panel; nothing while the panel is not visible.
   const std::optional<PanelPointer::Place>& panel() const noexcept { return panel_; }
   // Where the wall takes commands; empty while no wall runs.
   const std::string& commandEndpoint() const noexcept { return command_endpoint_; }

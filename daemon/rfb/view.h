@@ -1,4 +1,4 @@
-// What of a frame a VNC client sees, and which parts of that changed. Pure.
+// The part of a frame that a VNC client sees, and which areas of it have changed. Pure.
 #pragma once
 
 #include <cstdint>

@@ -23,8 +23,8 @@ namespace merlin::serve {
 // a request, a client gets no events until it has sent nothing for 60 ms (at most 0.5 s if it keeps
 // asking); then it gets the button events of that time and the newest motion.
 //
-// Of several balls, the device that clients are told of is the first that works, and the events are
-// those of all, as spacenavd merges those of several space mice.
+// If there are several balls, clients are told of the first that works as the device, and get the
+// events of all, as spacenavd merges several space mice.
 class SpnavServer final : public net::Server {
  public:
   // Errors: those of listenLocal(). The segment of `devices`, `watch` and `clock` must

@@ -1,5 +1,5 @@
-// What a VRPN server of trackers, buttons and analogs needs beside drivers/port/vrpn_line, which
-// describes the wire format: clients' messages, and requests by UDP. No I/O, no clock.
+// Parts of the VRPN protocol that only a server needs: clients' messages, and requests by UDP.
+// drivers/port/vrpn_line describes the wire format. No I/O, no clock.
 //
 // Source: vrpn_Connection.C; README.md beside this.
 #pragma once

@@ -23,16 +23,16 @@ namespace merlin::serve {
 
 class VrpnSession;
 
-// Devices: Hand0 (tracker, sensor 0, smoothed; analog, 23 joint angles in radians), Tracker0
+// Devices: Hand0 (tracker: sensor 0, smoothed; analog: 23 joint angles in radians), Tracker0
 // (tracker, sensors 0 to 3), Ball0 (analog, 6 shares of full scale; buttons), and likewise Hand1
 // and so on where there are several, in the order of the configuration. Positions are in metres, in
 // the frame of each station. Data are sent over TCP; a client connects by TCP, or asks
 // by UDP to be connected to. Owns its threads; reads shared memory as any client does.
 class VrpnServer final : public net::Server {
  public:
-  // `port` 0 takes any free one. `instance`: the daemon's, which the server tells its clients
-  // (kVrpnInstance). Errors: those of listenTcp(). `devices`, `watch` and `clock` must outlive the
-  // server.
+  // `port` 0 takes any free one. `instance`: that of the daemon, which the server sends to its
+  // clients (kVrpnInstance). Errors: those of listenTcp(). `devices`, `watch` and `clock` must
+  // outlive the server.
   static Result<std::unique_ptr<VrpnServer>> start(int port, const shm::DeviceSlots& devices,
                                                    ThreadWatch& watch, const Clock& clock,
                                                    std::string instance = "merlin");

@@ -46,7 +46,7 @@ class alignas(64) Channel {
     return n + kHistory > count() ? sample : std::nullopt;  // overwritten while it was read
   }
 
-  // Grows with each sample, for a reader that waits for several channels at once.
+  // A futex word that grows with each sample, for a reader that waits for several channels at once.
   const std::atomic<std::uint32_t>& wakeWord() const noexcept { return wake_; }
 
   // Offsets of its members, for the table of fields.

@@ -59,7 +59,7 @@ struct DeviceSlots {
   // The same for a segment of this process, whose table is filled in.
   static Result<DeviceSlots> find(const DevicesSegment& segment);
 
-  // The one with this name, or the first one if `name` is empty; null if there is none.
+  // The device with this name, or the first of its kind if `name` is empty; null if there is none.
   const Glove* glove(std::string_view name = {}) const;
   const Tracker* tracker(std::string_view name = {}) const;
   const Ball* ball(std::string_view name = {}) const;
@@ -67,8 +67,8 @@ struct DeviceSlots {
   const Hand* hand(std::string_view name = {}) const;
 
   const Header* header = nullptr;
-  // Each in the table's order, which is that of the configuration. Health is that of the devices,
-  // without the control panel's, which is "gpio.health".
+  // Each list is in the table's order, which is that of the configuration. `health` has the devices
+  // only; the control panel's health is "gpio.health".
   std::vector<Health> health;
   std::vector<Glove> gloves;
   std::vector<Tracker> trackers;
@@ -83,8 +83,8 @@ struct DeviceSlots {
 // health was not updated for a second.
 const char* healthName(const DeviceHealth& health, Timestamp now);
 
-// A device that works for less than this between two faults that are the same has had one fault,
-// for messages and recordings.
+// If a device works for less than this between two equal faults, messages and recordings treat them
+// as one fault.
 inline constexpr Duration kBriefly = std::chrono::seconds(5);
 
 }  // namespace merlin::shm

@@ -27,8 +27,8 @@ inline constexpr std::uint32_t kVersion = 6;
 inline constexpr std::size_t kMostFields = 704;          // of the wall's segment
 inline constexpr std::size_t kMostDevicesFields = 2304;  // of the devices' segment
 
-// A reader only needs to know the first 40 bytes beforehand: they have the offset of the table of
-// fields, which describes everything else. They are the same in the frame buffer's segment.
+// A reader only needs to know the first 40 bytes beforehand: they contain the offset of the table
+// of fields, which describes everything else. They are the same in the frame buffer's segment.
 struct Header {
   std::uint32_t magic, version;
   std::uint64_t size;          // size of the whole segment [bytes]
@@ -52,26 +52,28 @@ static_assert(offsetof(Header, status_endpoint) == 64 && sizeof(Header) == 280);
 // Maximum number of actions (daemon/base/commands.h).
 inline constexpr std::size_t kMostActions = 64;
 
-// Actions that the inputs of one device are bound to. Written when one begins or ends. Index of the
-// arrays: kActions of daemon/base/commands.h; other processes find an action by its field's name.
+// State of the actions that the inputs of one source (device, panel or hand) are bound to. Written
+// when one begins or ends. The arrays are indexed like kActions in daemon/base/commands.h; other
+// processes find an action by its field's name.
 struct ActionState {
-  std::int64_t changed_ns;            // time of the input that changed it; 0: none has
-  std::uint64_t generation;           // of the daemon that counts; if it differs, counts start anew
+  std::int64_t changed_ns;   // time of the input that last changed this; 0: none yet
+  std::uint64_t generation;  // of the daemon that counts; when it changes, the counts start anew
   std::uint32_t begun[kMostActions];  // times that the action has begun
   std::uint8_t held[kMostActions];    // 1 while an action is held that lasts as long as its input
-  std::uint32_t sequence;             // actions of all kinds that have begun
+  std::uint32_t sequence;             // number of actions of all kinds that have begun
   std::uint8_t recent[12];            // index of the n-th of them, at n % 12
 };
 static_assert(sizeof(ActionState) == 352);
 
-// Slots of one glove. Writer: its device thread, which writes what follows from a sample before it.
+// Slots of one glove. Writer: its device thread, which writes the results of a sample before the
+// sample itself.
 struct GloveSlots {
   Channel<GloveSample> samples;
   Channel<PostureSample> posture;
   alignas(64) SeqSlot<PostureState> posture_state;
 };
 
-// Slots of one tracker. Writer: its device thread; of the frames the daemon, as it starts.
+// Slots of one tracker. Writer: its device thread; `frames` is written by the daemon, as it starts.
 struct TrackerSlots {
   Channel<TrackerSample> stations[kStations];  // index: station - 1
   alignas(64) SeqSlot<TrackerFrames> frames;
@@ -83,9 +85,9 @@ inline constexpr std::size_t kPanelSource = kMostDevices;
 inline constexpr std::size_t kFirstHandSource = kMostDevices + 1;
 inline constexpr std::size_t kActionSources = kFirstHandSource + kMostHands;
 
-// Room for the most devices that may be configured. Those that are, and only those, have names in
-// the table of fields: health and actions in the order of the configuration, samples in the order
-// of the devices of their kind.
+// Has room for the largest number of devices that may be configured. Only those that are configured
+// have names in the table of fields: health and actions in the order of the configuration, samples
+// in the order of the devices of their kind.
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): offsets are a contract
 struct DevicesSegment {
   Header header;
@@ -121,7 +123,8 @@ struct WallStats {
   float work_median_ms;  // median of the last second's frames
   float utilisation;     // work / period of the last second's moving frames
   float head_room;       // time reserve of the governor, share of the period
-  float cost_fixed_ms;   // its cost model: work = fixed + coefficient * cost^cost_exponent
+  // The governor's cost model: work = fixed + coefficient * cost^cost_exponent.
+  float cost_fixed_ms;
   float cost_coefficient_us;
   float input_age_ms;              // age of the newest sample when the last frame began
   float still_to_full_s;           // last time from standstill to full detail
@@ -146,7 +149,7 @@ struct WallStats {
   std::uint32_t returned;    // times that the initial view returned by itself, since the start
   std::uint32_t full_cost;   // cost of full detail
   char cost_unit[16];        // unit of costs, of the content that is shown: "triangles"
-  std::uint32_t least_cost;  // the least that the governor chooses
+  std::uint32_t least_cost;  // the lowest cost that the governor chooses
 };
 static_assert(sizeof(WallStats) == 360 && offsetof(WallStats, cost) == 32);
 static_assert(offsetof(WallStats, rate_now_hz) == 160 && offsetof(WallStats, scale_divisor) == 156);
@@ -188,7 +191,7 @@ static_assert(sizeof(TraceStep) == 12 && sizeof(FrameTrace) == 48 + 32 * 12);
 struct WallInteraction {
   enum Pointing : std::uint32_t { kNone = 0, kAtWall = 1, kAtModel = 2 };
   enum Shown : std::uint32_t { kPicture = 0, kBlank = 1, kFrozen = 2 };
-  // kPlaylistOff: it does not begin by itself; kPlaylistWaiting: it will.
+  // kPlaylistOff: the playlist does not begin by itself; kPlaylistWaiting: it will.
   enum Playlist : std::uint32_t { kPlaylistOff = 0, kPlaylistWaiting = 1, kPlaylistRunning = 2 };
 
   std::int64_t updated_ns;
@@ -200,11 +203,11 @@ struct WallInteraction {
                             // file that is not in the configuration
   std::uint32_t shown;      // Shown
   std::uint32_t playlist;   // Playlist
-  float light;              // of the picture, as a share of the full light; below 1: dimmed
+  float light;  // brightness of the picture, as a share of the full light; below 1: dimmed
 };
 static_assert(sizeof(WallInteraction) == 56 && offsetof(WallInteraction, snapshots) == 32);
 
-// One output of the wall, and how it fares.
+// State of one output of the wall.
 struct OutputStats {
   char name[24];         // of the configuration
   char kind[24];         // "shared_memory", "png"
@@ -216,7 +219,7 @@ struct OutputStats {
   // What the output was found to show when it was last read back: 0 not read, 1 what was meant,
   // 2 black, 3 an older frame, 4 parts of two frames, 5 a picture that is not the wall's.
   std::uint32_t picture;
-  float picture_ms;         // that reading took so long
+  float picture_ms;         // time that reading it back took
   char picture_fault[112];  // what is wrong with it; empty while `picture` is 0 or 1
 };
 static_assert(sizeof(OutputStats) == 328);
@@ -233,16 +236,16 @@ struct WallContent {
   std::int64_t updated_ns;
   char name[64];   // of the configuration, or of a file that is not in it
   char kind[16];   // "model", "picture", "panorama"
-  char slide[64];  // of slides: the name of the one that is shown
-  // Number of a request (`merlin show`) that was shown or refused: of the last one, but each stays
-  // for a tenth of a second at least. They may end in another order than they were asked for.
+  char slide[64];  // for slides: name of the slide that is shown
+  // Number of the last request (`merlin show`) that was shown or refused; each number stays for at
+  // least a tenth of a second. Requests may end in another order than they were made.
   std::uint32_t finished;
-  char refused[260];  // why that one cannot be shown; empty if it is shown
+  char refused[260];  // why the content of that request cannot be shown; empty if it is shown
 };
 static_assert(sizeof(WallContent) == 416 && offsetof(WallContent, finished) == 152);
 
 // What the wall will do by itself while nobody touches it, and what hides the content. Written once
-// a period. A time is negative while the thing is not going to happen.
+// a period. A time is negative while its event is not going to happen.
 struct WallIdle {
   std::int64_t updated_ns;
   float playlist_in_s;     // until the playlist begins by itself
@@ -256,19 +259,20 @@ static_assert(sizeof(WallIdle) == 24);
 struct WallPanel {
   std::int64_t updated_ns;
   std::int32_t x, y, width, height;  // in the frame, from its upper left corner [px]
-  std::uint32_t by_ball;             // 1 while the ball works it
+  std::uint32_t by_ball;             // 1 while the ball operates the panel
   std::uint32_t reserved;
 };
 static_assert(sizeof(WallPanel) == 32);
 
-// What a client has the wall say for a few seconds, over the picture. Written when it changes.
+// The sentence that the wall shows over the picture for a few seconds, at a client's request.
+// Written when it changes.
 struct WallNotice {
   std::int64_t updated_ns;
   char text[152];  // empty: nothing
 };
 static_assert(sizeof(WallNotice) == 160);
 
-// Each part has cache lines of its own, whoever writes it.
+// Each part has cache lines of its own, even if two have the same writer.
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct WallSegment {
   Header header;

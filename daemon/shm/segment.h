@@ -1,4 +1,4 @@
-// Access to segments for their writer, the daemon, and for readers, any process.
+// Access to shared-memory segments: for their writer, the daemon, and for readers in any process.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ struct Endpoints {
 void fillHeader(Header& header, std::size_t size, std::uint64_t generation, Timestamp now,
                 const Endpoints& endpoints);
 
-// A random number, not 0, that no other run of the daemon has used.
+// A random 64-bit number, not 0, so that no two runs of the daemon have the same.
 std::uint64_t newGeneration();
 
 // Checks a segment's header. Errors, with the segment's name: kMalformed (not MERLIN's, too small,
@@ -64,8 +64,8 @@ class SegmentWriter {
 // Whether the daemon that writes the segment's heartbeat still runs.
 bool isAlive(const Header& header, Timestamp now);
 
-// The same, also on a machine that is too busy for a heartbeat: a process of the same user is seen
-// to hold the lock of the segment `name`. Cost: microseconds, if the heartbeat is late.
+// The same, but also true on a machine that is too busy for a heartbeat, if a process of the same
+// user holds the lock of the segment `name`. Cost: microseconds, if the heartbeat is late.
 bool isRunning(const std::string& name, const Header& header, Timestamp now);
 
 // Maps a segment read-only, and reads it by its layout. For the devices' segment use DevicesReader.
@@ -89,8 +89,8 @@ class SegmentReader {
   SharedMemory memory_;
 };
 
-// Maps the devices' segment read-only, and finds its slots by name: it may have other devices, and
-// have them elsewhere, than this release.
+// Maps the devices' segment read-only, and finds its slots by name, so the segment may have other
+// devices, and at other offsets, than this release.
 class DevicesReader {
  public:
   using View = DeviceSlots;
@@ -128,8 +128,8 @@ class SegmentFollower {
                            SharedMemory::From from = SharedMemory::From::kOwnUserOrRoot)
       : name_(std::move(name)), from_(from) {}
 
-  // What the reader shows of the segment, or null while no running daemon has one. Tries to open it
-  // at most twice a second.
+  // The segment's content (Reader::View), or null while no running daemon has one. Tries to open
+  // the segment at most twice a second.
   const typename Reader::View* get(Timestamp now);
 
  private:

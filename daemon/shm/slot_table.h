@@ -12,7 +12,7 @@
 
 namespace merlin::shm {
 
-// Where a segment's header says that the table of fields is.
+// Position of the table of fields, as the segment's header states it.
 struct TablePlace {
   std::uint32_t offset, count, field_size;
 
@@ -44,7 +44,7 @@ class SlotTable {
     return typed<SeqSlot<T>>(slot, slotFields<T>);
   }
 
-  // The names of the table that end so, without the ending, in the table's order:
+  // The names in the table that have this ending, without it, in the table's order:
   // {"glove", "tracker", ...} for ".health.state".
   std::vector<std::string> namesBefore(std::string_view ending) const;
 

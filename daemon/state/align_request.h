@@ -21,7 +21,7 @@ struct MoveRequest {
 struct ResetRequest {
   std::string output;
 };
-// Chooses what actions of bound inputs move from then on.
+// Selects the place that actions of bound inputs move from then on.
 struct SelectRequest {
   std::string output;
   Place place;
@@ -42,11 +42,11 @@ Result<AlignRequest> parseAlignRequest(std::string_view argument);
 // The request as the command's argument.
 std::string textOf(const AlignRequest& request);
 
-// An output as it is aligned.
+// The alignment of one output.
 struct ReportedOutput {
   OutputForm form;
   std::vector<double> configured;  // its corners in the configuration, x and y each
-  bool pending = false;            // what was changed last is not shown yet
+  bool pending = false;            // the last change is not shown yet
   SeenAxes axes{};
 };
 

@@ -1,7 +1,7 @@
 // Alignment: how far people have moved the corners and mesh points of outputs while the daemon
 // runs, and the steps in which they did it, to be undone and redone. Pure.
 //
-// A correction of the configuration is the base: an offset is added to it.
+// The configured correction is the base, to which the offsets are added.
 #pragma once
 
 #include <array>
@@ -38,33 +38,35 @@ struct Place {
     return 2 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column);
   }
 };
-// Nothing if there is no corner of that name.
+// The corner with that name; nothing if there is none.
 std::optional<Place> cornerNamed(std::string_view name);
 Place cornerAt(std::size_t corner);
 // "top_left", or "point 2 0" with column and row.
 std::string nameOf(const Place& place);
 
-// Pixels of the output, x to the right and y down.
+// A displacement in pixels of the output, x to the right and y down.
 struct Offset {
   double x = 0, y = 0;
   bool operator==(const Offset&) const = default;
 };
 
-// What an output was when it was aligned; offsets fit no other form. Whoever writes the aligned
-// corners into the configuration wants them there once, without the offsets.
+// The properties that an output had when it was aligned; the offsets are valid for these only.
+// `corners` is among them because somebody may write the aligned corners into the configuration,
+// and the offsets must then not be added again.
 struct OutputForm {
   std::string output;                   // its name
   int width = 0, height = 0;            // of its picture [px]
   int mesh_columns = 0, mesh_rows = 0;  // 0: no mesh
-  // A correction's `corners` in the configuration; nothing: not known, from an earlier version.
+  // A correction's `corners` in the configuration; nothing: unknown, because an earlier version
+  // wrote the file.
   std::optional<std::array<double, 8>> corners{};
   bool operator==(const OutputForm&) const = default;
 };
 
 struct OutputAlignment {
   OutputForm form;
-  std::map<Place, Offset> moved;  // only what is not where the configuration says
-};  // stays when everything is back in its place: steps may refer to it
+  std::map<Place, Offset> moved;  // only places that are not where the configuration puts them
+};  // kept even if nothing is moved any more, since steps may refer to it
 
 struct Change {
   Place place;
@@ -78,19 +80,20 @@ struct Step {
 struct Alignment {
   std::vector<OutputAlignment> outputs;
   std::vector<Step> steps;  // the oldest first
-  std::size_t done = 0;     // of them; those behind were undone and can be redone
+  std::size_t done = 0;     // number of steps in effect; those after them can be redone
 
-  // Where a place is from where the configuration says; 0, 0 for what was not moved.
+  // Offset of a place from its configured position; 0, 0 if it was not moved.
   Offset offset(std::string_view output, const Place& place) const;
-  // Null where nothing was ever moved.
+  // The alignment of an output; null if nothing of it was ever moved.
   const OutputAlignment* find(std::string_view output) const;
 
-  // Each of these makes one step, and forgets those that were undone, and the oldest beyond the
-  // limits. Offsets are kept in thousandths of a pixel.
+  // Each of these adds one step, and forgets the steps that were undone and the oldest ones beyond
+  // the limits. Offsets are rounded to thousandths of a pixel.
   void move(const OutputForm& form, const Place& place, const Offset& by);
-  // The same, as a part of the last step if that moved the same place: a ball that is being pushed.
+  // The same, but as a part of the last step if that moved the same place, for a ball that is being
+  // pushed.
   void moveOn(const OutputForm& form, const Place& place, const Offset& by);
-  // Back to the configuration. False if nothing of the output is moved.
+  // Moves all places of the output back to the configuration. Returns false if none is moved.
   bool reset(std::string_view output);
 
   // Undoes or redoes a step and returns it; null if there is none.

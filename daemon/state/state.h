@@ -1,5 +1,5 @@
-// State: what people have changed while the daemon runs, and what is there again after a restart.
-// The configuration stays as it is; this is kept in a file of the daemon's own. Pure.
+// State: what people have changed while the daemon runs, which a restart restores. The
+// configuration is not changed; the daemon keeps the state in a file of its own. Pure.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ struct ProjectorSwitch {
 struct State {
   Alignment alignment;
   std::optional<double> rate_hz;  // set by hand; none: the configured one
-  std::string content;            // the model that is shown, its path; empty: the first one
-  bool playlist_off = false;      // by `merlin playlist off`, until on
+  std::string content;            // path of the content that is shown; empty: the first content
+  bool playlist_off = false;      // set by `merlin playlist off`, until `on`
   std::optional<ProjectorSwitch> projectors;  // nothing: nobody has switched them
 };
 
@@ -35,7 +35,7 @@ std::string stateText(const State& state);
 
 // Strict: unknown keys, numbers out of range, and alignment steps of an output that the file does
 // not list are errors, since they show that the file was not written completely. `file`: its name,
-// for messages. Errors: kUnsupported (of a newer version), kMalformed (everything else).
+// for messages. Errors: kUnsupported (a newer version), kMalformed (everything else).
 Result<State> parseState(std::string_view text, const std::string& file);
 
 }  // namespace merlin::state

@@ -12,21 +12,21 @@ class StateFiles {
  public:
   virtual ~StateFiles() = default;
 
-  // What was written last, and the one before it. Errors: kNotFound (there is none), kIo,
-  // kMalformed (not a regular file).
+  // Return the text that was written last, and the one before it. Errors: kNotFound (there is
+  // none), kIo, kMalformed (not a regular file).
   virtual Result<std::string> read() = 0;
   virtual Result<std::string> readPrevious() = 0;
 
-  // Replaces what was written last, which becomes the previous one. After an error, and whenever
-  // the process or the machine stops, one or the other is there whole. Waits for the disk. Errors:
-  // kNotFound, kIo.
+  // Replaces the text that was written last, which becomes the previous one. Even after an error,
+  // or if the process or the machine stops at any moment, at least one of the two is complete.
+  // Waits for the disk. Errors: kNotFound, kIo.
   virtual Result<Ok> write(const std::string& text) = 0;
 
-  // What was written last cannot be used and must not become the previous one: puts it aside.
-  // Errors: kIo.
+  // Puts the text that was written last aside, because it is unusable and must not become the
+  // previous one. Errors: kIo.
   virtual Result<Ok> putAside() = 0;
 
-  // For messages.
+  // Name of the place, for messages.
   virtual const std::string& name() const = 0;
 };
 

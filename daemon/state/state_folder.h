@@ -1,5 +1,5 @@
-// StateFolder: the state in a file, with the one before it and a damaged one beside it; and where
-// that file is.
+// StateFolder: keeps the state in a file, with the previous and a damaged one beside it; and
+// functions that determine where that file is.
 #pragma once
 
 #include <string>
@@ -25,10 +25,10 @@ class StateFolder final : public StateFiles {
   std::string path_;
 };
 
-// Where merlind keeps what has to outlive it: the folder that systemd sets (StateDirectory=), else
-// /var/lib/merlin for root, else $XDG_STATE_HOME/merlin or ~/.local/state/merlin. Empty if there is
-// no such folder, since this user has no home. Reads the environment: to be called before any
-// thread starts.
+// The folder for everything that has to outlive merlind: the folder that systemd sets
+// (StateDirectory=), else /var/lib/merlin for root, else $XDG_STATE_HOME/merlin or
+// ~/.local/state/merlin. Empty if there is no such folder, since this user has no home. Reads the
+// environment: to be called before any thread starts.
 std::string stateFolder();
 
 // The file that is used: `wanted`, or, if that is empty, INSTANCE.state.json in stateFolder(). A
@@ -36,8 +36,8 @@ std::string stateFolder();
 // wall may have the other. Empty if there is no folder. To be called before any thread starts.
 std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall);
 
-// The file as another program than merlind finds it, who knows neither merlind's user nor its
-// environment: stateFile() of a process with a wall, or, if there is no such file, that of the
+// The state file as found by a program other than merlind, which knows neither merlind's user nor
+// its environment: stateFile() of a process with a wall, or, if there is no such file, that of the
 // installed service in /var/lib/merlin if that exists.
 std::string findStateFile(const std::string& wanted, const std::string& instance);
 
@@ -46,13 +46,13 @@ std::string findStateFile(const std::string& wanted, const std::string& instance
 // starts.
 std::string lastGoodFile(const std::string& configuration, const std::string& role);
 
-// Those files that exist, as another program than merlind finds them: in stateFolder(), or, if
-// there are none, in the installed services' /var/lib/merlin.
+// The existing files of that kind, as found by a program other than merlind: in stateFolder(), or,
+// if there are none, in the installed services' /var/lib/merlin.
 std::vector<std::string> findLastGoodFiles(const std::string& configuration);
 
-// The content folder that is used, as a whole path, which other programs can use: `wanted`, or, if
-// that is empty, INSTANCE.shown beside the state's `file`, from stateFile(). Empty if there is
-// neither.
+// The content folder that is used, as an absolute path, so that other programs can use it:
+// `wanted`, or, if that is empty, INSTANCE.shown beside the state's `file`, from stateFile(). Empty
+// if there is neither.
 std::string shownFolder(const std::string& wanted, const std::string& file,
                         const std::string& instance);
 

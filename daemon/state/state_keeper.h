@@ -1,5 +1,5 @@
-// StateKeeper: the daemon's state while it runs. What is changed is saved at once, on a thread of
-// its own; a disk that is full or slow holds nobody up.
+// StateKeeper: the daemon's state while it runs. Changes are saved at once, on a thread of its own,
+// so that a full or slow disk delays no caller.
 #pragma once
 
 #include <condition_variable>
@@ -22,17 +22,17 @@ class StateKeeper {
   // Reads the state: what was written last, or the previous one if that is damaged (which is put
   // aside then), or else the defaults. A state of a newer version, or one that cannot be read, is
   // left alone: the defaults hold, and nothing is saved. `files`: null if there is no place for
-  // them, which is a fault too. `watch` outlives this. `try_again`: after this time what could not
-  // be saved is tried again.
+  // them, which is a fault too. `watch` must outlive this object. `try_again`: time after which a
+  // failed save is tried again.
   StateKeeper(std::unique_ptr<StateFiles> files, ThreadWatch& watch,
               Duration try_again = std::chrono::seconds(5));
-  ~StateKeeper();  // saves what is not saved yet, if the disk takes it
+  ~StateKeeper();  // saves what is not saved yet, unless that fails
   StateKeeper(const StateKeeper&) = delete;
   StateKeeper& operator=(const StateKeeper&) = delete;
 
   State state() const;
-  // `edit` changes the state; it is called at once, with the lock held. Saves soon afterwards; of
-  // several changes in a row the last one. What cannot be saved is tried again and again.
+  // `edit` changes the state; it is called at once, with the lock held. The state is saved soon
+  // afterwards, once for several changes in a row. A failed save is tried again until it succeeds.
   void change(const std::function<void(State&)>& edit);
 
   // Why changes are not saved at present; empty: they are.

@@ -5,7 +5,7 @@
 namespace merlin::status {
 namespace {
 
-// Without the socket's address, which says nothing to a person at a browser.
+// Removes the socket's address from an error, since it means nothing to a person at a browser.
 Result<std::string> withoutAddress(const Result<std::string>& answer, const std::string& endpoint) {
   if (answer || !answer.error().what.starts_with(endpoint + ": ")) return answer;
   return Error{answer.error().code, answer.error().what.substr(endpoint.size() + 2)};

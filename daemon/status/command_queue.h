@@ -20,13 +20,13 @@ class CommandQueue {
   struct Waiting {
     std::uint64_t id = 0;
     std::string command, argument;
-    Timestamp until{};  // then it is given up
+    Timestamp until{};  // the command is given up at this time
   };
   // The JSON text of the command's result. Errors: kTimeout, kInvalidArgument (the role refused
   // it), kIo, kNotFound (the role does not run).
   using Answered = std::function<void(std::uint64_t id, const Result<std::string>& answer)>;
 
-  // Adds a command. False if kMostWaiting wait already.
+  // Adds a command. Returns false if kMostWaiting commands wait already.
   bool add(Waiting command);
   // Sends what can be sent to `command_endpoint` (empty: the role does not run) and passes answers
   // on.

@@ -18,8 +18,8 @@ struct KeyPair {
 // Errors: kUnsupported (a libzmq without CURVE).
 Result<KeyPair> makeKeyPair();
 
-// Write and read a file of two lines, "public KEY" and "secret KEY", which only its owner can read.
-// Errors, with the file's name: kNotFound, kIo, kMalformed.
+// Writes or reads a file of two lines, "public KEY" and "secret KEY", which only its owner can
+// read. Errors, with the file's name: kNotFound, kIo, kMalformed.
 Result<Ok> writeKeyPair(const std::string& path, const KeyPair& keys);
 Result<KeyPair> readKeyPair(const std::string& path);
 

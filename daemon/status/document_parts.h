@@ -18,7 +18,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 // ISO 8601, to the microsecond: "2026-11-23T14:05:07.000250Z".
 std::string isoUtc(std::int64_t utc_ns);
-// That of CLOCK_MONOTONIC's `now`, by the segment's offset.
+// isoUtc() of `now`, a time of CLOCK_MONOTONIC, with the clock offset in the segment's header.
 std::string timeUtc(const shm::Header& header, Timestamp now);
 
 // Rounds to three decimals; 0 if not finite.

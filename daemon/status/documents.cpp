@@ -78,7 +78,7 @@ std::string postureName(const shm::DeviceSlots::Glove& glove) {
   return posture ? text(posture->name) : "";
 }
 
-// That of the first glove that shows one.
+// Returns the posture of the first glove that shows one.
 std::string postureName(const shm::DeviceSlots& devices) {
   for (const auto& glove : devices.gloves) {
     if (std::string name = postureName(glove); !name.empty()) return name;
@@ -171,8 +171,8 @@ OrderedJson detailJson(const shm::WallStats& s) {
           {"unit", text(s.cost_unit)}};
 }
 
-// The content shown. `slide`: of slides. `refused`: why the last one that was asked for is not
-// shown.
+// The content that is shown. `slide`: only for slides. `refused`: why the last requested content is
+// not shown.
 OrderedJson contentJson(const shm::WallSegment& segment, const shm::WallStats& stats,
                         const shm::WallInteraction& interaction) {
   const auto content = segment.content.read().value_or(shm::WallContent{});
@@ -192,7 +192,7 @@ const char* playlistName(const shm::WallInteraction& interaction) {
   return interaction.playlist == shm::WallInteraction::kPlaylistWaiting ? "waiting" : "off";
 }
 
-// Null if it is not going to happen.
+// Null if the event is not going to happen.
 OrderedJson secondsUntil(float in_s) {
   if (in_s < 0) return nullptr;
   return round3(in_s);
@@ -271,7 +271,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                       {"stale_s", ageSeconds(s.updated_ns, now)},
                       {"outputs", outputsJson(segment)},
                       {"servers", serversJson(servers)}};
-  // Of a model, under the name that people look for.
+  // The cost of a model also gets the name that people look for.
   if (text(s.cost_unit) == kTriangles) json["triangles"] = s.cost;
   if (renderer) json["renderer"] = rendererJson(*renderer);
   if (remote) {
@@ -313,7 +313,7 @@ std::string devicesMetrics(const shm::DeviceSlots& devices) {
 
 namespace {
 
-// How many outputs were found to show what was meant, and how many something else.
+// Adds how many outputs were found to show the right picture, and how many a wrong one.
 void addPictureCounts(const shm::WallSegment& segment, OrderedJson& json) {
   int right = 0, wrong = 0;
   if (const auto all = segment.outputs.read()) {

@@ -16,15 +16,15 @@ namespace merlin::status {
 // Topic "status" of the role devices: health of the devices, and the posture. About 1 kB.
 std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
                           const std::vector<net::ServerHealth>& servers = {});
-// Who draws the wall.
+// The renderer that draws the wall.
 struct RendererState {
-  std::string name{}, vendor{}, driver{}, library{};  // as OpenGL tells them; "EGL" or "OSMesa"
+  std::string name{}, vendor{}, driver{}, library{};  // from OpenGL; library: "EGL" or "OSMesa"
   std::string node{}, pci{};                          // of a GPU; empty if unknown
   bool software = true;                               // drawn by the CPU
   int contexts = 1;
   const char* read_back = "direct";  // or "asynchronous"
   const char* correction = "cpu";    // where outputs' corrections are computed, or "gpu"
-  std::string correction_fault{};    // why not there where they were to be; empty: no fault
+  std::string correction_fault{};    // why they are not computed where set; empty: no fault
 };
 
 // Topic "status" of the role wall. `remote`: another machine's devices, if the wall uses them.
@@ -38,12 +38,13 @@ struct ShownFolderState {
   std::string path{};
   std::uint64_t limit_bytes = 0;     // of all files in it together
   std::string fault{};               // why it cannot be used; empty: it can
-  std::vector<std::string> names{};  // that `show` takes, of the contents in it, the newest first
+  std::vector<std::string> names{};  // names of its contents that `show` accepts, the newest first
 };
 // Returns `document`, a JSON object, with the member "shown_folder": {"path", "limit_bytes",
 // "fault", "names"}.
 std::string addShownFolder(const std::string& document, const ShownFolderState& folder);
-// The same with "missing_contents": {NAME: why it cannot be shown}; without it if there is none.
+// The same with "missing_contents": {NAME: why it cannot be shown}, which is omitted if no content
+// is missing.
 std::string addMissingContents(const std::string& document,
                                const std::vector<std::pair<std::string, std::string>>& missing);
 

@@ -12,11 +12,11 @@
 namespace merlin::status {
 namespace {
 
-// Whether a device is absent as it should be.
+// Whether the absence of a device is intended.
 bool isIntended(std::string_view reason) { return reason == kNotConfigured || reason == kStopped; }
 
-// Opening is not an event: an absent device is opened again every second. Nor is that a process
-// which has just started will open it.
+// Opening is not an event: an absent device is opened again every second. Neither is the state of a
+// process that has just started and will open it.
 bool isBeingOpened(const DeviceHealth& health) {
   return health.state == HealthState::kOpening || textIn(health.reason) == kNotOpenedYet;
 }
@@ -31,7 +31,7 @@ bool HealthEvents::isBrief(Told& told, const DeviceHealth& health, Timestamp now
 }
 
 void HealthEvents::tellFault(Told& told, const DeviceHealth& health, const std::string& sentence) {
-  if (health.state == HealthState::kOk) return;  // a complaint of one that works
+  if (health.state == HealthState::kOk) return;  // a device that works has a complaint, not a fault
   const bool brief = health.since_ns < told.ok_ns + shm::kBriefly.count();
   told.recurs = told.recurs || (sentence == told.fault && brief);
   told.fault = sentence;

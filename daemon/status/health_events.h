@@ -23,21 +23,21 @@ class HealthEvents {
 
   // The changes since the last call: "glove: ok (CyberGlove, 22 sensors)", "tracker: absent
   // (/run/merlin/t: No such file)". A device that is retried with the same result is reported once.
-  // So is one that fails in the same way again and again, with little work between
-  // (shm::kBriefly): that it is ok is then said once it has stayed so for that time. Faults are
-  // those of a device that is not ok, or complains.
+  // So is a device that fails in the same way again and again and works only briefly in between
+  // (shm::kBriefly): "ok" is then reported only after it has lasted for that time. An event is a
+  // fault if the device is not ok, or reports a problem.
   std::vector<Event> take(Timestamp now);
-  // The gestures since the last call, of each hand the last one: "hand: gesture swipe_left".
+  // The last gesture of each hand since the last call: "hand: gesture swipe_left".
   std::vector<Event> takeGestures();
 
  private:
-  // What was said of a device, and what it did.
+  // What was reported of a device, and its history.
   struct Told {
     std::string last, fault;  // the last event, and the last one of a device that did not work
     std::int64_t ok_ns = std::numeric_limits<std::int64_t>::min();  // since when it was ok last
     bool recurs = false;  // the fault came back after a brief ok
   };
-  // Whether it is ok without having been so for long enough after a fault that recurs.
+  // Whether the device is ok, but not yet for long enough after a fault that recurs.
   static bool isBrief(Told& told, const DeviceHealth& health, Timestamp now) noexcept;
   static void tellFault(Told& told, const DeviceHealth& health, const std::string& sentence);
 

@@ -9,12 +9,14 @@
 namespace merlin::status {
 
 struct ProjectorStatus {
-  std::string name{}, kind{};      // "gpio" or "pjlink"
-  std::string power{}, wanted{};   // off, warming, on, cooling, unknown; wanted: empty if it is
+  std::string name{}, kind{};  // "gpio" or "pjlink"
+  // off, warming, on, cooling, unknown; `wanted`: empty if `power` is as wanted.
+  std::string power{}, wanted{};
   std::string health{}, reason{};  // "ok", "unreachable"
   std::string address{}, identity{};
   std::vector<int> lamp_hours{};     // of each lamp
-  std::optional<double> within_s{};  // longest time until it is what it becomes, or is wanted to be
+  std::optional<double> within_s{};  // longest time until it reaches the power state that it is
+                                     // changing to, or that is wanted
 };
 
 // When the schedule switches all projectors next.

@@ -28,7 +28,8 @@ bool RoleFollower<Reader>::update(Timestamp now) {
   if (generation == generation_) return false;
   generation_ = generation;
   command_endpoint_ = header ? textIn(header->command_endpoint) : "";
-  // A new socket for each run: the old one would connect again, but not after every fault.
+  // Uses a new socket for each run, because the old one would not reconnect after every kind of
+  // fault.
   (void)topics_.connect("").ok();
   const auto connected =
       topics_.connect(std::string(header ? textIn(header->status_endpoint) : ""));

@@ -1,5 +1,5 @@
-// RoleFollower: a role of merlind that runs in another process of this machine: its segment, the
-// topics that it publishes, and where it takes commands, over its restarts.
+// RoleFollower: a role of merlind that runs in another process of this machine: its segment, its
+// topics and the address for its commands; follows it over restarts.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +18,19 @@ namespace merlin::status {
 template <typename Reader>
 class RoleFollower {
  public:
-  // `role`: "wall" or "devices", of this instance of merlind. `from`: whose processes it trusts.
+  // `role`: "wall" or "devices", of this instance of merlind. `from`: whose segments are trusted.
   RoleFollower(const std::string& instance, std::string role, std::vector<std::string> topics,
                SharedMemory::From from = SharedMemory::From::kOwnUserOrRoot);
 
-  // Looks for the role, and connects to a new run of it. True if it is another run than before, or
-  // none any more: what an earlier one published is to be forgotten. Never waits.
+  // Looks for the role, and connects to a new run of it. Returns true if a new run has replaced the
+  // last one, or the role has ended: what the last run published must then be forgotten. Never
+  // waits.
   bool update(Timestamp now);
 
   const std::string& role() const noexcept { return role_; }
   // Null while the role does not run. Valid until the next update().
   const typename Reader::View* segment() const noexcept { return segment_; }
-  // Of the run that is followed; 0: none.
+  // Generation of the run that is followed; 0: none.
   std::uint64_t generation() const noexcept { return generation_; }
   // Where the role takes commands; empty while it does not run here.
   const std::string& commandEndpoint() const noexcept { return command_endpoint_; }

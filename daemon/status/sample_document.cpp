@@ -103,7 +103,8 @@ OrderedJson touchJson(const TouchSample& t) {
           {"buttons", t.buttons},          {"wheel", t.wheel}};
 }
 
-// Each device's newest samples under its name; of the first glove the posture also beside it.
+// Adds each device's newest samples under its name; the posture of the first glove is also added at
+// the top level.
 void addSamples(const shm::DeviceSlots& devices, OrderedJson& json) {
   for (const auto& glove : devices.gloves) {
     const auto p = glove.posture->newest();

@@ -26,10 +26,10 @@ struct SampleLinkSettings {
 };
 
 // Follows the topic "sample" on a thread of its own and writes the samples of the devices and hands
-// that `names` has into `segment`, whose only writer it is; others are passed over. Times are
-// converted to this machine's clock such that a sample is as old as it was when it was sent; the
-// delay of the network is unknown and not added. While nothing is received, the health of every
-// device is absent, with the reason.
+// in `names` into `segment`, whose only writer it is; others are ignored. Times are converted to
+// this machine's clock such that a sample is as old as it was when it was sent; the delay of the
+// network is unknown and not added. While nothing is received, the health of every device is
+// absent, with the reason.
 class SampleLink {
  public:
   // Errors: kInvalidArgument (an invalid endpoint or key).

@@ -17,8 +17,8 @@
 namespace merlin::status {
 namespace {
 
-// Who follows a role takes a killed one for alive for 1 s, then looks for the next one twice a
-// second, and subscribes.
+// Time within which followers subscribe again after a restart: they consider a killed role alive
+// for 1 s, then look for its successor twice a second.
 constexpr Duration kFollowersCome = std::chrono::seconds(3);
 constexpr int kRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
@@ -27,8 +27,8 @@ constexpr int kMostQueued = 100;      // documents queued for a subscriber that 
 constexpr int kHandshake_ms = 2000;
 constexpr std::size_t kEventsKept = 50;
 constexpr const char* kZap = "inproc://zeromq.zap.01";
-// Of the topics: a domain cannot be taken from a socket again, and with one libzmq asks about the
-// clients of the publisher's local address too.
+// ZAP domain of the topics. It is empty because a domain cannot be removed from a socket again, and
+// with a domain libzmq would authenticate the clients of the publisher's local address too.
 constexpr const char* kTopicsDomain = "";
 constexpr const char* kCommandsDomain = "commands";
 constexpr Duration kCheckPeriod = std::chrono::seconds(1);
@@ -66,7 +66,7 @@ struct StatusServer::Sockets {
   struct Bound {
     zmq::socket_t* socket;
     std::string path;
-    const CurveServer* encrypted;  // null: not
+    const CurveServer* encrypted;  // null: not encrypted
     const char* domain;
   };
   std::vector<Bound> bound;
@@ -104,7 +104,7 @@ void limit(zmq::socket_t& socket, int most_bytes) {
   socket.set(zmq::sockopt::handshake_ivl, kHandshake_ms);
 }
 
-// All parts of a message that has arrived; none if there is no message.
+// Receives all parts of a message that has arrived; empty if there is no message.
 std::vector<zmq::message_t> receiveAll(zmq::socket_t& socket) {
   std::vector<zmq::message_t> parts;
   do {
@@ -122,7 +122,7 @@ void sendAll(zmq::socket_t& socket, const Parts& parts) {
   }
 }
 
-// What the sender of an encrypted message may do: zapAnswer() gave it as the user id.
+// Returns what the sender of an encrypted message may do; zapAnswer() has set it as the user id.
 Grant grantOf(const zmq::message_t& message) {
   const char* const user = ::zmq_msg_gets(message.handle(), "User-Id");
   return user ? grantOfUser(user) : Grant::kNothing;

@@ -30,7 +30,8 @@ struct StatusServerSettings {
   // Where the same topics are published, encrypted, for clients on other machines whose keys are
   // listed; it takes no commands.
   CurveServer network;
-  std::string network_name, network_setting;  // of its relay: for reports, and as a JSON pointer
+  std::string network_name, network_setting;  // of the relay for `network`: its name in reports,
+                                              // and the JSON pointer of its setting
   // Where requests are answered, encrypted, from clients on other machines whose keys are listed:
   // every command to those that may command; status and events to those that may read.
   CurveServer network_commands;

@@ -54,7 +54,7 @@ std::optional<TopicFollower::Message> TopicFollower::take() {
       if (topic.more() && c.socket->recv(document, zmq::recv_flags::dontwait) && !document.more())
         return Message{topic.to_string(), document.to_string()};
     }
-  } catch (const std::exception&) {  // the next connect() makes a new socket
+  } catch (const std::exception&) {  // the next connect() creates a new socket
     c.socket.reset();
     c.endpoint.clear();
   }

@@ -15,7 +15,7 @@ std::vector<Event> WallEvents::take() {
   std::vector<Event> events;
   const auto s = segment_.stats.read();
   if (!s) return events;
-  // That detail or rate gives way is no fault: the wall does what it is made for.
+  // A reduction of detail or rate is not a fault: the wall adapts by design.
   if (const auto was = std::exchange(operator_coarser_, s->operator_coarser);
       was != operator_coarser_) {
     events.push_back(operator_coarser_ != 0

@@ -18,8 +18,8 @@ class WallEvents {
   // The changes since the last call, such as "frame rate reduced to 15 of 30 Hz: ...".
   // Degradations and failures are faults.
   std::vector<Event> take();
-  // The same of what the outputs were found to show, such as "output left is black instead of ...".
-  // What fails anyway has had its event.
+  // The same for what the outputs were found to show, such as "output left is black instead of
+  // ...". Outputs that have failed are left out, since take() reports them.
   std::vector<Event> takePictures();
 
  private:

@@ -21,17 +21,17 @@ struct Door {
   std::vector<std::string> readers;     // public keys (Z85) that may read
   std::vector<std::string> commanders;  // those that may also send commands
 
-  // What the key with this text allows; the most if it is in both lists.
+  // What this key allows; if it is in both lists, kCommand.
   Grant grantOf(const std::string& key) const;
 };
 
 // The doors by the domain (ZMQ_ZAP_DOMAIN) of their sockets, which may be empty.
 using Doors = std::map<std::string, Door, std::less<>>;
 
-// The frames of the answer to a request: status 200 and, as the client's user id, userOf() its
-// grant; or 400 if the request is malformed, the mechanism is not CURVE, the domain is not one of
-// `doors`, or the key is in none of its lists. `request`: version, request id, domain, address,
-// identity, mechanism, and the client's key in binary (32 bytes).
+// The frames of the answer to a request: status 200 and, as the client's user id, userOf() of its
+// grant; or status 400 if the request is malformed, the mechanism is not CURVE, the domain is not
+// one of `doors`, or the key is in none of its lists. `request`: version, request id, domain,
+// address, identity, mechanism, and the client's key in binary (32 bytes).
 std::vector<std::string> zapAnswer(std::span<const std::string> request, const Doors& doors);
 
 // "read" and "command": what libzmq attaches to each message of the client; empty for kNothing.

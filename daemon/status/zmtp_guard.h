@@ -1,4 +1,5 @@
-// ZmtpGuard: checks that what a client sends to a ZeroMQ socket keeps within limits. No I/O.
+// ZmtpGuard: checks that the bytes that a client sends to a ZeroMQ socket keep within limits. No
+// I/O.
 //
 // It follows the framing of ZMTP 3, which is visible even if messages are encrypted: a greeting of
 // 64 bytes, then frames: flags (1: more parts follow, 2: long, 4: command), a length of 1 or 8

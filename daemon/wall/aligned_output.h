@@ -1,4 +1,4 @@
-// Makes an output of the configuration one that the Aligner can align.
+// Turns a configured output into one that the Aligner can align.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace merlin::wall {
 
 // Returns an output that can be aligned; its `make` builds corrections, which are applied on the
 // wall's thread, by `pass` or by the threads of `team`. Both must outlive it. `parts`: the pictures
-// in its signal, of `size` together. A measured file that cannot be read makes one output look
-// wrong, which is better than a dark wall: `unreadable` receives why, and the rest of the
-// correction counts.
+// in its signal, of `size` together. If a measured file cannot be read, the rest of the correction
+// is still applied, because one output that looks wrong is better than a dark wall; `unreadable`
+// receives the reason.
 AlignedOutput alignedOutput(const render::out::OutputSettings& output,
                             const render::out::PictureSize& size,
                             render::correct::SignalParts parts, ThreadTeam& team,

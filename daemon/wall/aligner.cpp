@@ -16,7 +16,7 @@ using state::Alignment;
 using state::Place;
 
 constexpr auto kStep = std::chrono::milliseconds(500);
-// Pushes of the ball that follow each other within this time are one step for undo.
+// For undo, pushes of the ball that follow each other within this time are one step.
 constexpr Duration kSamePush = std::chrono::milliseconds(500);
 // A corner may lie outside the output by at most this share of its width or height, so that the
 // image is not lost.
@@ -37,7 +37,8 @@ std::string changeText(const state::Step& step, bool undone) {
   return fmt::format("{} by {:g}, {:g}", state::nameOf(place), to.x - from.x, to.y - from.y);
 }
 
-// Why offsets of an output that was so fit none that is so now; empty: they do.
+// Explains why offsets that were made for `aligned` do not fit the present output; empty if they
+// fit.
 std::string misfit(const state::OutputForm& aligned, const state::OutputForm& now) {
   state::OutputForm same = aligned;
   same.corners = now.corners;
@@ -210,8 +211,8 @@ Result<Ok> Aligner::move(const state::MoveRequest& request, bool on) {
   return Ok{};
 }
 
-// A step of an output that the configuration lacks now is undone or redone all the same; its effect
-// shows if the configuration has the output again.
+// A step is undone or redone even if the configuration no longer has its output; the effect becomes
+// visible when the output is configured again.
 Result<Ok> Aligner::step(bool undo) {
   Alignment next = alignment_;
   const state::Step* const step = undo ? next.undo() : next.redo();
@@ -334,7 +335,8 @@ Result<Ok> Aligner::act(std::size_t action) {
   return move(seenMove(kMoves[action - kFirstMove]));
 }
 
-// Of the selected corner, by an offset as people before the wall see it.
+// Builds the request to move the selected corner by an offset that is given as seen by people
+// before the wall.
 state::MoveRequest Aligner::seenMove(const state::Offset& by) const {
   const AlignedOutput& output = entries_[selected_].output;
   return {output.name, state::cornerAt(corner_), output.axes.onSignal(by)};

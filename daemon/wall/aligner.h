@@ -35,7 +35,7 @@ struct AlignedOutput {
   render::frame::ReplaceableCorrection* correction = nullptr;  // must outlive the aligner
   // Marks of its corners on test cards, in the order of kCornerNames.
   std::array<std::optional<render::testcard::MarkedCorner>, 4> marks{};
-  std::string fixed{};     // why nothing of it may be moved, a sentence; empty: it may
+  std::string fixed{};     // a sentence: why it may not be aligned; empty: it may
   state::SeenAxes axes{};  // bound inputs move corners as they are seen
 };
 
@@ -48,7 +48,7 @@ inline constexpr std::size_t kAlignActionCount = std::size(kAlignActions);
 
 // Requests of bound inputs since they were last read.
 struct AlignInput {
-  std::vector<std::uint8_t> actions;  // that have begun, in their order: indexes of kAlignActions
+  std::vector<std::uint8_t> actions;  // indexes into kAlignActions, in the order of their begin
   state::Offset push{};               // motion of the selected corner by the ball [px]
   bool isNothing() const;
 };
@@ -73,8 +73,8 @@ class Aligner {
   Result<std::string> run(const std::string& argument);
 
   // Takes other base values for an output, which are shown some frames later; offsets that no
-  // longer fit them are dropped, with a notice. An output that is not corrected is passed over.
-  // REQUIRES: validate(configured), and the measured file of before.
+  // longer fit them are dropped, with a notice. An output that is not corrected is ignored.
+  // REQUIRES: validate(configured); the measured file is the same as before.
   void configure(const std::string& output, const render::correct::CorrectionSettings& configured);
 
   // Shows the test card of this name from one of the next frames on; "off" shows none. The selected
@@ -84,8 +84,8 @@ class Aligner {
   // Whether a test card is shown.
   bool showsCard() const;
 
-  // Passes on requests of bound inputs, which are executed in their order; returns at once. Those
-  // beyond the first kMostAsked that wait are dropped. To be called on the wall's thread. A move
+  // Passes on requests of bound inputs, which are executed in their order; returns at once. At most
+  // kMostAsked actions wait; further ones are dropped. To be called on the wall's thread. A move
   // that is refused is reported as a notice of the keeper.
   void ask(const AlignInput& input);
   static constexpr std::size_t kMostAsked = 200;

@@ -14,8 +14,8 @@ bool isPushed(const BallSample& ball) {
          std::ranges::any_of(ball.rotation, pushes);
 }
 
-// Whether a bound input or the command `move` acts on what is shown. It is a touch of its own,
-// however soon it follows another one.
+// Whether a bound input or the command `move` acts on what is shown. Each such action counts as a
+// separate touch, however soon it follows another one.
 bool acts(const WallInput& input) {
   const render::scene::SceneInput& scene = input.scene;
   const bool stepped = !scene.step.way_m.isZero(0) || !scene.step.turn_rad.isZero(0);
@@ -68,7 +68,8 @@ Attendance::Asked Attendance::takeAsked(const WallInput& input) {
   return asked;
 }
 
-// A hand at rest may hold a posture for ever, for example a glove that lies on a table.
+// A posture alone is not enough: a hand at rest may hold it for ever, for example a glove that lies
+// on a table.
 bool Attendance::handMoves(const render::scene::SceneInput& input) {
   const std::array holding{input.grab, input.fly, input.point_at};
   const auto before = std::exchange(holding_, holding);
@@ -82,8 +83,8 @@ bool Attendance::handMoves(const render::scene::SceneInput& input) {
   return moves;
 }
 
-// A finger may rest on a touch surface for ever, or a marked object stand on it. A mouse's wheel
-// moves without a finger.
+// Contact alone is not enough: a finger may rest on a touch surface for ever, or a marked object
+// stand on it. A mouse's wheel counts without a finger.
 bool Attendance::fingersMove(const render::scene::TouchMotion& touch) {
   const bool others = std::exchange(fingers_, touch.fingers) != touch.fingers;
   const std::array moved{touch.right, touch.up, touch.spread, touch.turn_rad};
@@ -126,7 +127,7 @@ Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
   Frame frame;
   frame.held = blank_ || frozen_;
   const Duration elapsed = now - std::exchange(last_update_, now).value_or(now);
-  // Black and frozen, the wall waits: for the playlist no time passes.
+  // While the wall is black or frozen, no time passes for the playlist.
   frame.playlist =
       playlist_.update(frame.held ? Duration::zero() : elapsed, motion || acted || asked.attended);
   if (frame.held)

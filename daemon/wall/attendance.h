@@ -1,5 +1,5 @@
-// Attendance: whether somebody works the wall, and what the wall shows if not: the playlist. Keeps
-// what the commands blank and freeze do, until the next input.
+// Attendance: whether somebody uses the wall, and what it shows otherwise: the playlist. Maintains
+// the effect of the commands blank and freeze until the next input.
 //
 // A touch is anything by which a visitor or an operator acts on the wall: a push of the ball, a
 // button, a finger that comes to a touch surface, moves on it or leaves it, a turn of a mouse's
@@ -27,17 +27,18 @@ class Attendance {
   // Shows black, or freezes the picture; a second call undoes it.
   void toggleBlank();
   void toggleFreeze();
-  // A command that changes what is shown is executed; undoes both.
+  // To be called when a command that changes what is shown is executed; undoes both.
   void touch();
-  // Somebody works the wall in a way that does not come with the input: the playlist ends.
+  // To be called when somebody uses the wall by other means than the devices' input; ends the
+  // playlist.
   void attend();
   // See Playlist.
   void switchPlaylist(bool on);
   void nextOfPlaylist();
 
   // To be called once a frame, with the devices' input. REQUIRES: `now` never decreases. While the
-  // wall is black or frozen, the part of `input` that moves the scene is removed; what undoes that
-  // moves the scene as ever. While the playlist runs, it turns the scene.
+  // wall is black or frozen, the part of `input` that moves the scene is removed; the input that
+  // ends this state moves the scene as usual. While the playlist runs, it turns the scene.
   struct Frame {
     Playlist::Wanted playlist;  // its light is 0 while the wall is black
     bool held = false;          // black or frozen: nothing moves the scene
@@ -49,20 +50,21 @@ class Attendance {
 
   using Shown = shm::WallInteraction::Shown;
   Shown shown() const noexcept;
-  // Whether the picture is to stay as it is; also below black.
+  // Whether the picture is to stay as it is; also true while black covers it.
   bool isFrozen() const noexcept { return frozen_; }
-  float light() const noexcept { return light_; }  // that the last update() wanted
+  float light() const noexcept { return light_; }  // as of the last update()
   Playlist::State playlist() const noexcept { return playlist_.state(); }
-  // Nothing is due while it is black or frozen, since then no time passes for the playlist.
+  // Nothing is due while the wall is black or frozen, since then no time passes for the playlist.
   Playlist::Due due() const noexcept;
 
-  // Motions, such as pushes of the ball, are a new touch if there was none for this time before.
-  // Whoever pushes a button of the ball pushes the ball as well.
+  // A motion, such as a push of the ball, is a new touch only after this time without motion,
+  // because whoever presses a button of the ball also pushes the ball.
   static constexpr Duration kPause = std::chrono::milliseconds(500);
-  // Motion of a hand, above the tracker's noise, that is a touch while the hand holds an action.
+  // Least motion of a hand that is a touch while the hand holds an action; above the tracker's
+  // noise.
   static constexpr float kHandMoves_m = 0.02F;
-  // The same of fingers, above the noise of one at rest: in heights of the surface or, where they
-  // spread or turn, as TouchMotion has it.
+  // The same for fingers, above the noise of a finger at rest: in heights of the surface; for
+  // spreading and turning, in the units of TouchMotion.
   static constexpr float kFingersMove = 0.005F;
 
  private:
@@ -82,11 +84,12 @@ class Attendance {
   float light_ = 1;
   std::optional<Timestamp> last_update_;
   std::optional<Timestamp> last_motion_;
-  // Of the last frame: actions held by a hand, pressed buttons, the hand where it moved last.
+  // At the last frame: actions held by a hand and pressed buttons; the hand's position when its
+  // motion last counted.
   std::array<bool, 3> holding_{};
   std::uint32_t buttons_ = 0;
   std::array<float, 3> hand_m_{};
-  // Number of fingers of the last frame, and what they moved since that counted as a motion.
+  // Number of fingers at the last frame, and their movement since a motion last counted.
   std::uint32_t fingers_ = 0;
   std::array<float, 4> fingers_moved_{};
 };

@@ -64,7 +64,7 @@ Error ContentRequests::noSuchName(const std::string& name) const {
 }
 
 std::vector<std::string> ContentRequests::namesInFolder() const {
-  constexpr std::size_t kMost = 50;  // a status and an error stay short
+  constexpr std::size_t kMost = 50;  // keeps the status and error messages short
   std::vector<std::string> names;
   for (NamedFile& file : folder_.namedFiles()) {
     if (names.size() == kMost) break;
@@ -93,7 +93,7 @@ Result<std::uint32_t> ContentRequests::showFile(const std::string& name) {
   return number;
 }
 
-// A model is read on the watch's thread, since that may take long.
+// Lets the watch's thread read the model, since that may take long.
 Result<Ok> ContentRequests::showEntry(const ContentEntry& entry, std::uint32_t request) {
   const auto read = [this, entry, request]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;

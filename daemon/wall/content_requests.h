@@ -23,7 +23,7 @@ namespace merlin::wall {
 struct ContentRequestParts {
   const WallSettings& wall;
   const std::vector<ContentEntry>& entries;  // the contents of the configuration
-  const MissingContents& missing;            // of `entries`
+  const MissingContents& missing;            // which of `entries` cannot be shown yet
   ModelWatch& watch;                         // reads models, and reports
   Attendance& attendance;                    // a request is a touch
   const std::atomic<WallLoop*>& loop;        // null before the first frame
@@ -43,16 +43,16 @@ class ContentRequests {
   // that number. Errors: kBusy, kInvalidArgument (no such name), those of showFile().
   Result<std::uint32_t> show(const std::string& name);
 
-  // The same of a file in the content folder, by its name there; removes what is no longer needed
-  // there. Errors, for whoever asks: kBusy, those of ShownFolder::entryOf() and readContent(); a
-  // model's file is read later, so that its errors come with `finished`. Reads a picture's coarsest
-  // level, a few milliseconds.
+  // The same for a file in the content folder, by its name there; removes files that are no longer
+  // needed there. Errors: kBusy, those of ShownFolder::entryOf() and readContent(); a model's file
+  // is read later, so its errors are reported with `finished`. Reads a picture's coarsest level, a
+  // few milliseconds.
   Result<std::uint32_t> showFile(const std::string& name);
 
   const ShownFolder& folder() const noexcept { return folder_; }
 
-  // The names of the contents in the content folder that show() takes: none of the configuration
-  // has them. The newest first, 50 at most.
+  // The names of the contents in the content folder that show() accepts, i.e. without those whose
+  // name a configured content has; the newest first, 50 at most.
   std::vector<std::string> namesInFolder() const;
 
   // Names of contents that cannot be shown yet, each with the reason.

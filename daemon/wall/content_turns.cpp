@@ -6,7 +6,8 @@
 namespace merlin::wall {
 namespace {
 
-// Where `place` stands in the list; the last turn if it does not, so that the first one follows.
+// Index of `place` in the list; the last index if the list lacks it, so that the first place
+// follows.
 std::size_t turnOf(std::size_t place, std::span<const std::size_t> places) {
   const auto at = std::ranges::find(places, place);
   return at == places.end() ? places.size() - 1 : static_cast<std::size_t>(at - places.begin());
@@ -58,7 +59,7 @@ void ContentTurns::calibrate(const Eigen::Isometry3f& T_eye_content) {
   if (source_ && listed_ > 1) source_->prepare(first);
 }
 
-// If all are missing, the first place.
+// First place whose content is not missing; 0 if all are missing.
 std::size_t ContentTurns::firstThere() const noexcept {
   for (std::size_t place = 0; place < listed_; ++place) {
     if (!contents_[place].missing) return place;
@@ -147,7 +148,8 @@ void ContentTurns::choose(std::size_t place) noexcept {
   if (asked_ == place) chosen_ = true;
 }
 
-// Another part of the place that is shown is no other choice.
+// A request for the place that is already requested, for example for its next slide, does not end a
+// person's choice.
 void ContentTurns::request(std::size_t place) noexcept {
   if (place >= contents_.size() || contents_[place].missing) return;
   if (std::exchange(asked_, place) != place) chosen_ = false;

@@ -26,12 +26,12 @@ struct ShownContent {
   const render::content::DetailAxis* detail;
   render::frame::FramePainter* painter;
   render::content::Navigation navigation = render::content::Navigation::kObject;
-  // Of a plane: its nearest distance, as a multiple of the initial one.
+  // For a plane: the nearest viewing distance, as a multiple of the initial one.
   float nearest = render::content::kNearestPlane;
   std::string name{};          // for people, and for `merlin show`
   const char* kind = "model";  // "model", "picture", "panorama"
-  std::string slide{};         // of slides: the name of the one that is shown
-  bool missing = false;        // there is nothing to show yet: its turn is passed over
+  std::string slide{};         // for slides: the name of the slide that is shown
+  bool missing = false;        // there is nothing to show yet: it is skipped
 };
 
 // Port (an interface): supplies contents that replace others while the wall runs. Implemented by
@@ -44,8 +44,8 @@ class ContentSource {
     ShownContent content;
     bool asked_for = false;     // it is to be shown now, from its start view
     std::uint32_t request = 0;  // of WallRole::show(); 0: none
-    std::string refused{};      // why there is nothing to show; then `content` does not count
-    bool goes_on = false;       // refused: the place has no further part, the next place follows
+    std::string refused{};      // why there is nothing to show; then `content` is not used
+    bool goes_on = false;  // refused because the place has no further part: the next place follows
   };
   // Called between frames. Returns a new content and the place (index) of the one that it replaces,
   // which is not used again; nullopt if there is none. `T_eye_content`: the view in which it will
@@ -53,13 +53,14 @@ class ContentSource {
   virtual std::optional<Replacement> take(bool moving, const Eigen::Isometry3f& T_eye_content) = 0;
   // Called before the content of a place is drawn for the first time, or again after another one.
   virtual void prepare(std::size_t place) { static_cast<void>(place); }
-  // Whether another part of a place (of slides: the next one) follows before the next place; it
-  // then comes by take().
+  // Whether another part of a place (for slides: the next slide) follows before the next place;
+  // take() then returns it.
   virtual bool nextWithin(std::size_t place) {
     static_cast<void>(place);
     return false;
   }
-  // The same backwards: whether another part comes before the place before.
+  // The same backwards: whether an earlier part of the place is to be shown before the previous
+  // place.
   virtual bool previousWithin(std::size_t place) {
     static_cast<void>(place);
     return false;
@@ -69,8 +70,8 @@ class ContentSource {
 // Thread-bound to the wall's thread.
 class ContentTurns {
  public:
-  // `contents`: at least one; the first one is shown first. The first `listed` of them come by
-  // turns; 0: all. They, `governor` and `source`, which may be null, must outlive this object.
+  // `contents`: at least one; the first one is shown first. The first `listed` of them are shown in
+  // turn; 0: all. They, `governor` and `source`, which may be null, must outlive this object.
   ContentTurns(std::vector<ShownContent> contents, render::governor::Governor& governor,
                ContentSource* source = nullptr, std::size_t listed = 0);
 
@@ -89,27 +90,28 @@ class ContentTurns {
   // Tells the governor the cost of the initial view of the content shown, if it was measured.
   void expectInitialView() const;
 
-  // What a person chooses. requestNext() requests the content that is `times` further in the list,
-  // cyclically, requestPrevious() the one that is as much before; what is not in the list stands
-  // behind the one of it that was asked for last. Those that are missing do not count, here and
-  // below.
+  // Requests of a person. requestNext() requests the content `times` places further in the list,
+  // cyclically, requestPrevious() the one `times` places before. A content outside the list counts
+  // as standing just after the listed content that was requested last. Missing contents are
+  // skipped, here and below.
   // showRequested() makes the change; it returns true if another content is shown now.
   void requestNext(std::uint32_t times);
   void requestPrevious(std::uint32_t times);
-  // Requests the content of a place. Nothing happens if there is none.
+  // Requests the content of a place. Nothing happens if there is no such place.
   void choose(std::size_t place) noexcept;
-  // What the playlist wants: the next of `places`, cyclically: after the one that was asked for
-  // last, or the first if that is none of them. Before it come further parts of the place that is
-  // shown (slides), if it belongs to the playlist. No places: all that come by turns.
+  // Requests the playlist's next content: the one after the place that was requested last in
+  // `places`, cyclically, or the first one if that place is not among them. Further parts (slides)
+  // of the place that is shown come first, if it belongs to the playlist. Empty `places`: all
+  // contents of the list.
   void requestNextOf(std::span<const std::size_t> places);
-  // Requests the next of `places`, as above, if `place` is shown and nothing else was asked for: no
-  // further part of it can be shown. If a person wanted the part before, the place before follows.
-  // Returns whether it is left.
+  // To be called when no further part of `place` can be shown: requests the next of `places`, as
+  // above, if `place` is shown and nothing else was requested. If a person wanted the previous
+  // part, the previous place follows instead. Returns whether `place` is left.
   bool leave(std::size_t place, std::span<const std::size_t> places);
   // Whether a playlist of these places may go on with the one that was asked for last: it is one of
   // them, or a person chose it.
   bool belongsTo(std::span<const std::size_t> places) const;
-  // Requests the content of a place, which nobody chose.
+  // Requests the content of a place that no person chose.
   void request(std::size_t place) noexcept;
   bool showRequested();
   // The place that was asked for last.
@@ -142,12 +144,12 @@ class ContentTurns {
   render::governor::Governor& governor_;
   std::vector<InitialView> initial_;  // by content
   ContentSource* source_;
-  std::size_t listed_;   // contents that come by turns
+  std::size_t listed_;   // number of contents that are shown in turn
   std::size_t index_;    // shown
   std::size_t asked_;    // to be shown by showRequested()
   std::size_t in_turn_;  // the one of the list that was asked for last
   bool chosen_ = false;  // a person chose asked_
-  bool back_ = false;    // the part of a place that was wanted last is the one before
+  bool back_ = false;    // the last request for a part of a place was for the previous one
   int size_divisor_ = 1;
 };
 

@@ -45,7 +45,8 @@ Result<std::unique_ptr<CorrectedOutputs>> CorrectedOutputs::make(
 }
 
 Result<Ok> CorrectedOutputs::makeOutputs() {
-  // Looked up when they are called: they are set after the outputs are made.
+  // The lambdas access window_ only when they are called, because it is set after the outputs are
+  // made.
   const render::out::WindowActs window{
       [this](const std::string& name, const std::string& argument) {
         return window_.command(name, argument);
@@ -90,7 +91,8 @@ void CorrectedOutputs::makeCorrections() {
                                        parts_.keeper, parts_.watch);
 }
 
-// The arrangement of the output's tiles, if it has its own, then what the aligner replaces.
+// Returns the correction that the aligner can replace, after the output's own arrangement of tiles
+// if it has one.
 std::unique_ptr<render::frame::Correction> CorrectedOutputs::correctionOf(
     const render::out::OutputSettings& output, std::vector<AlignedOutput>& aligned) {
   const render::tiles::TilesSettings& tiles = parts_.settings.wall.tiles;

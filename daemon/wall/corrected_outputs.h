@@ -45,20 +45,21 @@ struct CorrectedOutputsParts {
 // thread-safe, signals() and uncorrected().
 class CorrectedOutputs {
  public:
-  // Opens the outputs; of those of kind kms before any drawing context is made. Errors: those of
-  // makeOutput(), with the output's name.
+  // Opens the outputs. If any is of kind kms, this must precede the creation of every drawing
+  // context. Errors: those of makeOutput(), with the output's name.
   static Result<std::unique_ptr<CorrectedOutputs>> make(const CorrectedOutputsParts& parts);
   CorrectedOutputs(const CorrectedOutputs&) = delete;
   CorrectedOutputs& operator=(const CorrectedOutputs&) = delete;
 
-  // Sets what outputs of kind window do for the person at them, on their own threads.
+  // Sets the functions that outputs of kind window call, on their own threads, for the person at
+  // them.
   void onWindow(render::out::WindowActs acts) { window_ = std::move(acts); }
 
   render::out::OutputSet& set() { return outputs_; }
   // Begins to check from time to time what the outputs show.
   void startChecks() { checks_->start(parts_.watch); }
-  // By output number; null if the output is sent the frame itself. To be called once; whoever has
-  // them keeps them until close().
+  // Returns the corrections by output number; null if the output is sent the frame itself. To be
+  // called once; the caller must keep them until close().
   std::vector<std::unique_ptr<render::frame::Correction>> takeCorrections() {
     return std::move(corrections_);
   }
@@ -70,8 +71,8 @@ class CorrectedOutputs {
   // none. The same as long as the wall runs.
   const std::string& uncorrected() const noexcept { return uncorrected_; }
 
-  // Closes all outputs, of which those of kind window execute commands until then, and ends the
-  // alignment. To be called before anything that those commands use ends.
+  // Closes all outputs and ends the alignment. Outputs of kind window execute commands until then,
+  // so this must be called before anything that those commands use is destroyed.
   void close();
 
  private:

@@ -29,7 +29,7 @@ CrashFrame::CrashFrame(render::out::CapturedFrame frame, DatedFiles files, Threa
         std::mutex mutex;
         std::unique_lock lock(mutex);
         std::condition_variable_any never;
-        while (!stop.stop_requested()) {  // as every thread must
+        while (!stop.stop_requested()) {  // reports progress, as every watched thread must
           progress.step();
           never.wait_for(lock, stop, kBeat, [] { return false; });
         }

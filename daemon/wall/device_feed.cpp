@@ -11,8 +11,8 @@
 namespace merlin::wall {
 namespace {
 
-// A ball that is pushed sends samples at least this often. If the last sample is an older push, the
-// sample of its release was lost, and the push is ignored.
+// While a ball is pushed, it sends samples at least this often. If the last sample is an older
+// push, the sample of its release was lost, and the push is ignored.
 constexpr Duration kPushLasts = std::chrono::milliseconds(500);
 
 bool pushed(const BallSample& b) {
@@ -31,7 +31,7 @@ void predictPose(const shm::DeviceSlots::Hand* slots, Timestamp seen, TrackerSam
   std::copy(pose.orientation_wxyz.begin(), pose.orientation_wxyz.end(), hand.orientation_wxyz);
 }
 
-// Whether this glove holds the action point_at.
+// Whether this glove's posture holds the action point_at.
 bool points(const shm::DeviceSlots& devices, const actions::Actions& actions,
             const std::string& glove) {
   const auto* const slots = devices.glove(glove);
@@ -42,7 +42,8 @@ bool points(const shm::DeviceSlots& devices, const actions::Actions& actions,
   return false;
 }
 
-// The actions by which a hand acts on the model; while it only points, another one may move it.
+// The actions by which a hand moves the model. While a hand only points, another one may move the
+// model.
 constexpr std::array kMoving = {actionIndex("grab"), actionIndex("fly")};
 constexpr std::array kOfHand = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
 
@@ -62,9 +63,9 @@ render::scene::HeldMotion motionOf(const actions::ActionCounts& used) {
           .roll_right = between(actionIndex("roll_left"), actionIndex("roll_right"))};
 }
 
-// Its index in kAlignActions; kAlignActionCount: it is none of them.
+// Index of the action in kAlignActions; kAlignActionCount if it is none of them.
 std::uint8_t alignActionOf(std::size_t action) {
-  if (action >= kActions.size()) return kAlignActionCount;  // of a newer release's devices
+  if (action >= kActions.size()) return kAlignActionCount;  // sent by a newer release
   const auto* const found = std::find(std::begin(kAlignActions), std::end(kAlignActions),
                                       std::string_view(kActions[action]));
   return static_cast<std::uint8_t>(found - std::begin(kAlignActions));
@@ -98,7 +99,7 @@ std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
   return sample;
 }
 
-// Of a device or a hand.
+// Returns the person to whom a device or a hand belongs.
 std::string DeviceFeed::personOf(const std::string& device) const {
   const auto found = std::find_if(settings_.devices.begin(), settings_.devices.end(),
                                   [&](const OwnedDevice& d) { return d.device == device; });
@@ -145,7 +146,7 @@ DeviceFeed::Acts DeviceFeed::readActs(const shm::DeviceSlots& devices, Timestamp
     acts.balls.push_back(readBall(ball, now));
     if (!acts.balls.back() || leaves_out_ball_) ends(ball.name);
   }
-  // Another run of the devices' process counts fingers and a wheel's notches anew.
+  // When the devices' process restarts, it counts fingers and the wheel's notches from 0.
   const std::uint64_t run = devices.header->generation;
   if (std::exchange(touches_of_, run) != run) touches_.clear();
   touches_.resize(devices.touches.size());
@@ -180,8 +181,9 @@ void DeviceFeed::takeTurns(const shm::DeviceSlots& devices, const Acts& now_acts
   holder_ = turns_.update(now, acting);
 }
 
-// The hand that acted last keeps on while it holds an action, so that a second one does not take
-// over the model; but one that moves it does so from one that points.
+// The hand that acted last remains the acting one while it holds an action, so that a second hand
+// does not take over the model. Exception: a hand that moves the model takes over from one that
+// only points.
 std::size_t DeviceFeed::handThatActs(const shm::DeviceSlots& devices,
                                      const actions::Actions& actions) {
   const auto holds = [&](std::size_t hand, std::span<const std::size_t> of) {
@@ -222,7 +224,7 @@ void DeviceFeed::readHand(const shm::DeviceSlots& devices, const actions::Action
   readPosture(devices, settings_.hands[hand_].glove, now, input);
 }
 
-// The pose of a hand when the next frame is visible.
+// Predicts the pose of a hand for the time when the next frame is visible.
 std::optional<TrackerSample> DeviceFeed::predicted(const shm::DeviceSlots& devices,
                                                    const FollowedHand& followed, Timestamp now) {
   auto hand = station(devices, followed.place, now);
@@ -242,7 +244,7 @@ void DeviceFeed::readPosture(const shm::DeviceSlots& devices, const std::string&
   if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
 }
 
-// Whether it is the glove of a hand that does not act now: its fist grabs nothing.
+// Whether `source` is the glove of a hand other than the acting one; its actions are then ignored.
 bool DeviceFeed::isOfAnotherHand(const shm::DeviceSlots& devices, const std::string& source) const {
   if (hand_ >= settings_.hands.size() || !isGlove(devices, source)) return false;
   const auto* const acting = devices.glove(settings_.hands[hand_].glove);
@@ -270,7 +272,8 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
       if (align < kAlignActionCount && !left_out) input.align.actions.push_back(align);
     }
   }
-  // What one hand has grabbed is let go before another one carries it, from where that is.
+  // When another hand takes over, the model is released for one frame, so that the new hand moves
+  // it from its present place.
   if (other_hand_ && moved_) {
     for (const std::size_t action : kMoving) used.held[action] = false;
   }
@@ -323,7 +326,7 @@ WallInput DeviceFeed::read(Timestamp now) {
   for (std::size_t i = 0; i < d->touches.size(); ++i) {
     const auto& touch = acts.touches[i];
     const auto& used = input.scene.touch;
-    const bool turned = used.fingers == 0 && touch.moves();  // a mouse's wheel
+    const bool turned = used.fingers == 0 && touch.moves();  // by a mouse's wheel
     if ((touch.fingers > used.fingers || turned) && counts(d->touches[i].name))
       input.scene.touch = touch;
   }

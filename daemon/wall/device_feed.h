@@ -17,11 +17,11 @@ namespace merlin::wall {
 
 // Thread-bound. Never waits: reads the newest samples and omits devices that do not work.
 //
-// Of several balls the one that is pushed counts, of several hands the one that holds an action,
-// otherwise the first of each; of several touch surfaces the one that is touched; the actions of
-// all count, but only the hand that acts grabs, flies and points by its glove. Of several people
-// only the input of the one who has the wall counts (Turns); the hands of the others may still
-// point.
+// Among several balls the one that is pushed counts, among several hands the one that holds an
+// action, otherwise the first of each; among several touch surfaces the one that is touched. The
+// actions of all devices count, but only the hand that acts grabs, flies and points by its glove.
+// Among several people, only the input of the one who has the wall counts (Turns); the hands of the
+// others may still point.
 class DeviceFeed final : public InputFeed {
  public:
   DeviceFeed(std::string segment_name, FeedSettings settings)
@@ -69,14 +69,14 @@ class DeviceFeed final : public InputFeed {
   Turns turns_;
   std::optional<std::string> holder_;  // who has the wall
   std::size_t hand_ = 0;               // the hand that acted last: index of settings_.hands
-  bool other_hand_ = false;            // it is another one than at the read before
+  bool other_hand_ = false;            // hand_ changed at the last read
   bool moved_ = false;                 // something was grabbed, or flown, at the last read
   bool leaves_out_ball_ = false;
   std::optional<Duration> age_;
   std::optional<Timestamp> last_read_;
   actions::ActionReader actions_;
   std::vector<render::scene::TouchFollower> touches_;  // index: DeviceSlots::touches
-  std::uint64_t touches_of_ = 0;  // the run of the devices' process, by its generation
+  std::uint64_t touches_of_ = 0;  // generation of the devices' process that touches_ follow
 };
 
 }  // namespace merlin::wall

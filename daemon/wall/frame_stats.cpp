@@ -28,7 +28,7 @@ void FrameStats::settle(bool met) {
   if (met_run_ < 5) {
     ++unsettled_;
   } else if (unsettled_ > 0) {
-    const std::uint32_t until = unsettled_ - 4;  // without the first four of the five that were met
+    const std::uint32_t until = unsettled_ - 4;  // the last four of these were met already
     if (until >= 2) settle_ = until;
     unsettled_ = 0;
   }

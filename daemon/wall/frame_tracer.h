@@ -11,8 +11,8 @@
 
 namespace merlin::wall {
 
-// Thread-bound. Call begin(), add() for each step and end(); then frames() can be published: of
-// those that are late there are as many as of the late deadlines that FrameStats counts.
+// Thread-bound. Call begin(), add() for each step and end(); then frames() can be published. It has
+// as many late frames as FrameStats counts late deadlines.
 class FrameTracer {
  public:
   void begin(Timestamp at, Timestamp deadline, bool moving);
@@ -20,12 +20,14 @@ class FrameTracer {
   // dropped.
   void add(shm::StepKind kind, Timestamp from, Timestamp to, std::uint16_t tile = 0);
   void add(std::span<const render::frame::FrameStep> steps);
-  // The frame is left out, since there is no time for any.
+  // Marks the frame as left out, because there is no time to draw one.
   void leaveOut() noexcept { left_out_ = true; }
-  // The frame ran over this period too, from `begin` to `deadline`. Of many the first are dropped.
+  // The frame ran over this period too, from `begin` to `deadline`. If there are too many, the
+  // first are dropped.
   void runOver(Timestamp begin, Timestamp deadline);
-  // `cost`: of the detail of the frame shown. A late frame ends after its deadline: one that is
-  // left out, or that another ran over, just after it at the earliest.
+  // `cost`: cost of the detail of the frame shown. A late frame is stored with an end after its
+  // deadline; one that is left out, or that another frame ran over, with an end just after it at
+  // the earliest.
   void end(Timestamp at, std::uint32_t cost);
   // The frame, and behind it one without steps for each period that it ran over.
   std::span<const shm::FrameTrace> frames() const noexcept { return frames_; }

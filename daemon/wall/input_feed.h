@@ -32,7 +32,7 @@ struct FollowedStation {
   int station = 0;      // 1 to 4; 0: none
 };
 
-// Whose a device is: people take turns.
+// The person to whom a device belongs, since people take turns.
 struct OwnedDevice {
   std::string device, person;
 };
@@ -50,7 +50,7 @@ struct FeedSettings {
   FollowedStation head;              // on the viewer's head
   // Age at which samples of tracker and glove count as missing.
   Duration stale_after{};
-  // Time from a frame's begin until it is visible; the hand's pose is predicted for that time.
+  // Time from the start of a frame until it is visible; the hand's pose is predicted for that time.
   Duration ahead{};
   // While a person acts, and this long after, other people's input does not count.
   Duration turn{};

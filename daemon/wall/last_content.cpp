@@ -8,7 +8,7 @@
 
 namespace merlin::wall {
 
-// Nothing if the configuration lacks it.
+// Place of the content that the state names; nothing if the configuration lacks it.
 std::optional<std::size_t> LastContent::placeInState() const {
   const std::string path = keeper_.state().content;
   if (path.empty()) return 0;
@@ -30,7 +30,8 @@ void LastContent::keep(std::size_t place) {
   if (kept_ == place) return;
   const bool first = !std::exchange(kept_, place);
   if (place >= entries_.size()) return;
-  // Another is shown since its file cannot be read yet; the next start is to show it.
+  // If the kept content's file cannot be read yet, another one is shown first. The state is not
+  // changed then, so that the next start tries the kept content again.
   if (first && !missing_.faultOf(placeInState().value_or(0)).empty()) return;
   const std::string path = place == 0 ? std::string() : entries_[place].path;
   if (keeper_.state().content != path) keeper_.change([&](state::State& s) { s.content = path; });

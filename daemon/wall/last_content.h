@@ -20,12 +20,12 @@ class LastContent {
               state::StateKeeper& keeper)
       : entries_(entries), missing_(missing), keeper_(keeper) {}
 
-  // The place of the content to begin with. Adds a notice to the state's if the configuration lacks
-  // the one that was shown last.
+  // The place of the content to begin with. Adds a notice to those of the state if the
+  // configuration lacks the content that was shown last.
   std::size_t first() const;
 
-  // Saves that the content of this place is shown; what is beyond the configuration's, a file, is
-  // not saved. Cheap if it is the one of the last call.
+  // Saves that the content of this place is shown; a place beyond the configured contents, i.e. a
+  // file, is not saved. Cheap if the place is that of the last call.
   void keep(std::size_t place);
 
  private:

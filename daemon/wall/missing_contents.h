@@ -15,7 +15,7 @@ class MissingContents {
   // `faults`: by place, why it cannot be shown; empty: it can.
   explicit MissingContents(std::vector<std::string> faults) : faults_(std::move(faults)) {}
 
-  // Empty also for a place that there is not.
+  // Why the content of a place cannot be shown; empty if it can, or if there is no such place.
   std::string faultOf(std::size_t place) const {
     const std::lock_guard lock(mutex_);
     return place < faults_.size() ? faults_[place] : "";

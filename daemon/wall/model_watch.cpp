@@ -16,7 +16,7 @@ constexpr int kChecksUntilGone = 3;
 }  // namespace
 
 bool ReplacedFile::look(const std::optional<FileStamp>& found, Timestamp now) {
-  if (!found) return false;  // being renamed, or removed: the model shown stays
+  if (!found) return false;  // being renamed, or removed: keep the model that is shown
   if (*found != seen_) {
     seen_ = *found;
     since_ = now;
@@ -73,7 +73,8 @@ void ModelWatch::ask(Asked asked) {
   asked_changed_.notify_one();
 }
 
-// Said once, and again when there are others: a folder is read anew for each slide.
+// Reports the pictures that were left out once, and again only when they change, because the folder
+// is read anew for each slide.
 void ModelWatch::noteLeftOut(const std::string& slide, const std::string& left_out) {
   const std::string folder = std::filesystem::path(slide).parent_path().string();
   const std::lock_guard lock(mutex_);
@@ -96,7 +97,7 @@ void ModelWatch::offer(ReadyModel ready) {
   const std::lock_guard lock(mutex_);
   offered_.emplace_back(ready.place,
                         Watched{ready.path, ready.stamp, ready.picture ? "picture" : "model"});
-  // A content that is outdated before the wall took it is not shown.
+  // Drops an older content of this place that the wall has not taken yet.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == ready.place; });
   ready_.push_back(std::move(ready));
 }
@@ -133,7 +134,7 @@ void ModelWatch::readAsked(Progress& progress) {
   }
 }
 
-// From now on the files of what was offered are looked at.
+// Starts to watch the files of the contents that were offered.
 void ModelWatch::followOffered() {
   std::vector<std::pair<std::size_t, Watched>> offered;
   {
@@ -168,7 +169,7 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   handOver(place, std::move(ready));
 }
 
-// What was read since the file of a place has changed.
+// Hands over what was read because the file of a place has changed.
 void ModelWatch::handOver(std::size_t place, Result<ReadyModel> ready) {
   const Watched& file = files_[place];
   const bool missing = !file.fault.empty();
@@ -186,7 +187,8 @@ void ModelWatch::handOver(std::size_t place, Result<ReadyModel> ready) {
   }
   ready->was_replaced = true;
   const std::lock_guard lock(mutex_);
-  // A model that is outdated before the wall took it is freed here, not on the wall's thread.
+  // Drops an older model of this place that the wall has not taken yet; it is freed here, not on
+  // the wall's thread.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == place; });
   ready_.push_back(*std::move(ready));
 }

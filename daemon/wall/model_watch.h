@@ -49,7 +49,7 @@ struct ReadyModel {
   std::string path;
   std::unique_ptr<const render::lod::Dendrogram> model;  // the content borrows it
   std::unique_ptr<render::content::Content> content;
-  std::shared_ptr<const render::content::Picture> picture{};  // instead of these two
+  std::shared_ptr<const render::content::Picture> picture{};  // for a picture, instead of these two
   std::string name{};
   FileStamp stamp{};
   bool is_slide = false, is_first_slide = false, is_last_slide = false;
@@ -57,7 +57,7 @@ struct ReadyModel {
   bool asked_for = false;     // to be shown now, from its start view
   bool was_replaced = false;  // its file was replaced by another one
   std::uint32_t request = 0;  // of WallRole::show(); 0: none
-  // Why there is nothing to show; of the rest only place, is_slide and request count then.
+  // Why there is nothing to show; then only place, is_slide and request are valid besides.
   std::string refused{};
 };
 
@@ -76,7 +76,7 @@ class ModelWatch {
   // Reads and prepares the file of a place again; called on the watch's own thread. Errors: why the
   // file cannot be shown.
   using Make = std::function<Result<ReadyModel>(std::size_t place, const std::string& path)>;
-  // The same for what was asked for.
+  // Reads and prepares a content that was asked for. Errors as above.
   using Read = std::function<Result<ReadyModel>()>;
 
   // `files`: by place, i.e. the content's index. Those that have a fault are tried again when they
@@ -90,16 +90,17 @@ class ModelWatch {
 
   // Returns a content that is ready, if there is one. Never waits for the watch's thread.
   std::optional<ReadyModel> take();
-  // Calls `read` on the watch's thread; what it returns is ready then. An error becomes an event,
-  // and ready with the number of the request, or the place whose next slide was asked for.
+  // Calls `read` on the watch's thread; take() then returns its result. An error becomes an event;
+  // take() then returns a refused content with the number of the request, or with the place whose
+  // next slide was asked for.
   void ask(Read read, std::uint32_t request = 0);
   void askForSlide(Read read, std::size_t place);
-  // Adds a content that is ready.
+  // Adds a content that is ready, for take().
   void offer(ReadyModel ready);
   // Adds an event.
   void report(Event event);
-  // The same for slides that were left out, a sentence each: once an hour as long as they come
-  // again, since slides come round.
+  // Adds an event for each slide that was left out; `skipped` has a sentence for each. The same
+  // sentence is repeated at most once an hour, since slides come round.
   void reportSkipped(const std::vector<std::string>& skipped);
   // Returns the events since the last call, one sentence each.
   std::vector<Event> takeEvents();
@@ -121,7 +122,8 @@ class ModelWatch {
   MissingContents& missing_;
   const Clock& clock_;
   const Duration try_again_;
-  // For what is not the content of a place, so that it is not taken for one that is outdated.
+  // Stands for the place of a content that has none, so that it is not mistaken for an outdated
+  // one.
   static constexpr std::size_t kNoPlace = ~std::size_t{0};
   struct Asked {
     Read read;

@@ -22,10 +22,12 @@ std::string textOf(const char (&field)[N]) {
   return std::string(wholeCharacters(textIn(field)));
 }
 
-// Without a list of devices there are the usual ones, without ports.
+// Whether the device has a port. If the configuration lists no devices, the default ones exist
+// without ports.
 bool isConfigured(const DeviceHealth& health) { return textIn(health.reason) != "not configured"; }
 
-// Why it is not well is said where there is a reason; one that works says what it lacks.
+// The text is the state, followed by the reason if there is one: that of a fault, or the complaint
+// of a device that works.
 DeviceFact deviceFact(std::string name, const DeviceHealth& health, Timestamp now) {
   const std::string_view state = shm::healthName(health, now);
   const std::string reason = textOf(health.reason);
@@ -37,14 +39,14 @@ DeviceFact deviceFact(std::string name, const DeviceHealth& health, Timestamp no
   return fact;
 }
 
-// What the ball moves. A picture and a panorama have no viewer that could be moved.
+// Text for what the ball moves. A picture and a panorama have no viewer that could be moved.
 std::string ballMoves(std::string_view kind, bool flies) {
   if (kind == "picture") return "moves the picture";
   if (kind == "panorama") return "turns the view";
   return flies ? "moves the viewer" : "moves the model";
 }
 
-// In steps of an eighth, so that a message that fades changes the plate eight times.
+// Opacity in steps of an eighth, so that a message that fades changes the plate only eight times.
 float strengthAt(Duration age) {
   if (age <= kShown) return 1;
   const double left = 1 - toSeconds(age - kShown) / toSeconds(kFades);
@@ -113,7 +115,7 @@ void OperatorFactsReader::readDevices(Timestamp now, OperatorFacts& facts) {
 }
 
 void OperatorFactsReader::readMessages(Timestamp now, OperatorFacts& facts) {
-  board_.tryRead(messages_);  // otherwise those that were read last
+  board_.tryRead(messages_);  // if it fails, keeps the last ones
   for (const BoardMessage& message : messages_) {
     const float strength = strengthAt(now - message.at);
     if (strength > 0) facts.messages.push_back({message.text, strength});

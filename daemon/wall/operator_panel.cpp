@@ -28,7 +28,8 @@ ShownKind shownKind(std::string_view kind) {
   return kind == "model" ? ShownKind::kModel : ShownKind::kPicture;
 }
 
-// Two digits, so that the governor's small steps do not draw the panel anew ten times a second.
+// Rounds to two digits, so that the governor's small steps do not redraw the panel ten times a
+// second.
 std::uint32_t twoDigits(std::uint32_t number) {
   std::uint32_t unit = 1;
   while (number / unit >= 100) unit *= 10;
@@ -39,7 +40,8 @@ float strongest(std::initializer_list<float> pushes) {
   return std::max(pushes, [](float a, float b) { return std::abs(a) < std::abs(b); });
 }
 
-// Pushed or twisted to the right; pushed up or away, or tilted away.
+// Converts a sample to two directions: right (pushed or twisted to the right) and up (pushed up or
+// away, or tilted away).
 BallPush pushOf(const BallSample& ball) {
   const auto& t = ball.translation;
   const auto& r = ball.rotation;
@@ -84,7 +86,8 @@ OperatorPanel::OperatorPanel(PanelPlace place, PanelOptions options, const Parts
       devices_(parts.devices),
       input_(place_.layout) {}
 
-// Blank and freeze undo themselves, so their press is no touch, which would undo them first.
+// A press of blank or freeze does not count as a touch: a touch would end that state first, and the
+// press would then begin it again.
 void OperatorPanel::touchBy(std::optional<ControlId> pressed) {
   if (pressed == ControlId::kBlank || pressed == ControlId::kFreeze)
     parts_.attendance.attend();
@@ -184,7 +187,7 @@ void OperatorPanel::readDevices(Timestamp now, PanelFacts& facts) {
   facts.projectors_wanted = projectors_->wanted;
 }
 
-// The first touch of a wall that is black or frozen ends that and does nothing else.
+// The first touch of a wall that is black or frozen only ends that state.
 void OperatorPanel::useBall(WallInput& input, Timestamp now) {
   auto& ball = input.scene.ball;
   const bool toggles = (input.operator_panel % 2 == 1) != std::exchange(toggled_, false);

@@ -19,8 +19,8 @@
 
 namespace merlin::wall {
 
-// What a wall of these settings and contents has, of what the panel can work. Without projectors,
-// video and lamp where the devices are another machine's.
+// The functions of the panel that are available with these settings and contents. Projectors, video
+// and lamp are not available if the devices belong to another machine.
 render::panel::PanelOptions panelOptions(const Settings& settings,
                                          const std::vector<ContentEntry>& contents);
 
@@ -30,10 +30,12 @@ struct ProjectorsSeen {
   std::optional<bool> wanted;  // whether they are on, or are to be
 };
 
-// `wanted` is nothing if nobody has switched it: then it is to be what it is.
+// `wanted`: nothing if nobody has switched the projector; it then follows from `power`, if that is
+// known.
 ProjectorsSeen projectorSeen(std::string power, std::optional<bool> wanted);
 
-// Of several: the power that they have in common, or "mixed"; the same of `wanted`.
+// Combines several projectors: the power that they have in common, or "mixed"; `wanted` if all
+// agree, else nothing.
 ProjectorsSeen together(const std::vector<ProjectorsSeen>& all);
 
 // Thread-safe, except where it says otherwise.
@@ -56,26 +58,27 @@ class OperatorPanel final : public render::panel::PanelSource {
   const render::panel::PanelPlace& place() const noexcept { return place_; }
   const render::panel::PanelOptions& options() const noexcept { return options_; }
 
-  // The pointer is at a pixel of the frame, or nowhere. A press while the wall is black only makes
-  // it bright again.
+  // To be called when the pointer has moved to a pixel of the frame, or away (nothing), or its
+  // button has changed. A press while the wall is black only makes it bright again.
   void point(std::optional<render::panel::Point> in_frame, bool pressed);
-  // Whether the ball works the panel, from the next frame on.
+  // Switches whether the ball operates the panel, from the next frame on.
   void toggleBall();
-  // The commands that were asked for since the last call, in their order.
+  // Returns the commands requested since the last call, in their order.
   std::vector<render::panel::Request> takeRequests();
   // Shows for some time why a command was refused.
   void refuse(std::string why);
-  // What the role devices says of the projectors; otherwise those at the GPIO line are read.
+  // Sets what the role devices reports of the projectors; without a report, the state of those at
+  // the GPIO line is read.
   void report(ProjectorsSeen projectors);
 
   // Once a frame, on the wall's thread, before Attendance::update(): executes what is held, and
-  // takes the ball out of `input` while that works the panel.
+  // removes the ball from `input` while the ball operates the panel.
   void update(WallInput& input, Timestamp now);
-  // On the wall's thread: the configured rate is another one from now on.
+  // On the wall's thread: replaces the configured rate.
   void configure(double rate_hz) noexcept { parts_.rate_hz = rate_hz; }
-  // On the wall's thread: whether actions of the ball's buttons are the panel's.
+  // On the wall's thread: whether actions of the ball's buttons belong to the panel.
   bool takesBall() const noexcept { return view_.by_ball; }
-  // On the wall's thread: of the last update().
+  // On the wall's thread: the view as of the last update().
   const render::panel::PanelView& view() override { return view_; }
 
  private:
@@ -91,7 +94,7 @@ class OperatorPanel final : public render::panel::PanelSource {
   const render::panel::PanelOptions options_;
   Parts parts_;
 
-  // Of the wall's thread.
+  // Used by the wall's thread only.
   shm::SegmentFollower<shm::DevicesReader> devices_;
   std::optional<Timestamp> read_at_, updated_at_;
   std::optional<bool> published_by_ball_;
@@ -105,7 +108,7 @@ class OperatorPanel final : public render::panel::PanelSource {
   std::string notice_;
   Timestamp noticed_at_{};
   Attendance::Shown shown_ = Attendance::Shown::kPicture;  // at the last update()
-  bool toggled_ = false;                                   // toggleBall() since then
+  bool toggled_ = false;    // whether toggleBall() was called since then
   bool swallowed_ = false;  // the press that is held made a black wall bright
 };
 

@@ -22,7 +22,7 @@ OperatorTile::OperatorTile(const Parts& parts) : parts_(parts) {
   if (!settings.wall.operator_tile.panel) return;
   render::panel::PanelOptions options = panelOptions(settings, parts_.contents);
   auto place = render::panel::placePanel(parts_.plan, options);
-  if (!place) return;  // a finding of --check-config
+  if (!place) return;  // --check-config reports it
   panel_.emplace(*std::move(place), std::move(options),
                  OperatorPanel::Parts{parts_.segment, parts_.segment.panel,
                                       shm::segmentName(settings.instance, "devices"),

@@ -31,11 +31,11 @@ class OperatorTile {
   };
   explicit OperatorTile(const Parts& parts);
 
-  // For its thread-safe members; null: there is none.
+  // The panel, for its thread-safe members; null if there is none.
   OperatorPanel* panel() { return panel_ ? &*panel_ : nullptr; }
   std::optional<PanelPointer::Place> panelInFrame() const;
 
-  // Each makes its overlay; null if that is off, or if there is no font, which is logged.
+  // Each makes its overlay; null if that is switched off, or if there is no font, which is logged.
   render::frame::Overlay* makePlates();
   render::frame::Overlay* makePanelOverlay();
 

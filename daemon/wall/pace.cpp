@@ -5,7 +5,7 @@
 namespace merlin::wall {
 namespace {
 
-constexpr std::string_view kTriangles = "triangles";  // of models; min_triangles is in it
+constexpr std::string_view kTriangles = "triangles";  // the unit of models and of min_triangles
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void Pace::show(const render::content::DetailAxis& detail) {
   const std::string_view unit = detail.unit();
   governor_.setLeastUseful(unit == kTriangles ? std::nullopt : std::optional(detail.leastUseful()));
   if (!unit_.empty() && unit != unit_) {
-    hold(std::nullopt);  // 20,000 triangles are not 20,000 kilotexels
+    hold(std::nullopt);  // a held cost is meaningless in another unit
     governor_.hold(std::nullopt);
   }
   unit_ = unit;
@@ -66,8 +66,8 @@ void Pace::observeOperator(bool coarser) {
   if (operator_ladder_.observe(coarser, true, true)) ++changes_;
 }
 
-// At full size a frame costs at most four times as much; at twice the rate its period is half as
-// long.
+// Whether there is room for the next better pace: at full size a frame costs at most four times as
+// much, and at twice the rate its period is half as long.
 bool Pace::betterFits() const {
   const double needed_s = governor_.predict(governor_.least());
   const double times = ladder_.step() > 1 ? 2 : 4;

@@ -29,16 +29,16 @@ class Pace {
   // nullopt: the configured one. REQUIRES: rate_hz > 0.
   void hold(std::optional<std::size_t> cost) noexcept;
   void setRate(std::optional<double> rate_hz) noexcept;
-  // The costs that may be fixed, for the content that is shown: what is outside is not used. May be
-  // called on any thread.
+  // The range of costs that hold() may fix for the content that is shown; a cost outside is not
+  // used. May be called on any thread.
   struct Limits {
     std::size_t least, most;
   };
   Limits limits() const noexcept { return {least_cost_.load(), most_cost_.load()}; }
 
   // To be called when another content is shown, and for the first one: sets the governor's lower
-  // limit by it. If its detail has another unit than the one before, a cost that hold() has fixed
-  // is dropped.
+  // limit from its detail. If its detail has another unit than the one before, a cost that hold()
+  // has fixed is dropped.
   void show(const render::content::DetailAxis& detail);
 
   // Replaces the configured rate, with the next update(). REQUIRES: rate_hz > 0.

@@ -9,8 +9,8 @@
 
 namespace merlin::wall {
 
-// Thread-bound. Which contents it shows is the caller's matter: a place of them may have several
-// parts (slides).
+// Thread-bound. The caller decides which contents are shown; one place may have several parts
+// (slides).
 class Playlist {
  public:
   explicit Playlist(const PlaylistSettings& settings) : settings_(settings) {}
@@ -19,7 +19,7 @@ class Playlist {
   enum class State : std::uint32_t { kOff = 0, kWaiting = 1, kRunning = 2 };
   State state() const noexcept;
 
-  // Replaces the settings; what runs goes on, and the time that has passed counts.
+  // Replaces the settings; a running playlist goes on, and the time that has passed counts.
   void configure(const PlaylistSettings& settings) { settings_ = settings; }
 
   // When the next thing will happen if nobody touches the wall, in seconds from the last update();

@@ -14,7 +14,7 @@ struct PlaylistSettings {
   double turn_deg_per_s = 6;          // of a model about the vertical axis; of a panorama, its view
   std::vector<std::string> contents;  // names, in the order in which they are shown; empty: all
   double dim_after_s = 0;             // time without input until the picture is dimmed; 0: never
-  double dim_to = 0.3;                // then, share of the full light
+  double dim_to = 0.3;                // brightness while dimmed, as a share of the full light
 };
 
 struct ShownSettings {

@@ -20,16 +20,17 @@ struct ShowResult {
 // Not thread-safe.
 class ShowResults {
  public:
-  // Clients look every few milliseconds, and who shows one content after another does not wait.
+  // Long enough for clients, which poll every few milliseconds, and short enough for one who shows
+  // contents in quick succession.
   static constexpr Duration kPublished = std::chrono::milliseconds(100);
-  static constexpr std::size_t kMostWaiting = 40;  // of a flood the oldest are dropped
+  static constexpr std::size_t kMostWaiting = 40;  // if more wait, the oldest are dropped
 
   void add(ShowResult result) {
     if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
     waiting_.push_back(std::move(result));
   }
 
-  // The one to be published now. They come in the order in which they were added; the last one
+  // The result to be published now. They come in the order in which they were added; the last one
   // stays.
   const ShowResult& current(Timestamp now) {
     if (!waiting_.empty() && (!since_ || now - *since_ >= kPublished)) {

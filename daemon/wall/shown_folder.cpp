@@ -22,19 +22,19 @@ constexpr Duration kLeftOver = std::chrono::hours(1);
 
 bool isHidden(const FolderFile& file) { return file.name.starts_with('.'); }
 
-// systemd's RestrictSUIDSGID= forbids the set-group-ID bit. Without it clients give their files the
-// group themselves.
+// systemd's RestrictSUIDSGID= forbids the set-group-ID bit. If the bit cannot be set, clients set
+// the group of their files themselves.
 bool makeForGroup(const std::string& folder) {
   if (::mkdir(folder.c_str(), 0770) != 0) return false;
   return ::chmod(folder.c_str(), 02770) == 0 || ::chmod(folder.c_str(), 0770) == 0;
 }
 
-// Of the files in a folder of slides; links are not followed.
+// Total size of the files in a folder of slides; links are not followed.
 std::uint64_t bytesIn(const fs::directory_entry& entry) {
   std::error_code error;
   if (entry.symlink_status(error).type() == fs::file_type::regular) {
     const std::uintmax_t size = entry.file_size(error);
-    return error ? 0 : size;  // gone meanwhile
+    return error ? 0 : size;  // removed in the meantime
   }
   if (entry.symlink_status(error).type() != fs::file_type::directory) return 0;
   std::uint64_t bytes = 0;
@@ -48,7 +48,8 @@ std::uint64_t bytesIn(const fs::directory_entry& entry) {
   return bytes;
 }
 
-// Of a link its own time. Zero if the file is gone meanwhile.
+// Age of the file; for a link, that of the link itself. Zero if the file was removed in the
+// meantime.
 Duration ageOf(const std::string& path) {
   struct stat status {};
   timespec now{};
@@ -57,7 +58,7 @@ Duration ageOf(const std::string& path) {
          std::chrono::nanoseconds(now.tv_nsec - status.st_mtim.tv_nsec);
 }
 
-// Of the same age by name, so that one folder has one result.
+// Files of equal age are sorted by name, so that the order is deterministic.
 void sortNewestFirst(std::vector<FolderFile>& files) {
   std::ranges::sort(files, [](const FolderFile& a, const FolderFile& b) {
     return std::pair(a.age, std::string_view(a.name)) < std::pair(b.age, std::string_view(b.name));
@@ -190,7 +191,7 @@ std::vector<FolderFile> ShownFolder::files() const {
   return files;
 }
 
-// A folder as well; of a link the link.
+// Also removes folders; for a link, removes the link only.
 std::vector<std::string> ShownFolder::remove(const std::vector<std::string>& names) const {
   std::vector<std::string> faults;
   for (const std::string& name : names) {

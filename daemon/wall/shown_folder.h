@@ -1,5 +1,5 @@
 // ShownFolder: the content folder, into which `merlin show FILE` puts what it makes of a file. Its
-// group may write to it, so whatever is there may be anything.
+// group may write to it, so nothing in it can be trusted.
 #pragma once
 
 #include <cstdint>
@@ -23,17 +23,18 @@ struct FolderFile {
   bool is_folder = false;
 };
 
-// Names of the files that are to be removed, so that the next client has room. Those in `kept`
-// stay; then, the newest first, those with which all that stay take at most half of `limit_bytes`.
-// Hidden ones, which are being written, do not count and stay. Pure.
+// Names of the files to be removed so that the next client has room. Those in `kept` stay; of the
+// others the newest stay, as many as fit if all that stay take at most half of `limit_bytes`.
+// Hidden files, which are still being written, stay and do not count. Pure.
 std::vector<std::string> surplusOf(std::vector<FolderFile> files, std::span<const std::string> kept,
                                    std::uint64_t limit_bytes);
 
-// Names of hidden files that are older than an hour: of clients that were killed. Pure.
+// Names of hidden files older than an hour, which clients that were killed have left. Pure.
 std::vector<std::string> leftOversOf(std::span<const FolderFile> files);
 
-// The names of the contents that these files are, the newest first, each with its file: of two of
-// one name the newer one counts. Hidden files and those that are no content have none. Pure.
+// Returns the names of the contents in these files, the newest first, each with its file. Of two
+// with the same name the newer one counts. Hidden files, and files that are no content, are
+// omitted. Pure.
 struct NamedFile {
   std::string name, file;
 };
@@ -62,13 +63,14 @@ class ShownFolder {
   // folder cannot be used), kInvalidArgument (it is larger than limitBytes()).
   Result<ContentEntry> entryOf(const std::string& name) const;
 
-  // namedFilesOf() the folder: what was shown and can be shown again. It looks at the first
-  // kMostLookedAt files.
+  // namedFilesOf() for the folder: the contents that can be shown again. Only the first
+  // kMostLookedAt files are examined.
   std::vector<NamedFile> namedFiles() const;
   static constexpr std::size_t kMostLookedAt = 1000;
 
-  // Removes surplusOf() the folder; `shown`, the one of the call before and those that the
-  // configuration names stay. Returns a sentence about each that cannot be removed.
+  // Removes the files that surplusOf() returns for the folder; keeps `shown`, that of the previous
+  // call and the files that the configuration names. Returns a sentence about each that cannot be
+  // removed.
   std::vector<std::string> tidy(const std::string& shown);
 
  private:

@@ -57,8 +57,8 @@ Result<std::unique_ptr<ShownModels>> ShownModels::make(std::vector<WallContent> 
   return shown;
 }
 
-// Made before the first frame even where no picture is configured: then a picture that somebody
-// shows needs no shader to be compiled, and its first frame is in time.
+// The viewer is made before the first frame even if no picture is configured: then a picture that
+// is shown later needs no shader to be compiled, and its first frame is in time.
 Result<Ok> ShownModels::makeViewer(const Eigen::Isometry3f& T_eye_model) {
   std::size_t wall_px = 0;
   for (const render::tiles::Tile& tile : parts_.plan.tiles)
@@ -116,7 +116,7 @@ ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
       if (!there) return there.error();
       entry = *there;
     }
-    // The one slide that was replaced; or the folder, if none of it could be shown before.
+    // Draws the slide that was replaced, or the folder if none of its slides could be shown before.
     const bool slide = entry.kind == ContentKind::kSlides && path != entry.path;
     if (slide) entry.kind = ContentKind::kPicture;
     entry.path = path;
@@ -129,7 +129,7 @@ ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
   };
 }
 
-// The distance at which a pixel of the picture is as large as eight of the wall.
+// Returns the distance at which one pixel of the picture is as wide as eight pixels of the wall.
 float ShownModels::nearestOf(const Picture& picture) const {
   constexpr double kMostSize = 8;
   const render::image::PyramidLevel& finest = picture.file->levels().front();
@@ -177,8 +177,8 @@ std::vector<ShownContent> ShownModels::contents() const {
   return contents;
 }
 
-// The picture of another place takes the place of the one that the viewer has; one that it has
-// keeps its tiles.
+// Gives the viewer the picture of this place; if the viewer already has it, the picture keeps its
+// tiles.
 void ShownModels::prepare(std::size_t place) {
   const Shown& shown = shown_[place];
   if (!shown.picture) return;
@@ -186,7 +186,8 @@ void ShownModels::prepare(std::size_t place) {
   if (&pictures_->picture() != shown.picture.get()) pictures_->show(shown.picture);
 }
 
-// After the last slide the next content follows, and the first slide is made ready for later.
+// Returns false at the last slide if there is another content, which then follows; the first slide
+// is made ready for later.
 bool ShownModels::nextWithin(std::size_t place) {
   const Shown& shown = shown_[place];
   if (shown.entry.kind != ContentKind::kSlides) return false;
@@ -195,7 +196,8 @@ bool ShownModels::nextWithin(std::size_t place) {
   return more;
 }
 
-// Before the first slide comes the previous content; where there is no other, the last slide.
+// Before the first slide comes the previous content, or the last slide if there is no other
+// content.
 bool ShownModels::previousWithin(std::size_t place) {
   const Shown& shown = shown_[place];
   if (shown.entry.kind != ContentKind::kSlides) return false;
@@ -247,7 +249,8 @@ ContentSource::Replacement ShownModels::refusal(const ReadyModel& ready, std::st
   return {ready.place, {}, false, ready.request, std::move(why), ready.is_slide};
 }
 
-// The last place has a name only once something is shown there.
+// The last place, for files that are not in the configuration, has a name only once a file is shown
+// there.
 void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
   Shown& shown = shown_[ready.place];
   if (std::exchange(shown.missing, false)) {
@@ -256,7 +259,7 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
         newsEvent(fmt::format("{} can be read now, and is shown in its turn", shown.entry.path)));
   }
   shown.file = ready.path;
-  if (!ready.was_replaced) {  // by a file of the same name, which has the same place among slides
+  if (!ready.was_replaced) {  // a replaced file keeps its place among the slides
     shown.is_first_slide = ready.is_first_slide;
     shown.is_last_slide = ready.is_last_slide;
   }
@@ -270,7 +273,7 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
 
 std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
                                                             const Eigen::Isometry3f& T_eye_model) {
-  // Ends the wall's thread, and so the process: the next one starts with a context of its own.
+  // Ends the wall's thread, and so the process; the restarted process has a new context.
   if (contexts_->own->wasReset())
     throw std::runtime_error("the GPU was reset, and what it held is lost");
   const Timestamp now = parts_.clock.now();

@@ -17,8 +17,8 @@
 
 namespace merlin::wall {
 
-// Prepares a content that was read: a model's content is made. Called on any thread. Errors: those
-// of ModelContent::make(), with the file's name.
+// Prepares a content that was read: for a model, makes its ModelContent. Called on any thread.
+// Errors: those of ModelContent::make(), with the file's name.
 Result<ReadyModel> prepareContent(std::size_t place, WallContent content,
                                   const WallSettings& settings);
 
@@ -34,9 +34,9 @@ class ShownModels final : public ContentSource {
     render::content::TileSource& tiles;
     const Clock& clock;
   };
-  // `contents`: of the configuration. Behind them there is one more place, for what is not in it.
-  // Errors: those of DrawContexts::make(), and those of ModelContent and FrameRenderer, with the
-  // file's name.
+  // `contents`: those of the configuration. One more place follows them, for a content that is not
+  // in the configuration. Errors: those of DrawContexts::make(), and those of ModelContent and
+  // FrameRenderer, with the file's name.
   static Result<std::unique_ptr<ShownModels>> make(std::vector<WallContent> contents,
                                                    const Parts& parts,
                                                    const Eigen::Isometry3f& T_eye_model);
@@ -74,7 +74,7 @@ class ShownModels final : public ContentSource {
   Result<Ok> add(ReadyModel ready, ContentEntry entry, const Eigen::Isometry3f& T_eye_model);
   Result<std::unique_ptr<render::frame::FrameRenderer>> attach(
       ReadyModel& ready, const Eigen::Isometry3f& T_eye_model) const;
-  // Whether it is the only content of the configuration.
+  // Whether the content of this place is the only one of the configuration.
   bool isAlone(std::size_t place) const noexcept { return place < listed() && listed() == 1; }
   void askForSlide(std::size_t place, const SlideTurn& turn, bool to_be_shown);
   void takePicture(ReadyModel& ready);
@@ -86,7 +86,7 @@ class ShownModels final : public ContentSource {
 
   Parts parts_;
   std::shared_ptr<const render::frame::DrawContexts> contexts_;
-  std::unique_ptr<render::frame::FrameRenderer> viewer_;  // of all pictures
+  std::unique_ptr<render::frame::FrameRenderer> viewer_;  // renderer of all pictures
   render::content::PictureContent* pictures_ = nullptr;   // its content
   std::size_t viewed_ = ~std::size_t{0};                  // place whose picture it shows
   std::vector<Shown> shown_;                              // by place

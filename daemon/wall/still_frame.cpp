@@ -6,7 +6,8 @@
 namespace merlin::wall {
 namespace {
 
-// Drawing time of the first finer frame of a still scene, so that it is shown within two periods.
+// Planned drawing time of the first finer frame of a still scene, so that it is shown within two
+// periods.
 constexpr Duration kFirstWork = std::chrono::milliseconds(40);
 constexpr std::size_t kNextDetail = 8;  // factor between the costs of successive finer frames
 

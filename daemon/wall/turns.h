@@ -9,8 +9,8 @@
 
 namespace merlin::wall {
 
-// Who acts first has the wall, until that person has not acted for a while; then anybody may take
-// it. Pure; thread-bound.
+// The first person who acts has the wall, until that person has not acted for a while; then anybody
+// may take it. Pure; thread-bound.
 class Turns {
  public:
   // `after`: how long a person keeps the wall after the last act.

@@ -20,20 +20,21 @@ namespace {
 
 constexpr const char* kCannot = "cannot be used: ";
 
-// The JSON pointer of the content itself, not of its file.
+// Returns the JSON pointer of the content itself, not that of its file.
 std::string placeOf(const ContentEntry& entry) {
   if (!entry.pointer.starts_with("/wall/contents/")) return entry.pointer;
   return entry.pointer.substr(0, entry.pointer.rfind('/'));
 }
 
-// Whether the configuration gives content `i` of contentsOf() its name, which is else its file's.
+// Whether the configuration names content `i` of contentsOf(); otherwise its name is that of its
+// file.
 bool isNamed(const WallSettings& wall, std::size_t i, std::size_t count) {
   const std::size_t before = count - wall.contents.size();  // 1 for /wall/model
   return i >= before && !wall.contents[i - before].name.empty();
 }
 
-// What becomes of a content that cannot be read. `any`: whether another can; `is_start`: of
-// merlind.
+// Text for the consequence of a content that cannot be read. `any`: whether another can be read;
+// `is_start`: whether merlind starts now.
 const char* consequence(bool any, bool is_start) {
   if (is_start) {
     return any ? "; the wall is shown without it until it can be read"
@@ -44,7 +45,7 @@ const char* consequence(bool any, bool is_start) {
                "read";
 }
 
-// Keeps in memory what it has read, or only what cannot be read.
+// Reads each content. `keep`: returns all of them; otherwise only those that cannot be read.
 std::vector<WallContent> readEach(LoadedSettings& loaded, bool keep) {
   std::vector<WallContent> contents;
   bool any = false;
@@ -126,7 +127,7 @@ void checkIsPicture(LoadedSettings& loaded, const std::string& path, const std::
 }
 
 // A region that was measured for another output is used, since only a person can see whether it
-// fits; what is suspicious about it is said.
+// fits; suspicious properties are reported as findings.
 void checkFits(LoadedSettings& loaded, const render::correct::MeasuredCorrection& measured,
                std::size_t index, const std::string& at) {
   const std::vector<render::out::OutputSettings>& outputs = loaded.settings.wall.outputs;

@@ -11,23 +11,23 @@
 namespace merlin::wall {
 
 // Reads the contents in the order in which they are shown: see contentsOf(). Adds a finding for
-// each that names no file, cannot be read, or lacks the feature that /wall/render/show names. One
-// that cannot be read (its disk may not be there yet) is only an adjustment, and in the result as
-// missingContent(), also if it is so of all. The result is complete unless a finding is none.
-// O(size of the models' files).
+// each that names no file, cannot be read, or lacks the feature that /wall/render/show names. A
+// content that cannot be read (its disk may not be there yet) is only an adjustment, and
+// missingContent() stands for it in the result; this also holds if no content can be read. The
+// result is complete if all findings are adjustments. O(size of the models' files).
 std::vector<WallContent> readContents(LoadedSettings& loaded);
 
-// Adds the findings of readContents(), and has one content at a time in memory. For a reload, which
-// refuses what a start adjusts, as the findings say.
+// Adds the findings of readContents(), but holds only one content in memory at a time. For a
+// reload, which refuses what a start adjusts, as the findings say.
 void checkContents(LoadedSettings& loaded);
 
-// Adds a finding for each content that has the name of one before it, which commands would find in
-// its place: see contentsOf(). Two names that the configuration itself gives are the loader's to
-// compare. Reads no file.
+// Adds a finding for each content with the same name as an earlier one, because commands would find
+// the earlier one: see contentsOf(). Two names that the configuration itself gives are the loader's
+// to compare. Reads no file.
 void checkNames(LoadedSettings& loaded);
 
-// Calls checkNames(). Then adds a finding for each name in /wall/playlist/contents that is not that
-// of a content, or is there twice. Reads no file.
+// Calls checkNames(). Then adds a finding for each name in /wall/playlist/contents that no content
+// has, or that occurs twice. Reads no file.
 void checkPlaylist(LoadedSettings& loaded);
 
 // Adds a finding for each image file or snapshot folder that cannot be written, for each MPCDI file

@@ -38,7 +38,7 @@ ContentEntry entryOf(const ContentSettings& c, const std::string& pointer) {
   return entry;
 }
 
-// The part of a path below the content folder.
+// Returns the part of a path below the content folder.
 std::string_view nameBelow(const ContentEntry& entry, std::string_view path) {
   path.remove_prefix(std::min(entry.below.size() + 1, path.size()));
   return path;
@@ -78,8 +78,8 @@ Result<WallContent> readPicture(const ContentEntry& entry, const std::string& fi
   return WallContent{entry, file, stamp, *std::move(picture)};
 }
 
-// Whether this is a picture of a kind that people put into a folder of slides: `merlin image
-// import` reads these, and more.
+// Whether this is a picture in a common format that people put into a folder of slides by mistake.
+// `merlin image import` converts these formats, among others.
 bool isOrdinaryPicture(const std::string& name) {
   constexpr std::string_view kEndings[] = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".gif"};
   std::string ending = fs::path(name).extension().string();
@@ -98,7 +98,7 @@ Result<FilesOfSlides> slidesIn(const ContentEntry& entry) {
   const std::string& folder = entry.path;
   FilesOfSlides files;
   std::error_code error;
-  UniqueFd opened;  // so that nobody can put a link in its place meanwhile
+  UniqueFd opened;  // so that nobody can replace it by a link
   if (!entry.below.empty()) {
     auto found = openFolderBelow(entry.below, nameBelow(entry, folder));
     if (!found) return found.error();
@@ -129,7 +129,7 @@ Result<FilesOfSlides> slidesIn(const ContentEntry& entry) {
   return files;
 }
 
-// What is said of pictures in a folder of slides; nothing if there are none.
+// Message about pictures in a folder of slides that are left out; empty if there are none.
 std::string leftOut(const std::string& folder, const std::vector<std::string>& pictures) {
   if (pictures.empty()) return "";
   constexpr std::size_t kMostNamed = 3;
@@ -146,8 +146,8 @@ std::string leftOut(const std::string& folder, const std::vector<std::string>& p
                      excerpt(first), excerpt(pyramid));
 }
 
-// The first of these that can be shown; nothing if there is none. The others before it are added to
-// `skipped`.
+// Returns the first of these that can be shown; nothing if there is none. Those before it are added
+// to `skipped`.
 std::optional<WallContent> firstOf(const std::vector<std::string>& names, const ContentEntry& entry,
                                    std::vector<std::string>& skipped) {
   for (const std::string& name : names) {
@@ -158,8 +158,8 @@ std::optional<WallContent> firstOf(const std::vector<std::string>& names, const 
   return std::nullopt;
 }
 
-// The names on the way from the slide of this name, to the end of the list; and those that follow
-// from its other end, up to that slide.
+// The slides in the order in which they follow the current one. ahead: from it, exclusive, to the
+// end of the list; around: from the beginning of the list to it, inclusive.
 struct Way {
   std::vector<std::string> ahead, around;
 };
@@ -171,8 +171,8 @@ Way wayFrom(std::vector<std::string> slides, const std::string& name, bool back)
   return {{ahead, slides.end()}, {slides.begin(), ahead}};
 }
 
-// Whether none can be shown from a slide on. Those that cannot are added to `skipped` if it is so:
-// they do not come up by themselves.
+// Whether none of the slides `ahead` can be shown. If so, they are added to `skipped`, since no
+// turn will report them.
 bool isEnd(const std::vector<std::string>& ahead, const ContentEntry& entry,
            std::vector<std::string>& skipped) {
   std::vector<std::string> behind_it;
@@ -181,8 +181,8 @@ bool isEnd(const std::vector<std::string>& ahead, const ContentEntry& entry,
   return true;
 }
 
-// The last slide is the last one that can be shown: otherwise a damaged file at the end would keep
-// the next content from its turn. Likewise the first.
+// "Last" means the last slide that can be shown: otherwise a damaged file at the end would prevent
+// the turn of the next content. The same holds for the first slide.
 Result<WallContent> readSlide(const ContentEntry& entry, const SlideTurn& turn,
                               std::vector<std::string>& skipped) {
   const auto files = slidesIn(entry);
@@ -196,7 +196,7 @@ Result<WallContent> readSlide(const ContentEntry& entry, const SlideTurn& turn,
                                               entry.path, slides.size(), skipped.back())};
   }
   const std::string name = fs::path(read->file).filename().string();
-  std::vector<std::string> passed;  // about those behind it, which have had their turn
+  std::vector<std::string> passed;  // slides in the other direction: they were reported before
   read->is_last_slide =
       isEnd(wayFrom(slides, name, false).ahead, entry, turn.back ? passed : skipped);
   read->is_first_slide =

@@ -18,14 +18,14 @@ namespace merlin::wall {
 
 enum class ContentKind { kModel, kPicture, kSlides };
 
-// A content by its name and its file; `path` is a folder for slides.
+// The name and the file of a content; for slides, `path` is a folder.
 struct ContentEntry {
   std::string pointer;  // JSON pointer of the setting that names it
   std::string name, path;
   ContentKind kind = ContentKind::kModel;
   render::content::ShowAs show_as = render::content::ShowAs::kAsMarked;  // pictures and slides
-  // The content folder, if it lies there: no link below it is followed. Empty: the configuration
-  // names the file, which is the operator's.
+  // The content folder, if the file lies there: no link below it is followed. Empty: the
+  // configuration names the file, so the operator vouches for it.
   std::string below{};
 };
 
@@ -36,13 +36,14 @@ std::vector<ContentEntry> contentsOf(const WallSettings& wall);
 // The names of contents for a message: "left, right".
 std::string namesOf(const std::vector<ContentEntry>& contents);
 
-// The name of a content that is given none: that of its file without the ending, or of its folder.
+// The default name of a content: that of its file without the ending, or of its folder.
 std::string nameOf(const std::string& path);
 
-// What a file's ending says that it is: a model or a picture; nothing for any other.
+// The kind of content, model or picture, that a file's ending stands for; nothing for any other
+// ending.
 std::optional<ContentKind> kindByEnding(const std::string& name);
 
-// Places of the contents of these names in `contents`. A name that is none of theirs is left out.
+// Indexes in `contents` of the contents with these names. A name that none of them has is left out.
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
                                   const std::vector<std::string>& names);
 
@@ -54,11 +55,11 @@ Result<ContentEntry> contentBelow(const std::string& folder, const std::string& 
 // A content that was read.
 struct WallContent {
   ContentEntry entry;
-  std::string file;  // that was read: the entry's, or one slide of it
+  std::string file;  // the file that was read: the entry's, or one of its slides
   FileStamp stamp;   // of that file
   std::variant<render::lod::Dendrogram, std::shared_ptr<const render::content::Picture>> data;
   bool is_first_slide = false, is_last_slide = false;
-  // Of slides: a sentence about the ordinary pictures in their folder, which are not shown. Empty:
+  // For slides: a sentence about the ordinary pictures in their folder, which are not shown. Empty:
   // there are none.
   std::string left_out{};
   // Why there is nothing to show; then `data` is an empty picture, and `stamp` that of the file or
@@ -68,8 +69,8 @@ struct WallContent {
   bool isModel() const noexcept { return data.index() == 0; }
 };
 
-// A content that could not be read, and has its place until it can. `tried`: fileOrFolderStamp() of
-// before.
+// Returns what stands for a content that could not be read, until it can be. `tried`: its
+// fileOrFolderStamp() before it was tried.
 WallContent missingContent(const ContentEntry& entry, std::string fault,
                            const std::optional<FileStamp>& tried);
 
@@ -80,12 +81,12 @@ struct SlideTurn {
   bool back = false;
 };
 
-// Reads a content: a model as a whole, of a picture its coarsest level. Of slides it reads the
-// first that can be shown on the way from `turn.from`, cyclically, and tries its neighbours, to see
-// whether it is the first or the last; sentences about those on the way that cannot be shown are
-// added to `skipped`. Errors: those of readMrmCopy(), openPicture(), openBelow(); kInvalidArgument
-// (a model lacks the feature that `show` names); kNotFound (a folder without a pyramid that can be
-// shown). O(size of a model's file).
+// Reads a content: a model as a whole, a picture's coarsest level only. Of slides it reads the
+// first one after (or before) `turn.from`, cyclically, that can be shown, and tries its neighbours
+// to see whether it is the first or the last slide; it adds to `skipped` a sentence about each
+// slide on the way that cannot be shown. Errors: those of readMrmCopy(), openPicture(),
+// openBelow(); kInvalidArgument (a model lacks the feature that `show` names); kNotFound (a folder
+// without a pyramid that can be shown). O(size of a model's file).
 Result<WallContent> readContent(const ContentEntry& entry,
                                 const render::content::ShownFeature& show, const SlideTurn& turn,
                                 std::vector<std::string>& skipped);

@@ -11,14 +11,14 @@ namespace {
 
 using shm::StepKind;
 
-// Time left unused at the end of a period that is spent on refining.
+// Time that is left unused at the end of a period in which refining is done.
 constexpr Duration kRefineMargin = std::chrono::milliseconds(2);
 // Time reserved to read back the last tile and pass the frame to the outputs.
 constexpr Duration kPresentMargin = std::chrono::milliseconds(3);
 // Share of a period that is planned for the first frame after a standstill, which takes longer than
 // predicted: cores wake from sleep, and caches hold data of another frame.
 constexpr double kResumingShare = 0.75;
-// The same for the first frames of another content, whose data no core has in its cache.
+// The same for the first frames of another content, whose data is not in any cache yet.
 constexpr std::array kNewContentShares{0.4, 0.55, 0.75};
 // The detail step is kept while its cost differs from the budget by less than this share, so that
 // detail does not flicker during motion.
@@ -137,7 +137,7 @@ void WallLoop::showContent() {
   moving_step_.reset();
   full_detail_ = false;
   still_.stop();
-  publishContent(parts_.clock.now());  // what is drawn over its first frame names it
+  publishContent(parts_.clock.now());  // overlays on its first frame show its name
 }
 
 void WallLoop::replaceContents() {
@@ -157,15 +157,16 @@ void WallLoop::replaceContents() {
   still_.restart();
 }
 
-// A file that took long to read may come while the playlist runs again: then that ends, so that the
-// file is shown for as long as what a person shows at once.
+// A file that took long to read may arrive when the playlist runs again. The playlist then stops,
+// so that the file is shown for as long as one that could be shown at once.
 void WallLoop::showChosen(const ContentSource::Replacement& chosen) {
   turns_.choose(chosen.place);
   parts_.attendance.attend();
   finishRequest(chosen.request, {});
 }
 
-// A folder of slides that vanished, or is empty now, keeps nobody from the other contents.
+// A folder of slides that has vanished or become empty does not block the way to the other
+// contents.
 void WallLoop::noteRefusal(const ContentSource::Replacement& refused) {
   const bool playing = parts_.attendance.playlist() == Playlist::State::kRunning;
   const std::vector<std::size_t> places = playing ? parts_.playlist : std::vector<std::size_t>();
@@ -173,8 +174,8 @@ void WallLoop::noteRefusal(const ContentSource::Replacement& refused) {
   if (refused.request > 0) finishRequest(refused.request, refused.refused);
 }
 
-// The part of the devices' input that counts: while the wall is black or frozen, not all of it
-// does.
+// Returns the part of the devices' input that takes effect; while the wall is black or frozen, some
+// of it is ignored.
 WallInput WallLoop::attendedInput(Timestamp now) {
   WallInput input = parts_.feed.read(now);
   input.scene.step = takeStep();
@@ -189,8 +190,8 @@ WallInput WallLoop::attendedInput(Timestamp now) {
   return input;
 }
 
-// What it shows begins with the initial view, wherever a visitor left it. What a person has chosen
-// is shown first, and as long as each content of the playlist.
+// Each content of the playlist begins with the initial view, wherever a visitor left it. A content
+// that a person has chosen is shown first, for as long as each content of the playlist.
 void WallLoop::followPlaylist(const Playlist::Wanted& wanted) {
   const std::size_t before = turns_.asked();
   if (wanted.next || (wanted.begins && !turns_.belongsTo(parts_.playlist)))
@@ -201,7 +202,7 @@ void WallLoop::followPlaylist(const Playlist::Wanted& wanted) {
     returnToInitialView();
 }
 
-// Black or frozen, the picture stays as it is.
+// While the wall is black or frozen, the picture does not change.
 void WallLoop::followViewer(const WallInput& input, Timestamp now) {
   if (held_) return;
   if (parts_.marker) parts_.marker->pointAt(pointedAt());
@@ -246,7 +247,7 @@ render::frame::PointerMarker::Points WallLoop::pointedAt() const {
   return points;
 }
 
-// Share of a period that is planned for the next frame.
+// Returns the share of a period that is planned for the next frame.
 double WallLoop::plannedShare() const {
   if (new_frames_ > 0) return kNewContentShares[kNewContentShares.size() - new_frames_];
   return resuming_ ? kResumingShare : 1;
@@ -317,7 +318,8 @@ std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
 void WallLoop::finishMoving(const render::frame::DrawTimes& times, Duration present, bool met) {
   const std::size_t cost = detail().costOf(step_);
   const bool coarsest = cost <= parts_.governor.least() || step_ + 1 == detail().steps();
-  // times.drawing is that of a frame whose operator's view is as fine as the wall: see DrawTimes.
+  // times.drawing is the time of a frame in which the operator's view is as fine as the wall
+  // (DrawTimes).
   const Duration fixed = times.fixed + present;
   const bool usual = plannedShare() == 1;
   if (usual || !met) parts_.governor.observe({cost, fixed, fixed + times.drawing, !met});
@@ -335,7 +337,7 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
     showFading();
   else if (parts_.delivery.hasChanged(parts_.clock.now()))
     present(painter().pixels(), full_detail_);
-  // A part that could not be loaded before has come after all.
+  // A part that could not be loaded before has been loaded after all.
   if (painter().pending() == render::content::Pending::kArrived) full_detail_ = false;
   if (needsRefining()) refine(k);
   // The frame shown is still valid, so every deadline that has passed counts as met.
@@ -345,7 +347,8 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
   return std::max(k + 1, reached);
 }
 
-// Where all that is left is still being loaded, there is nothing to draw until some of it has come.
+// If all remaining parts are still being loaded, there is nothing to draw until one of them is
+// there.
 bool WallLoop::needsRefining() const {
   if (full_detail_ || (step_ == 0 && still_.isFading())) return false;
   const bool waits = step_ == 0 && !still_.isRefining() &&

@@ -65,10 +65,10 @@ struct WallParts {
   // Whether a test card covers the picture.
   std::function<bool()> shows_testcard = [] { return false; };
   std::size_t first_content = 0;  // index of the content that is shown first
-  std::size_t listed = 0;         // contents that come by turns; 0: all
+  std::size_t listed = 0;         // number of contents that are shown in turn; 0: all
   // Added to a content's index to get its number in shared memory.
   std::uint32_t first_number = 0;
-  std::vector<std::size_t> playlist{};  // contents of the playlist, in order; empty: all by turns
+  std::vector<std::size_t> playlist{};  // contents of the playlist, in order; empty: all in turn
 };
 
 // Thread-bound, except where it says thread-safe.
@@ -94,15 +94,17 @@ class WallLoop {
   void request(Request what) noexcept { requests_.fetch_or(what); }
 
   // Thread-safe: shows the content of a place, before the next frame. Nothing happens if there is
-  // none.
+  // no such place.
   void show(std::size_t place) noexcept { place_asked_.store(static_cast<std::int64_t>(place)); }
-  // Thread-safe: request `number` is done: shown, or refused for this reason.
+  // Thread-safe: reports that request `number` is done: shown (`refused` is empty), or refused for
+  // this reason.
   void finishRequest(std::uint32_t number, const std::string& refused);
 
-  // Thread-safe: moves what the ball moves, in the next frame; several of a frame add up.
+  // Thread-safe: moves what the ball moves, in the next frame; several calls before a frame add up.
   void move(const render::scene::Push& step);
 
-  // Thread-safe: takes these settings before the next frame. What people changed stays.
+  // Thread-safe: applies these settings before the next frame. What people changed by command stays
+  // as it is.
   void tune(WallTuning tuning);
 
   // Thread-safe; applied before the next frame: see Pace.
@@ -171,7 +173,7 @@ class WallLoop {
   std::atomic<std::uint32_t> requests_{0};
   std::atomic<std::int64_t> place_asked_{-1};  // -1: none
   std::mutex step_mutex_;
-  // Guarded by step_mutex_: by move() since the last frame; the last request that is done.
+  // Guarded by step_mutex_: the sum of move() since the last frame; the requests that are done.
   render::scene::Push step_asked_;
   ShowResults results_;
   std::vector<WallTuning> tunings_;  // guarded by step_mutex_: since the last frame

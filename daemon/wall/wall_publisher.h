@@ -48,13 +48,14 @@ class WallPublisher {
   };
   void stats(shm::WallStats counted, const State& state, Timestamp now);
 
-  // `out`: the fields that the loop sets itself; those of pointing are set from the others.
+  // `out`: has the fields that the loop sets itself; those of pointing are set from the other
+  // arguments.
   void interaction(shm::WallInteraction out, const render::scene::SceneView& view,
                    const render::frame::PointerMarker* marker, Timestamp now);
   void outputs(const render::out::OutputSet& outputs, Timestamp now);
-  // `done`: what became of the last request for a content; the rest of it is set.
+  // `result`: what became of the last request for a content. All other fields are set from `shown`.
   void content(const ShownContent& shown, const ShowResult& result, Timestamp now);
-  // `testcard`: one covers the picture.
+  // `testcard`: whether a test card covers the picture.
   void idle(const Playlist::Due& due, bool testcard, Timestamp now);
 
  private:

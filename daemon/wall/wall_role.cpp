@@ -116,14 +116,15 @@ std::uint32_t WallRole::firstNumber() const noexcept {
   return entries_.front().pointer == "/wall/model" ? 0 : 1;
 }
 
-// While no content can be read: only the background is drawn, or a file that somebody shows.
+// Shows a notice while no content can be read, unless a file that is not in the configuration is
+// shown: otherwise only the background would be visible.
 void WallRole::tellIfEmpty(Timestamp now) {
   const std::vector<std::string> faults = missing_.faults();
   const bool is_empty = std::ranges::none_of(faults, &std::string::empty);
   if (std::exchange(told_empty_, is_empty) && !is_empty) (void)notice_.show("off");
   const auto shown = segment_->interaction.read();
   if (!is_empty || (shown && shown->content >= firstNumber() + entries_.size())) return;
-  // A tile has room for about fifty letters: the folder is left out.
+  // A tile has room for about fifty letters, so the folder is omitted.
   const std::string& path = entries_.front().path;
   std::string_view reason = faults.front();
   if (reason.starts_with(path + ": ")) reason.remove_prefix(path.size() + 2);
@@ -223,8 +224,8 @@ void WallRole::reload(const Settings& settings, const WallChanges& changes) {
     outputs_->aligner().configure(output.shownName(), output.correction);
 }
 
-// From the first to the last that is drawn: a test card hides the plates of the operator's tile,
-// the notice and the panel are above it, since they are of use there too.
+// Overlays in drawing order. A test card hides the plates of the operator's tile; the notice and
+// the panel are drawn over it, since they are useful there too.
 std::vector<render::frame::Overlay*> WallRole::overlaysWith(render::frame::PointerMarker& marker) {
   std::vector<render::frame::Overlay*> overlays = {
       operator_tile_.makePlates(),       &cards_, &notice_.overlay(),
@@ -246,7 +247,7 @@ void WallRole::addOwn(WallParts& parts) {
   parts.playlist = placesOf(entries_, settings_.wall.playlist.contents);
 }
 
-// Decides where corrections are computed. What a shader cannot do, the CPU does.
+// Decides where corrections are computed: by a shader, or by the CPU if a shader cannot do it.
 void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
   using Place = render::frame::CorrectionPlace;
   RendererReport report{contexts.own->info(), contexts.other ? 2 : 1, contexts.asynchronous};

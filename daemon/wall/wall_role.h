@@ -37,13 +37,14 @@ struct WallChanges {
   bool rate = false, playlist = false, scene = false, input = false, corrections = false;
 };
 
-// Who draws the wall, for the status.
+// The renderer that draws the wall, for the status.
 struct RendererReport {
   render::gl::RendererInfo info{};
   int contexts = 1;
-  bool asynchronous = false;       // how pixels are read back
-  bool corrects = false;           // corrections are computed there, not on the CPU
-  std::string correction_fault{};  // why not, or not all of them, although set; empty: no fault
+  bool asynchronous = false;  // how pixels are read back
+  bool corrects = false;      // whether the renderer computes the corrections, not the CPU
+  // Why the renderer does not compute (all of) them although it is set to; empty: no fault.
+  std::string correction_fault{};
 };
 
 class WallRole {
@@ -73,12 +74,12 @@ class WallRole {
   // called before start().
   void onSnapshot(std::function<void()> act) { on_snapshot_ = std::move(act); }
 
-  // Sets what outputs of kind window do for the person at them, on their own threads. To be called
-  // before start().
+  // Sets the functions that outputs of kind window call, on their own threads, for the person at
+  // them. To be called before start().
   void onWindow(render::out::WindowActs acts) { outputs_->onWindow(std::move(acts)); }
 
-  // Has the wall take these settings, of which `changes` differ, before its next frame; nothing is
-  // closed. REQUIRES: the first frame was shown; all else in `settings` is as before.
+  // Applies these settings before the wall's next frame, without closing anything. `changes`: the
+  // groups that differ. REQUIRES: the first frame was shown; all else in `settings` is as before.
   void reload(const Settings& settings, const WallChanges& changes);
 
   // Thread-safe; these four are ignored before the wall's loop runs.
@@ -87,13 +88,14 @@ class WallRole {
   void move(const Eigen::Vector3f& way_radii, const Eigen::Vector3f& turn_deg);
   void hold(std::optional<std::size_t> cost);
   void setRate(std::optional<double> rate_hz);
-  // Thread-safe: what hold() may fix, of the content that is shown; nothing before the loop runs.
+  // Thread-safe: the range of costs that hold() may fix for the content that is shown; nothing
+  // before the loop runs.
   std::optional<Pace::Limits> holdLimits() const;
   // For its thread-safe members.
   CorrectedOutputs& outputs() { return *outputs_; }
-  // What people ask to be shown. For its thread-safe members.
+  // What people have asked to be shown; for its thread-safe members.
   ContentRequests& contents() { return requests_; }
-  // For its thread-safe members; null: there is no panel on the operator's tile.
+  // For its thread-safe members; null if there is no panel on the operator's tile.
   OperatorPanel* panel() { return operator_tile_.panel(); }
   // For its thread-safe members.
   Attendance& attendance() { return attendance_; }
@@ -149,7 +151,7 @@ class WallRole {
   Clock& clock_;
   mutable std::mutex renderer_mutex_;
   std::optional<RendererReport> renderer_;
-  LastContent last_content_;  // of the thread of tend()
+  LastContent last_content_;  // used by the thread of tend() only
   bool told_empty_ = false;   // the same
   render::testcard::CardOverlay cards_;
   MessageBoard board_;

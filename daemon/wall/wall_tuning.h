@@ -12,11 +12,11 @@
 
 namespace merlin::wall {
 
-// Empty: as before.
+// A member without a value leaves its setting as it is.
 struct WallTuning {
   std::optional<render::governor::GovernorSettings> governor;
   std::optional<PlaylistSettings> playlist;
-  std::vector<std::size_t> places;  // of playlist->contents, in order; empty: all by turns
+  std::vector<std::size_t> places;  // of playlist->contents, in order; empty: all in turn
   std::optional<render::scene::SceneSettings> scene;
   std::optional<FeedSettings> feed;
 };

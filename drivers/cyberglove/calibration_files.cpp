@@ -19,7 +19,7 @@ struct Line {
   std::string_view text;
 };
 
-// The lines that are not blank.
+// Returns the lines that are not blank.
 std::vector<Line> linesOf(std::string_view text) {
   std::vector<Line> lines;
   for (int number = 1; !text.empty(); ++number) {
@@ -30,7 +30,8 @@ std::vector<Line> linesOf(std::string_view text) {
   return lines;
 }
 
-// All numbers of a line; nothing if it contains anything but finite numbers and `separators`.
+// Returns all numbers of a line; nothing if it contains anything but finite numbers and
+// `separators`.
 std::optional<std::vector<float>> numbersOf(std::string_view text, std::string_view separators) {
   std::vector<float> numbers;
   for (;;) {

@@ -178,8 +178,8 @@ void CybergloveDevice::handle(const Packet& packet, Timestamp first_byte) noexce
   sink_.publish(sample_);
 }
 
-// Number of records that were lost before this one, by the unit's time stamps. Jitter of less than
-// half a period does not count.
+// Returns the number of records that were lost before this one, according to the unit's time
+// stamps. Jitter of less than half a period is ignored.
 std::uint32_t CybergloveDevice::lostBefore(const Record& record) noexcept {
   if (!settings_.time_stamps) return 0;
   const std::uint32_t ticks = record.timestamp - last_stamp_;

@@ -14,11 +14,11 @@
 namespace merlin::cyberglove {
 
 // open() takes about 0.3 s, or 1 s if the interface unit does not stop streaming or does not
-// answer. What answers otherwise than a CyberGlove does is stopped and asked once more before it
-// is refused, which takes as long again: a glove that comes back after a silence first sends the
-// rest of its stream and answers to what it was asked before. poll() fails with kTimeout after 0.5
-// s without a record, or 5 periods if the rate is below 10 Hz. A glove that is not plugged in is a
-// complaint, not an error, as long as the interface unit streams.
+// answer. If the answer is not a CyberGlove's, the driver stops the stream and asks once more
+// before it fails, which takes as long again: a glove that returns after a silence first sends the
+// rest of its stream and the answers to earlier commands. poll() fails with kTimeout after 0.5 s
+// without a record, or 5 periods if the rate is below 10 Hz. While the interface unit streams,
+// complaint() reports an unplugged glove; it is not an error.
 class CybergloveDevice final : public Device {
  public:
   CybergloveDevice(const CybergloveSettings& settings, const Clock& clock, SampleSink& sink);

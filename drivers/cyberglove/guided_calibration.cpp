@@ -19,8 +19,8 @@ constexpr GuidedStep kPoses[] = {
 };
 enum Pose : std::size_t { kFlat, kFist, kSpread, kThumb, kCup, kUp, kAside };
 
-// The pose, besides "flat", by which a sensor is calibrated, and its angle there; in "flat" it is
-// 0 rad. The angles are those of an adult hand, as in the default calibration.
+// The second pose by which a sensor is calibrated, and its joint's angle there; the first is
+// "flat", with 0 rad. The angles are those of an adult hand, as in the default calibration.
 struct Target {
   Pose pose;
   float angle_rad;

@@ -40,7 +40,7 @@ struct Layout {
   std::size_t values = 22;  // 1..24
   bool timestamp = false;   // switched on by `D`
   bool status = true;       // switched on by `U`
-  bool text = false;        // in the form of the ASCII dialogue
+  bool text = false;        // records have the form of the ASCII dialogue
 };
 
 struct Record {
@@ -83,9 +83,9 @@ class Parser {
   std::optional<Packet> finish() noexcept;
   std::optional<Packet> read() const noexcept;
 
-  static constexpr std::size_t kLongest = 1 + 4 * kSlots + 11 + 4 + 6 + 2;  // of a text record
+  static constexpr std::size_t kLongest = 1 + 4 * kSlots + 11 + 4 + 6 + 2;  // a text record
   Layout layout_;
-  std::array<std::uint8_t, kLongest> bytes_{};  // without the NUL
+  std::array<std::uint8_t, kLongest> bytes_{};  // the current packet, without its NUL
   std::size_t length_ = 0;
   std::uint64_t bad_packets_ = 0;
   std::uint64_t bad_bytes_ = 0;

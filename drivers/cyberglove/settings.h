@@ -10,7 +10,7 @@ namespace merlin {
 
 class SettingsVisitor;
 
-inline constexpr int kCybergloveBaud = 38400;  // speed of its line, as it is delivered
+inline constexpr int kCybergloveBaud = 38400;  // factory setting of its line
 
 // Value of slot 7, the abduction of the index finger, which no known glove measures.
 enum class Slot7Rule {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::string_literals;
 
-constexpr std::string_view kSameInBoth = "iv?";  // letters of queries
+constexpr std::string_view kSameInBoth = "iv?";  // queries that are equal in both dialogues
 
 bool isUpper(char c) noexcept { return c >= 'A' && c <= 'Z'; }
 bool isLower(char c) noexcept { return c >= 'a' && c <= 'z'; }
@@ -47,7 +47,8 @@ bool staysAsItIs(std::string_view binary) noexcept {
           kSameInBoth.find(binary[1]) != std::string_view::npos);
 }
 
-// Removes the next number from the rest of a record; false if it is not a number of at most `most`.
+// Removes the next number from the rest of a record; returns false if it is not a number or exceeds
+// `most`.
 bool take(std::string_view& rest, std::uint32_t most, std::uint32_t& value) noexcept {
   const auto found = number(word(rest), most);
   value = found.value_or(0);

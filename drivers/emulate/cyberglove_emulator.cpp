@@ -275,7 +275,7 @@ class CybergloveEmulator final : public Emulator {
   Timestamp start_;
   Wire wire_;
   Random noise_;
-  hand::Person person_;  // who wears it
+  hand::Person person_;  // wears the glove
   CybergloveSettings calibration_;
   State state_;
   std::string command_;

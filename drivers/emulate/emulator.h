@@ -20,11 +20,11 @@ class Emulator {
  public:
   virtual ~Emulator() = default;
 
-  // Bytes from the program, that arrived at `now`.
+  // Takes bytes that arrived from the program at `now`.
   virtual void receive(std::span<const std::byte> bytes, Timestamp now) = 0;
 
-  // Appends to `out` the bytes that the device sends until `now`. To be called again no later than
-  // nextDue().
+  // Appends to `out` the bytes that the device sends until `now`. Must be called again no later
+  // than nextDue().
   virtual void advance(Timestamp now, std::string& out) = 0;
 
   // When the device will next send something without being asked.
@@ -32,17 +32,17 @@ class Emulator {
 };
 
 struct EmulatorSettings {
-  int baud = 38400;          // of the line; records that exceed it are dropped, as by the device
-  std::string model = {};    // of EmulatorEntry::models; empty: the default
+  int baud = 38400;          // of the line; records that do not fit are dropped, as the device does
+  std::string model = {};    // one of EmulatorEntry::models; empty: the default
   std::uint64_t person = 0;  // seed of the Person who wears the glove (drivers/hand/people.h)
-  std::uint64_t seed = 1;    // of noise and garbage
+  std::uint64_t seed = 1;    // for noise and garbage
   int garbage_every = 0;     // records between two bursts of random bytes; 0: no bursts
 };
 
 // A device that can be emulated.
 struct EmulatorEntry {
   const char* name;    // as in drivers/registry
-  int baud;            // default
+  int baud;            // default baud rate
   const char* models;  // what EmulatorSettings::model may be, "a|b|c"; the first is the default
   const char* help;
   std::unique_ptr<Emulator> (*make)(const EmulatorSettings&, const MotionScript&, Timestamp start);

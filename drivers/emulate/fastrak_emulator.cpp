@@ -30,7 +30,7 @@ constexpr char kSave = 0x0B, kReinitialise = 0x19, kSuspend = 0x13, kResume = 0x
 // Codes of command errors, MAN12.
 constexpr int kMissing = -1, kNotNumeric = -2, kOutOfRange = -3, kUnknown = -99;
 
-// Settings that can be set and read back. Only the alignment, A, changes the records.
+// A setting that can be set and read back. Of these only the alignment, A, affects the records.
 struct Parameter {
   char letter;
   bool of_station;
@@ -55,7 +55,7 @@ constexpr std::size_t kParameterCount = std::size(kParameters);
 constexpr std::size_t kAlignment = 1;
 static_assert(kParameters[kAlignment].letter == 'A');
 
-// State that a program may set; ^K saves it, ^Y restores the saved state, W the factory's.
+// State that a program may set; ^K saves it, ^Y restores the saved state, W the factory settings.
 struct State {
   bool binary = false, centimetres = false, compensation = false, continuous = false;
   fastrak::Stations active{};
@@ -190,7 +190,7 @@ class FastrakEmulator final : public Emulator {
     }
   }
 
-  // Letters that act without CR.
+  // Executes a letter that takes effect without CR.
   bool executeLetter(char c, Timestamp now) {
     switch (c) {
       case 'P': sendOnce(now); break;
@@ -246,7 +246,7 @@ class FastrakEmulator final : public Emulator {
     refuse(kUnknown);
   }
 
-  // An error reply. Its spacing in a real unit is not known.
+  // Sends an error reply. Its spacing in a real unit is not known.
   void refuse(int code) {
     pending_ += fmt::format("2 E*ERROR*{}*ERROR* EC {} *PS 0 *FL 0 *ST 0\r\n", line_, code);
   }
@@ -378,7 +378,7 @@ class FastrakEmulator final : public Emulator {
   Random noise_;
   State state_;
   State saved_;
-  std::array<std::array<float, 4>, kStations> measured_{};  // newest, before boresight
+  std::array<std::array<float, 4>, kStations> measured_{};  // newest orientation, before boresight
   std::string line_;
   std::string pending_;
   bool suspended_ = false;

@@ -21,8 +21,8 @@ constexpr Ball kPush{0.5F, 0, 0.4F, 0, 0, 0};
 constexpr Ball kDown{0, -0.9F, 0, 0, 0, 0};
 constexpr Ball kTumble{0, 0.2F, 0, 0.5F, -0.5F, 0.3F};
 
-// A visitor: turns the model, looks at it, pushes it, takes it in the hand, lets go, tumbles it,
-// puts it back, and looks.
+// A visitor turns the model, looks at it, pushes it, grasps it, lets go, tumbles it, puts it back,
+// and looks.
 constexpr Phase kVisit[] = {
     {3.0, "open", kSpin, 0, false},       {2.0, "open", kRest, 0, false},
     {2.0, "point", kPush, 0, false},      {1.0, "open", kRest, 0, true},
@@ -58,7 +58,8 @@ constexpr Phase kPushes[] = {
 
 // A visitor who works the operator's panel: button 3 is bound to the action operator_panel, which
 // gives the ball to the panel and, the next time, takes it away. Each time the ball is pushed down,
-// well under the half second after which the panel selects one control more, then button 1 is held.
+// for well under half a second, after which the panel would select one more control; then button 1
+// is held.
 constexpr Phase kPanel[] = {
     {0.4, "open", kRest, 4, false}, {0.8, "open", kRest, 0, false}, {0.25, "open", kDown, 0, false},
     {0.6, "open", kRest, 0, false}, {1.2, "open", kRest, 1, false}, {0.8, "open", kRest, 0, false},
@@ -93,8 +94,8 @@ HandPlace mix(const HandPlace& a, const HandPlace& b, double share) {
   return place;
 }
 
-// Sets the pose of the hand in the transmitter's frame: `place`, plus a slow sway, of which
-// `amplitude` is the share (0: none).
+// Sets the pose of the hand in the transmitter's frame: `place` plus a slow sway, scaled by
+// `amplitude` (0: no sway).
 void placeHand(Motion& motion, const HandPlace& place, double seconds, double amplitude) {
   const double w = 2 * std::numbers::pi * seconds;
   const auto& p = place.position_m;

@@ -16,7 +16,7 @@ namespace merlin::emulate {
 // Measurements of all three devices at one moment.
 struct Motion {
   std::array<float, kGloveSlots> glove_rad{};  // joint angles in slot order, flexion positive
-  std::array<float, 3> position_m{};           // of the hand, transmitter frame
+  std::array<float, 3> position_m{};           // position of the hand, transmitter frame
   std::array<float, 4> orientation_wxyz{1, 0, 0, 0};
   std::array<float, 6> ball{};     // shares of full scale, in the device's axes
   std::uint32_t ball_buttons = 0;  // bit i = button i + 1
@@ -28,11 +28,11 @@ struct HandPlace {
   double turn_rad = 0;                                    // rotation about its z axis
 };
 
-// Behaviour of the person during one phase. At its beginning there is a transition from the phase
-// before, of the time kTransition.
+// Behaviour of the person during one phase. It begins with a transition from the phase before,
+// which takes kTransition.
 struct Phase {
   double seconds = 0;           // duration
-  const char* shape = "";       // of the hand: a name of drivers/hand/shapes
+  const char* shape = "";       // shape of the hand: a name from drivers/hand/shapes
   std::array<float, 6> ball{};  // push and twist of the ball, as in Motion
   std::uint32_t buttons = 0;    // pressed buttons of the ball, as in Motion
   bool wave = false;            // whether the hand moves about its place; otherwise it is still

@@ -1,5 +1,5 @@
-// Names of the drivers whose device can be emulated. Apart from the emulators, which merlind does
-// not contain: it starts `merlin emulate`.
+// Names of the drivers whose device can be emulated. They are not in emulator.h because merlind
+// does not contain the emulators: it starts `merlin emulate`.
 #pragma once
 
 #include <algorithm>

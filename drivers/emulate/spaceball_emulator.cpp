@@ -119,7 +119,7 @@ class SpaceballEmulator final : public Emulator {
   void ballOn(Timestamp now) {
     pending_ += model_ == spaceball::Model::k4000 ? "M\r" : "MSSV\r";
     on_ = true;
-    at_rest_ = false;  // so that a first packet is sent, even at rest
+    at_rest_ = false;  // so that a first packet is sent even at rest
     due_ = now;
     last_packet_ = now;
   }

@@ -11,8 +11,8 @@
 
 namespace merlin::emulate {
 
-// A process that wakes late sends the records that its device would have sent meanwhile, but at
-// most those of this time, which the buffer of a serial port can hold.
+// If the process wakes late, it sends the records that the device would have sent meanwhile, but
+// only those of this last period, which fit into the buffer of a serial port.
 inline constexpr Duration kLongestDelay = std::chrono::seconds(1);
 
 class Wire {
@@ -27,13 +27,13 @@ class Wire {
   bool free(Timestamp now) const noexcept { return now >= busy_until_; }
   Timestamp freeAt() const noexcept { return busy_until_; }
 
-  // A reply to a command: never dropped, sent after the bytes that are under way.
+  // Sends a reply to a command: it is never dropped, and follows the bytes that are under way.
   void reply(std::string_view bytes, Timestamp now, std::string& out) {
     occupy(bytes.size(), now);
     out += bytes;
   }
 
-  // A record of a stream. REQUIRES: free(now).
+  // Sends a record of a stream. REQUIRES: free(now).
   void record(std::string_view bytes, Timestamp now, std::string& out) {
     if (garbage_every_ > 0 && ++records_ % garbage_every_ == 0) {
       const auto burst = 1 + random_.below(12);

@@ -1,4 +1,4 @@
-// The names of the kernel's axes, as an AxisSource has them. Pure.
+// Names of the kernel's axes, as the text of an AxisSource contains them. Pure.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace merlin::evdev {
 
-// The kernel's number of the axis with this name of kAxisForms; nothing if there is none.
+// Returns the kernel's number of the axis that has this name in kAxisForms; nothing if none has it.
 std::optional<int> axisNumber(std::string_view name);
 
-// The name in kAxisForms of an axis's number; empty if it has none.
+// Returns the name in kAxisForms of the axis with this number; empty if it has none.
 std::string_view axisName(int code);
 
 }  // namespace merlin::evdev

@@ -9,12 +9,12 @@ namespace merlin {
 void describe(EvdevSettings& e, SettingsVisitor& v) {
   static const std::string kAxes = fmt::format(
       "Axis of the input device for each of x, y, z and the rotations about x, y, z, as six texts: "
-      "{}. Empty: as fits the kind of device.",
+      "{}. Empty: the axes that suit the kind of device.",
       kAxisForms);
   v.texts("axes", e.axes, kAxes.c_str());
   v.texts("buttons", e.buttons,
-          "Keys of the input device that are the buttons 1, 2 and so on of NAME.button.N in "
-          "bindings: the kernel's names without "
+          "Keys of the input device that count as its buttons 1, 2 and so on, which bindings call "
+          "NAME.button.1, NAME.button.2 and so on. They are given by the kernel's names without "
           "KEY_ or BTN_, in lower case, such as south, tl or pagedown. Empty: the first twelve "
           "buttons of the device. Bindings that name a key, NAME.key.pagedown, or a button, "
           "NAME.button.south, need no entry here.");

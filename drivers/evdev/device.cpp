@@ -7,8 +7,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A relative axis tells every 8 to 16 ms while it is pushed, and nothing when it is let go, also
-// while another one goes on: the kernel reports no motion by 0.
+// A relative axis without an event for this long is at rest. While it is pushed, it sends an event
+// every 8 to 16 ms; its release gives none, even while another axis moves, because the kernel does
+// not report a motion of 0.
 constexpr Duration kRelativeLasts = milliseconds(60);
 
 }  // namespace

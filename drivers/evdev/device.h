@@ -14,8 +14,8 @@
 
 namespace merlin::evdev {
 
-// open() reads the description, within 1 s. A device at rest is silent, so silence is no fault: the
-// connection ends when the device is unplugged.
+// open() reads the device's description, which takes at most 1 s. A device at rest is silent, so
+// silence is no fault: the connection ends when the device is unplugged.
 class EvdevDevice final : public Device {
  public:
   EvdevDevice(const EvdevSettings& settings, const Clock& clock, SampleSink& sink)

@@ -12,7 +12,7 @@
 namespace merlin::evdev {
 namespace {
 
-// Counts of a relative axis at full deflection: what 3Dconnexion's mice send.
+// Counts of a relative axis at full deflection, as 3Dconnexion's mice send them.
 constexpr std::int32_t kRelativeScale = 350;
 constexpr std::size_t kMostKeys = 768;  // the kernel's KEY_CNT
 constexpr std::size_t kLongestName = 200;
@@ -122,8 +122,8 @@ std::string InputDevice::choose(const EvdevSettings& settings) {
   return fmt::format("it has no {}, which the configuration names", fmt::join(lacking, ", no "));
 }
 
-// Positive is right for x and down or towards the person for y, as the kernel says; the README has
-// the table.
+// In the kernel, positive x is to the right, and positive y is down or towards the person; the
+// README has the table.
 AxisSources InputDevice::usualSources() const {
   const bool six =
       has(ABS_X) && has(ABS_Y) && has(ABS_Z) && has(ABS_RX) && has(ABS_RY) && has(ABS_RZ);
@@ -147,7 +147,8 @@ AxisSources InputDevice::usualSources() const {
           plain(ABS_Z), hat_x};
 }
 
-// Returns what is lacking, "axis throttle"; what it should move stays at rest.
+// Returns the missing axes, as "axis throttle"; the ball's axes that they should control stay at
+// rest.
 std::vector<std::string> InputDevice::chooseAxes(const std::vector<std::string>& names) {
   std::vector<std::string> lacking;
   sources_ = names.empty() ? usualSources() : AxisSources{};
@@ -165,7 +166,8 @@ std::vector<std::string> InputDevice::chooseAxes(const std::vector<std::string>&
   return lacking;
 }
 
-// Returns what is lacking, "key \"thumbr\""; the buttons after it keep their numbers.
+// Returns the missing keys, as "key \"thumbr\""; the buttons after a missing one keep their
+// numbers.
 std::vector<std::string> InputDevice::chooseButtons(const std::vector<std::string>& names) {
   buttons_.fill(0);
   if (names.empty()) chooseUsualButtons();

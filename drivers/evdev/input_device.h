@@ -1,5 +1,5 @@
-// InputDevice: the axes and keys of an input device of the kernel, their state, and what they mean
-// as a ball. Pure.
+// InputDevice: the axes and keys of an input device of the kernel, their state, and its conversion
+// to a ball's axes and buttons. Pure.
 #pragma once
 
 #include <array>
@@ -20,30 +20,30 @@ class InputDevice {
  public:
   // Takes one record of the description, or of the state that follows it.
   void describe(const EvdevRecord& record);
-  // Takes one record of the events, which arrived at `at`; one about an axis or key that was not
+  // Takes one record of an event, which arrived at `at`; an event of an axis or key that was not
   // described is ignored. Allocates nothing.
   void take(const EvdevRecord& record, Timestamp at) noexcept;
 
   // Chooses axes and buttons by the settings, or by the kind of device; to be called once the
-  // description is complete. Returns a sentence about all that the settings name and the device
-  // lacks; empty: nothing. The rest of the settings has effect as it stands.
+  // description is complete. Returns a sentence that lists what the settings name and the device
+  // lacks; empty if it lacks nothing. The other settings take effect all the same.
   std::string choose(const EvdevSettings& settings);
 
   // Writes the present state into `sample`: axes, raw values (fillAxes() of drivers/port/axes.h),
   // buttons and keys. Allocates nothing.
   void fill(BallSample& sample) const noexcept;
-  // Puts each relative axis, which only tells that it moves, to rest if it has told nothing since
-  // `since`. Returns whether one was not at rest before.
+  // Sets each relative axis to rest if no event of it has arrived since `since`: such an axis
+  // reports motion, but not its end. Returns whether any of them was not at rest before.
   bool restRelative(Timestamp since) noexcept;
 
   const std::string& name() const noexcept { return name_; }
   std::size_t axes() const noexcept;
   std::size_t keys() const noexcept { return keys_.size(); }
-  // All of them, by the names that settings use, in the order of the kernel's numbers. An axis that
-  // settings cannot name is left out.
+  // All axes, or all keys, by the names that settings use, in the order of the kernel's numbers. An
+  // axis that settings cannot name is left out.
   std::vector<std::string> axisNames() const;
   std::vector<std::string> keyNames() const;
-  // Where each axis of axisNames() stands. Allocates; for calibration.
+  // Deflections of the axes of axisNames(). Allocates; for calibration.
   std::vector<AxisReading> readings() const;
   // The axes and keys that choose() selected.
   const AxisSources& sources() const noexcept { return sources_; }
@@ -61,7 +61,7 @@ class InputDevice {
     std::string name;
     bool pressed = false;
   };
-  static constexpr std::size_t kAxes = 0x18;  // the numbers in kAxisForms
+  static constexpr std::size_t kAxes = 0x18;  // axes in kAxisForms have lower numbers
   static constexpr std::size_t kButtons = 12;
 
   Axis* axis(std::uint16_t code) noexcept;

@@ -12,13 +12,13 @@ namespace merlin {
 class SettingsVisitor;
 
 struct EvdevSettings {
-  // For x, y, z and the rotations about them: the axis that moves it, in a form of kAxisForms.
-  // Empty: as fits the kind of device (drivers/evdev/README.md).
+  // For x, y, z and the rotations about them: the device's axis that controls each, in one of the
+  // forms of kAxisForms. Empty: chosen by the kind of device (drivers/evdev/README.md).
   std::vector<std::string> axes;
   // The keys that are NAME.button.1, 2 and so on in bindings, by the kernel's names without KEY_ or
   // BTN_. Empty: the first twelve buttons of the device, in the order of the kernel's numbers.
   std::vector<std::string> buttons;
-  double dead_zone = 0.08;  // share of the full deflection up to which an axis counts as at rest
+  double dead_zone = 0.08;  // up to this share of full deflection an axis counts as at rest
   double curve = 2;         // exponent of the response: 1 is linear, more is finer near rest
 };
 
@@ -28,7 +28,7 @@ inline constexpr const char* kAxisForms =
     "wheel, gas, brake, hat0x ... hat3y), with - before it if it is reversed; two names with - "
     "between them, for a pair of triggers; and none";
 
-// Finds axes and buttons that cannot be, and a port at which no input device can be. Pointers:
+// Finds invalid axes and buttons, and a port that cannot be that of an input device. Pointers:
 // "/evdev/axes", "/evdev/axes/INDEX", "/evdev/buttons", "/evdev/buttons/INDEX", "/port".
 SettingFaults validate(const EvdevSettings& settings, const LineSettings& line);
 

@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr Duration kPollTime = milliseconds(250);
-constexpr Duration kQuiet = milliseconds(200);  // without a byte: no record is under way
+constexpr Duration kQuiet = milliseconds(200);  // without a byte: then no record is being sent
 constexpr Duration kReplyTime = milliseconds(400);
 constexpr Duration kMostDrain = seconds(1);
 constexpr Duration kPatience = milliseconds(1200);  // time for which open() repeats its query
@@ -31,7 +31,7 @@ constexpr std::string_view kStop = "c";
 constexpr float kMetresPerInch = 0.0254F;
 constexpr float kMetresPerCentimetre = 0.01F;
 
-// The orientation relative to the one that counts as straight ahead: q * conj(ahead).
+// Returns the orientation relative to the one that counts as straight ahead: q * conj(ahead).
 std::array<float, 4> ofBoresight(const std::array<float, 4>& q, const std::array<float, 4>& a) {
   if (a == FastrakSettings::kAhead) return q;
   return {q[0] * a[0] + q[1] * a[1] + q[2] * a[2] + q[3] * a[3],
@@ -52,7 +52,7 @@ float furthestOf(const FastrakSettings& settings) {
   return settings.centimetres ? cm : cm * kMetresPerCentimetre / kMetresPerInch;
 }
 
-// Whether the line works, but the unit did not answer, or not as a Fastrak does.
+// Whether the fault lies in the unit, not in the line: no answer, or not that of a Fastrak.
 bool isOfTheBox(const Error& error) noexcept {
   return error.code == Errc::kTimeout || error.code == Errc::kMalformed;
 }
@@ -80,7 +80,8 @@ Result<std::string> FastrakDevice::open(ByteStream& stream) {
 }
 
 Result<std::string> FastrakDevice::talk(Dialogue& dialogue) {
-  // Not every time: a unit that was only disconnected would ignore its input for another 10 s.
+  // Restarts only after several failures, because a unit that was only disconnected would then
+  // ignore its input for another 10 s.
   const bool restart = failures_ > 0 && failures_ % kFailuresBeforeRestart == 0;
   const Timestamp deadline = clock_.now() + (restart ? kStartTime : kPatience);
   if (restart) {

@@ -39,7 +39,7 @@ class FastrakDevice final : public Device {
   SampleSink& sink_;
   Layout layout_;
   Parser parser_;
-  std::array<TrackerSample, kStations> sample_{};  // the newest of each station
+  std::array<TrackerSample, kStations> sample_{};  // newest sample of each station
   std::uint64_t samples_ = 0;
   Timestamp last_record_{};
   int failures_ = 0;  // consecutive calls of open() in which the unit did not answer correctly

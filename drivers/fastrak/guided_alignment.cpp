@@ -28,7 +28,7 @@ constexpr int kLeastSamples = 3;
 constexpr double kMostSpread_m = 0.01;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMostSpread_rad = 3 * kDegree;
-// At 10 cm a millimetre of error turns an axis by half a degree.
+// At a distance of 10 cm, an error of 1 mm turns an axis by half a degree.
 constexpr double kLeastDistance_m = 0.1;
 constexpr double kLeastAngle_rad = 30 * kDegree;
 
@@ -140,7 +140,7 @@ Result<HeldPose> GuidedAlignment::end() {
   return held;
 }
 
-// Checks that the place, with the earlier ones, determines a frame.
+// Checks that this place and the earlier ones determine a frame.
 Result<Ok> GuidedAlignment::checkPlace(const HeldPose& held) const {
   if (step_ != kOnX && step_ != kOnY) return Ok{};
   const Vector3d arm = position(held) - position(*held_[kOrigin]);

@@ -13,7 +13,7 @@
 
 namespace merlin::fastrak {
 
-// Frame in which samples of one station are given; as in FastrakSettings.
+// Frame in which the samples of one station are given, in the form of FastrakSettings.
 struct StationFrame {
   std::array<float, 9> alignment_cm = FastrakSettings::kAligned;
   std::array<float, 4> boresight_wxyz = FastrakSettings::kAhead;
@@ -38,7 +38,7 @@ TrackerSample inTransmitterFrame(const TrackerSample& sample, const StationFrame
 
 class GuidedAlignment {
  public:
-  // `present`: the frame of the samples that add() will get.
+  // `present`: the frame of the samples that are passed to add().
   explicit GuidedAlignment(const StationFrame& present) : present_(present) {}
 
   void begin(std::size_t step);  // starts or restarts a step; later samples belong to it
@@ -49,9 +49,9 @@ class GuidedAlignment {
   // on one line).
   Result<HeldPose> end();
 
-  // The frame by the steps that ended without an error. Without the places, the present alignment
-  // is kept; without the last step, the orientation that counts as straight ahead is kept,
-  // expressed in the new frame. REQUIRES: all three places, or none of them.
+  // Returns the frame that follows from the steps that ended without an error. Without the places,
+  // the present alignment is kept; without the last step, the orientation that counts as straight
+  // ahead is kept, expressed in the new frame. REQUIRES: all three places, or none of them.
   StationFrame solve() const;
 
  private:

@@ -37,7 +37,7 @@ std::optional<int> number(std::string_view text, int base) noexcept {
 
 bool isStation(char c) noexcept { return c >= '1' && c <= '4'; }
 
-constexpr float kHalfScale = 8192;  // counts of a 14-bit number for 300 cm, 180 degrees, 1
+constexpr float kHalfScale = 8192;  // a 14-bit number's counts for 300 cm, 180 degrees or 1
 constexpr std::uint8_t kPhase = 0x80;
 
 void appendNumbers(std::string& out, std::span<const float> values, bool binary, int decimals) {
@@ -139,7 +139,7 @@ std::optional<Record> Parser::feed(std::byte byte, std::int64_t received_ns) noe
   return take();
 }
 
-// Whether the window contains a record or can be the beginning of one; true if it is empty.
+// Whether the window is a record or can be the beginning of one; true if it is empty.
 bool Parser::plausible() const noexcept {
   if (length_ > 0 && window_[0] != '0') return false;
   if (length_ > 1 && !isStation(static_cast<char>(window_[1]))) return false;

@@ -39,11 +39,11 @@ struct Layout {
   enum class Numbers { kBinary, kText, kShort };
   Numbers numbers = Numbers::kBinary;
   bool angles = false;                  // azimuth, elevation, roll instead of the quaternion
-  bool stylus = false;                  // with item 16, the stylus switch
+  bool stylus = false;                  // the record includes item 16, the stylus switch
   bool centimetres = true;              // positions in cm, otherwise in inches
   float furthest = 500;                 // largest valid coordinate [cm or inches]
-  std::size_t length() const noexcept;  // of a record [bytes]
-  std::string items() const;            // of the output list: "2,11,0"
+  std::size_t length() const noexcept;  // length of a record [bytes]
+  std::string items() const;            // text of the output list: "2,11,0"
 };
 
 // A window slides over the stream. Its content is a record if the fixed bytes are right, the
@@ -77,7 +77,7 @@ class Parser {
   Layout layout_;
   std::size_t record_length_ = kRecordLength;
   std::array<std::uint8_t, kLongest + 1> window_{};
-  std::array<std::int64_t, kLongest + 1> received_ns_{};  // of each byte in the window
+  std::array<std::int64_t, kLongest + 1> received_ns_{};  // arrival of each byte in the window
   std::size_t length_ = 0;
   bool locked_ = true;  // in synchronisation: the window starts where a record ended
   std::uint64_t bad_packets_ = 0;
@@ -90,7 +90,7 @@ struct Status {
   bool centimetres = false;
   bool compensation = false;
   bool continuous = false;
-  int test_error = 0;             // of the built-in test; 0: none
+  int test_error = 0;             // error of the built-in test; 0: none
   std::string firmware = "3.00";  // at most 6 characters
   std::string configuration;      // at most 32 characters
 };
@@ -102,8 +102,8 @@ std::optional<Status> parseStatus(std::string_view reply);
 using Stations = std::array<bool, kStations>;
 std::optional<Stations> parseStations(std::string_view reply) noexcept;
 
-// Inverse of the parser, for the emulator; has more forms than the driver requests. Items of an
-// output list: 0 blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 5 to 7 direction
+// Inverse of the parser, for the emulator; supports more forms than the driver requests. Items of
+// an output list: 0 blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 5 to 7 direction
 // cosines of the axes, 11 quaternion, 16 stylus switch; 18, 19 and 20: 2, 4 and 11 as 14-bit
 // numbers.
 bool isItem(int item) noexcept;

@@ -7,7 +7,7 @@ namespace merlin {
 
 class SettingsVisitor;
 
-inline constexpr int kFastrakBaud = 38400;  // speed of its line, as it is delivered
+inline constexpr int kFastrakBaud = 38400;  // factory setting of its line
 
 struct FastrakSettings {
   // For each station a vector, in the transmitter's frame, that points into the hemisphere in which

@@ -9,7 +9,7 @@
 namespace merlin::gpio {
 namespace {
 
-constexpr Duration kSlow = std::chrono::seconds(1);  // half a period of the lamp
+constexpr Duration kSlow = std::chrono::seconds(1);  // half periods of the lamp
 constexpr Duration kFast = std::chrono::milliseconds(125);
 
 Duration halfPeriod(GpioSample::Lamp lamp) { return lamp == GpioSample::kLampSlow ? kSlow : kFast; }
@@ -20,8 +20,8 @@ bool blinks(GpioSample::Lamp lamp) {
 
 }  // namespace
 
-// The earlier state of the projectors is unknown: assumes that they are off; the interlock time
-// starts now.
+// The earlier state of the projectors is unknown. The panel assumes that they are off, and starts
+// the interlock time now.
 Panel::Panel(const GpioSettings& settings, Timestamp now)
     : settings_(settings), switched_(now), phase_until_(now), changed_(now), raw_since_(now) {}
 

@@ -26,15 +26,15 @@ class Panel {
   // "lamp_on". Errors: kInvalidArgument (no such command), kBusy (the projectors cool down or were
   // just switched), with the seconds to wait.
   Result<Ok> execute(std::string_view command, Timestamp now);
-  // While it is on, the lamp blinks fast, whatever it was switched to.
+  // While the warning is on, the lamp blinks fast, whatever its switched state.
   void warn(bool on, Timestamp now);
 
-  // Advances the state to `now`; the button's line reads `pressed`. Returns true once for each
-  // press, when the button has been down for the debounce time.
+  // Advances the state to `now`; `pressed` is the level of the button's line. Returns true once for
+  // each press, when the button has been down for the debounce time.
   bool step(bool pressed, Timestamp now);
 
   Outputs outputs(Timestamp now) const;
-  // Time until the projectors have warmed up or cooled down; 0: they do neither.
+  // Time until the projectors have warmed up or cooled down; 0 if they do neither.
   Duration phaseLeft(Timestamp now) const;
   GpioSample sample(Timestamp now) const;
 
@@ -49,13 +49,13 @@ class Panel {
 
   GpioSettings settings_;
   GpioSample::Power power_ = GpioSample::kOff;
-  GpioSample::Lamp lamp_ = GpioSample::kLampOff;  // as it was switched
+  GpioSample::Lamp lamp_ = GpioSample::kLampOff;  // the lamp's state without a warning
   bool warns_ = false;
   bool video_ = false;
   Timestamp switched_, phase_until_;  // projectors: last switched; end of warming or cooling
   Timestamp changed_;
   std::uint32_t counter_ = 0, presses_ = 0;
-  bool raw_ = false, down_ = false;  // button: as last read; as debounced
+  bool raw_ = false, down_ = false;  // the button as last read, and debounced
   Timestamp raw_since_;
 };
 

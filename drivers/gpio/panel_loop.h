@@ -49,7 +49,7 @@ class PanelLoop {
   Panel panel_;
   std::string lost_ = "the panel's chip is not open yet";
   DeviceHealth health_{};
-  bool fresh_ = true;  // the lines have not been written since the chip was opened
+  bool fresh_ = true;  // no line has been written since the chip was opened
   Outputs written_;
 };
 

@@ -13,7 +13,7 @@ struct GpioSettings {
   int projector_line = -1;  // high: power
   int video_line = -1;      // low: A, high: B
   int lamp_line = -1;       // high: lit
-  bool lamp_warns = true;   // it blinks fast while the wall needs somebody
+  bool lamp_warns = true;   // the lamp blinks fast while the wall needs attention
   int button_line = -1;     // high while pressed
   double warm_up_s = 30;    // time from switching projectors on until they show an image
   double cool_down_s = 90;  // time after switching off for which they must not be switched on

@@ -7,14 +7,14 @@ namespace merlin::hand {
 namespace {
 
 constexpr double kFull = 2 * std::numbers::pi;
-constexpr double kAhead_s = 1;  // longest time that a move begins before what was planned
+constexpr double kAhead_s = 1;  // maximum overlap of a move with the plan before it
 constexpr double kLongestGap_s = 0.25;
 constexpr double kSway_m = 0.006, kSway_hz[] = {0.19, 0.27, 0.34}, kTremor_hz[] = {8.3, 9.1, 10.2};
-constexpr Vector3 kDown{0.18, -0.40, -0.08};  // of the hand against the shoulders' middle [m]
+constexpr Vector3 kDown{0.18, -0.40, -0.08};  // hand relative to the middle of the shoulders [m]
 constexpr Vector3 kReady{0.15, -0.05, -0.38};
 // Duration of an unhurried reach.
 constexpr double kReach_s = 0.40, kReach_s_per_m = 0.6, kReach_s_per_rad = 0.15;
-constexpr double kStand_m = 1.2, kFar_m = 1.5;  // from the transmitter
+constexpr double kStand_m = 1.2, kFar_m = 1.5;  // distances from the transmitter
 constexpr std::int64_t kStart_ns = 1'000'000'000;
 
 }  // namespace
@@ -70,8 +70,8 @@ Vector3 Actor::about(const Vector3& place, double deviation) {
   return p;
 }
 
-// The hand is brought to where the stroke has room, rests a moment or hardly, makes the gesture,
-// and goes back at once, or stays and is taken down or up again later.
+// The hand moves to a place from which the stroke has room, rests there for a short time, makes the
+// gesture, and either goes back at once or stays and moves on later.
 void Actor::makeGesture(const MovingGesture& gesture) {
   const MovingPerson::Take take = person_.take(gesture, random_);
   Vector3 start = about(kReady, 0.04);
@@ -155,7 +155,7 @@ void Actor::turnModel() {
     for (double& t : way.turn_rad) t = 0.35 * random_.normal();
     way.turn_rad[2] = 0.6 * random_.normal();
     const HandState end = hand_.end();
-    for (std::size_t i = 0; i < 3; ++i) {  // back towards the middle
+    for (std::size_t i = 0; i < 3; ++i) {  // start away from the stroke, towards the middle
       way.position_m[i] += 0.5 * (kReady[i] * person_.size() - end.position_m[i]);
       way.turn_rad[i] -= 0.6 * end.turn_rad[i];
     }
@@ -183,7 +183,7 @@ void Actor::walk() {
   const double step_m = random_.uniform(0.4, 0.7);
   double angle = kFull * random_.uniform();
   const Vector3 stands = body_.end().position_m;
-  if (std::hypot(stands[0], stands[2] - kStand_m) > kFar_m)  // the cable ends: back
+  if (std::hypot(stands[0], stands[2] - kStand_m) > kFar_m)  // at the end of the cable: turn back
     angle = std::atan2(kStand_m - stands[2], -stands[0]);
   const Vector3 ahead{std::cos(angle), 0, std::sin(angle)};
   for (std::uint64_t n = 3 + random_.below(6); n > 0; --n) {
@@ -204,7 +204,7 @@ void Actor::rest() {
   wait(random_.uniform(2, 8));
 }
 
-// Beats of a speaker's hand: small and brisk, seldom large.
+// The gestures of a speaker's hand: small and brisk, seldom large.
 void Actor::talk() {
   goTo(about({0.15, -0.12, -0.28}, 0.05), 0.3 * random_.normal(), 0.03);
   for (std::uint64_t n = 4 + random_.below(8); n > 0; --n) {

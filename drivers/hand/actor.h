@@ -1,5 +1,5 @@
-// Actor: strings together what a synthetic person does, and samples it as the person's tracker
-// would. Pure, seeded. For movement_recording.
+// Actor: plans the motions of a synthetic person one after the other, and samples them as the
+// person's tracker would. Pure, seeded. Used by movement_recording.
 #pragma once
 
 #include "drivers/hand/movement_recording.h"
@@ -15,14 +15,14 @@ class Actor {
   void goAbout(Ordinary kind);
 
   double seconds() const { return planned_s_; }
-  Performance finish();  // samples what was planned last; the actor is used up
+  Performance finish();  // samples the rest of the plan; the actor must not be used again
 
  private:
-  void wait(double seconds);  // less than 0: the next move begins before the last one has ended
+  void wait(double seconds);  // negative: the next move begins before the last one has ended
   void move(const HandState& way, double seconds, double bow = 0);
-  // `seconds`: 0 for an unhurried reach of this length.
+  // `seconds`: 0 chooses the time of an unhurried reach over this distance.
   void goTo(const Vector3& place, double roll_rad, double bow, double seconds = 0);
-  double pace(double low_s, double high_s);  // a duration of this person's
+  double pace(double low_s, double high_s);  // a random duration, scaled by the person's tempo
   Vector3 about(const Vector3& place, double deviation);
 
   void point();
@@ -39,14 +39,14 @@ class Actor {
 
   const MovingPerson& person_;
   Random random_, noise_;
-  Movement hand_;  // against the body
+  Movement hand_;  // the hand relative to the body
   Movement body_;  // where the person stands
   double planned_s_ = 1;
-  double next_s_ = 0;  // of the next record
+  double next_s_ = 0;  // time of the next record
   double gap_until_s_ = 0, gap_at_s_;
   std::int64_t last_ns_ = 0;
   std::uint32_t counter_ = 0;
-  std::array<double, 6> phase_{};  // of sway and tremor
+  std::array<double, 6> phase_{};  // phases of sway and tremor
   Performance done_;
 };
 

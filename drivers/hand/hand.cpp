@@ -8,8 +8,8 @@ namespace merlin::hand {
 namespace {
 
 constexpr float kLongestGap_s = 0.2F;  // between records; after it the filter restarts
-constexpr float kSpeedCutoff_hz = 4;   // of the low-pass on the velocities
-constexpr float kReach_m = 0.3F;       // for the speed, 1 rad/s counts as 0.3 m/s
+constexpr float kSpeedCutoff_hz = 4;   // low-pass on the velocities
+constexpr float kReach_m = 0.3F;       // in the speed, 1 rad/s counts as 0.3 m/s
 constexpr std::int64_t kOldestGlove_ns = 500'000'000;
 constexpr float kFurthest_s = 0.1F;
 

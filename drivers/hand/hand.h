@@ -20,7 +20,7 @@ std::optional<std::size_t> jointNamed(std::string_view name);
 // Smooths with a low-pass filter whose cut-off rises with the hand's speed, so that a hand at rest
 // does not tremble and a fast one has little delay: G. Casiez et al., "1 Euro Filter: A Simple
 // Speed-based Low-pass Filter for Noisy Input in Interactive Systems", CHI 2012. It delays the pose
-// by 1 / (2 pi cut-off), like any first-order low-pass; each sample contains the delay.
+// by 1 / (2 pi cut-off), like any first-order low-pass; each sample states this delay.
 // Thread-bound.
 class Hand {
  public:

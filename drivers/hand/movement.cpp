@@ -7,7 +7,7 @@ namespace merlin::hand {
 namespace {
 
 constexpr double kFull = 2 * std::numbers::pi;
-constexpr double kSpeedUp = 0.15;  // share of a circle's time in which its speed grows, and falls
+constexpr double kSpeedUp = 0.15;  // share of a circle's time for speeding up, and for slowing down
 
 void addShare(Vector3& to, const Vector3& what, double share = 1) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += share * what[i];
@@ -18,7 +18,8 @@ void addShare(HandState& to, const HandState& what, double share = 1) {
   addShare(to.turn_rad, what.turn_rad, share);
 }
 
-// Share of a circle that is done: the speed grows, stays, and falls.
+// Share of a circle that is done at `share` of its time: the speed rises, stays constant, and
+// falls.
 double evenly(double share) {
   const double x = std::clamp(share, 0.0, 1.0), a = kSpeedUp, top = 1 / (1 - a);
   if (x < a) return top * x * x / (2 * a);
@@ -33,7 +34,7 @@ Vector3 onEllipse(const Move& move, double angle) {
           right * std::sin(move.plane_rad)};
 }
 
-// What `move` adds at `share` of its time.
+// Contribution of `move` at `share` of its time.
 HandState partOf(const Move& move, double share) {
   const double s = minimumJerk(std::pow(std::clamp(share, 0.0, 1.0), move.skew));
   HandState part{};

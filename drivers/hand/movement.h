@@ -29,21 +29,21 @@ Quaternion product(const Quaternion& a, const Quaternion& b);
 Quaternion aboutAxis(std::size_t axis, double angle_rad);
 Vector3 rotated(const Quaternion& q, const Vector3& v);
 
-// From begin_s on, for `seconds`, position and turn change by `way`. Beyond that the path bends by
-// `bow_m` in the middle of the way, and follows an ellipse that returns to where it began.
+// From begin_s on, for `seconds`, position and turn change by `way`. To this the path adds a bend,
+// of `bow_m` in the middle of the way, and an ellipse that returns to its beginning.
 struct Move {
   double begin_s = 0, seconds = 1;
   HandState way{};
   Vector3 bow_m{};
   double skew = 1;  // above 1: the greatest speed comes later; 1: in the middle
-  // The ellipse: radii to the right and up, number of times around (clockwise positive), where on
-  // it the way begins (0: at the top, clockwise), and how far its plane is turned about the
+  // The ellipse: radii to the right and up, number of times around (clockwise positive), the angle
+  // at which it begins (0 is the top; clockwise positive), and the rotation of its plane about the
   // vertical axis.
   std::array<double, 2> radius_m{};
   double turns = 0, start_rad = 0, plane_rad = 0;
 };
 
-// Share of a move that is done at `share` of its time: 0..1, a bell-shaped speed.
+// Share of a move, 0..1, that is done at `share` of its time; the speed is bell-shaped.
 double minimumJerk(double share);
 
 // Thread-bound.
@@ -52,13 +52,14 @@ class Movement {
   explicit Movement(const HandState& at) : base_(at) {}
 
   void add(const Move& move) { moves_.push_back(move); }
-  // Where the hand is. REQUIRES: t_s never falls. Cost: linear in the moves that have not ended.
+  // State of the hand at `t_s`. REQUIRES: t_s is not below that of an earlier call. Cost: linear in
+  // the moves that have not ended.
   HandState at(double t_s);
-  // Where it will be when all moves have ended.
+  // State of the hand after the end of all moves.
   HandState end() const;
 
  private:
-  HandState base_;  // with all moves that have ended
+  HandState base_;  // the start plus all moves that have ended
   std::vector<Move> moves_;
 };
 

@@ -1,5 +1,5 @@
-// Recordings of synthetic people who move: sessions of gestures in time, and of ordinary motion in
-// which nobody makes one. Pure, seeded.
+// Recordings of synthetic people who move: sessions with gestures in time, and with ordinary motion
+// that contains no gesture. Pure, seeded.
 #pragma once
 
 #include <cstdint>
@@ -30,18 +30,18 @@ struct MadeGesture {
   std::int64_t began_ns, ended_ns;
 };
 
-// What the tracker's station 1 says, in the transmitter's frame (x away from the cable towards the
-// person, y left and z down as the person sees it), and what was meant.
+// Samples of the tracker's station 1, in the transmitter's frame (x away from the cable towards the
+// person, y left and z down as the person sees it), and the gestures that were made in them.
 struct Performance {
   std::vector<TrackerSample> samples;
   std::vector<MadeGesture> made;
 };
 
-// The person makes each gesture `times` times, all in random order, with what lies between them:
-// the hand is raised and brought to where the gesture begins, rests a moment, and is taken back.
+// The person makes each gesture `times` times, all in random order. Around each of them the hand is
+// raised to the place where the gesture begins, rests a moment, and is taken back.
 Performance makeGestures(const MovingPerson& person, std::size_t times, std::uint64_t seed);
 
-// At least `seconds` of ordinary motion; of one kind, or of all in turn.
+// Records at least `seconds` of ordinary motion: of one kind, or of all kinds in turn.
 Performance goAbout(const MovingPerson& person, double seconds, std::uint64_t seed);
 Performance goAbout(const MovingPerson& person, Ordinary kind, double seconds, std::uint64_t seed);
 

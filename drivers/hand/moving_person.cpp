@@ -20,7 +20,7 @@ constexpr MovingGesture kGestures[] = {
 };
 
 constexpr double kRates_hz[] = {30, 60, 90, 120};
-constexpr double kLeastTurns = 0.95;  // of a circle
+constexpr double kLeastTurns = 0.95;  // minimum, of a circle
 constexpr double kWindUp = 0.25;      // share of people who swing back before a stroke
 
 std::uint64_t hash(std::string_view text) {
@@ -46,7 +46,7 @@ TrackerTraits drawTracker(Random& random) {
 
 }  // namespace
 
-// What one person always does in one gesture.
+// The constant peculiarities of one person in one gesture.
 struct MovingPerson::Habit {
   double size = 1, time = 1, skew = 1;
   Vector3 slant_rad{}, bow{};
@@ -157,7 +157,7 @@ void MovingPerson::goAlong(Move& stroke, const MovingGesture& gesture, const Hab
   }
   if (gesture.way.turn_rad[2] == 0) {
     stroke.way.turn_rad[2] = habit.roll_rad + stray(0.06, random);
-  } else {  // a twist moves the hand as well
+  } else {  // a twist also displaces the hand
     for (double& way : stroke.way.position_m) way += stray(0.015, random);
   }
 }

@@ -20,10 +20,10 @@ namespace merlin::hand {
 // A gesture in time, as the average person makes it.
 struct MovingGesture {
   const char* name = "";
-  double seconds = 1;   // for a circle: of one turn
-  HandState way{};      // of a stroke
-  double radius_m = 0;  // of a circle; 0: it is a stroke
-  double turns = 0;     // of a circle: 1 clockwise, -1 the other way
+  double seconds = 1;   // duration; for a circle, that of one turn
+  HandState way{};      // change of position and turn in a stroke
+  double radius_m = 0;  // radius of a circle; 0: the gesture is a stroke
+  double turns = 0;     // turns of a circle: 1 clockwise, -1 the other way
 };
 
 // swipe_left, swipe_right, swipe_up, swipe_down, push, pull, circle_clockwise,
@@ -31,21 +31,22 @@ struct MovingGesture {
 std::span<const MovingGesture> movingGestures();
 const MovingGesture* findMovingGesture(std::string_view name);  // nullptr if there is none
 
-// Standard deviations of the people; `person`: from one to another, `habit`: of one person's
-// gesture, `take`: each time. Sizes and times: of a factor's logarithm.
+// Standard deviations: `person` from one person to another, `habit` from one gesture of a person to
+// another, `take` from one time to another. Those of size and time apply to the logarithm of a
+// factor.
 struct MoverSettings {
   double size_person = 0.14, size_habit = 0.12, size_take = 0.08;
   double time_person = 0.14, time_habit = 0.10, time_take = 0.09;
-  double slant_habit_rad = 0.14, slant_take_rad = 0.07;  // of a stroke's direction
-  double body_yaw_rad = 0.20, body_lean_rad = 0.09;      // how the person stands to the wall
+  double slant_habit_rad = 0.14, slant_take_rad = 0.07;  // direction of a stroke
+  double body_yaw_rad = 0.20, body_lean_rad = 0.09;      // how the body faces the wall
   double mount_rad = 0.10;                               // how the receiver sits, about each axis
-  double bow_habit = 0.08, bow_take = 0.04;              // of a stroke's bend, share of its length
+  double bow_habit = 0.08, bow_take = 0.04;              // bend of a stroke, share of its length
 };
 
-// What a tracker does to the path. One is drawn for each person.
+// Errors of a tracker's measurement. They are drawn at random for each person.
 struct TrackerTraits {
   double rate_hz = 120;
-  double jitter_s = 0.001;                      // of a record's arrival
+  double jitter_s = 0.001;                      // standard deviation of a record's arrival
   double position_m = 0.001, turn_rad = 0.004;  // noise
   double lost = 0.01;                           // share of single records that are lost
   double gap_every_s = 20;  // mean time between gaps of up to a quarter of a second
@@ -64,22 +65,23 @@ class MovingPerson {
   };
   Take take(const MovingGesture& gesture, Random& random) const;
 
-  // Rotation that takes what the person sees to what the wall sees, and that of the receiver.
+  // body(): rotation from the person's frame to the wall's. mount(): rotation of the receiver on
+  // the hand.
   const Quaternion& body() const { return body_; }
   const Quaternion& mount() const { return mount_; }
   const TrackerTraits& tracker() const { return tracker_; }
-  double size() const { return size_; }   // of the arm: a factor
+  double size() const { return size_; }   // factor on all lengths
   double tempo() const { return time_; }  // a factor on all durations
   double tremor_m() const { return tremor_m_; }
-  // Share of takes after which the hand goes back at once, and how fast: share of the stroke's
-  // speed.
+  // Share of takes after which the hand goes back at once, and the speed of that return as a share
+  // of the stroke's speed.
   double returns() const { return returns_; }
   double return_speed() const { return return_speed_; }
 
  private:
   struct Habit;
   Habit habitOf(const MovingGesture& gesture) const;
-  // A factor and a difference of one take; 1 and 0 for the average person.
+  // Draw a factor (vary) and an offset (stray) for one take; 1 and 0 for the average person.
   double vary(double deviation, Random& random) const;
   double stray(double deviation, Random& random) const;
   void goRound(Move& circle, const MovingGesture& gesture, const Habit& habit, double size,

@@ -17,20 +17,20 @@ using Angles = std::array<float, kGloveSlots>;  // joint angles in slot order [r
 
 // Standard deviations. "Share" means: relative to the joint's range of angles, kJointSpans.
 struct PeopleSettings {
-  double size = 0.04;          // of a factor on the bends of all joints of a person
-  double joint = 0.03;         // of a factor on the bends of a single joint of a person
-  double fit = 0.025;          // of a sensor's zero, by the fit of the glove, share
-  double habit = 0.045;        // of a joint in one posture of one person, share
-  double take = 0.02;          // of a joint each time that the person takes the posture, share
-  double wrist = 0.15;         // of the wrist each time, share; no posture depends on the wrist
-  double tremor = 0.006;       // of a joint from sample to sample, share
-  double cross_talk = 0.04;    // of the part of each neighbour's bend that a sensor measures
-  double sensor_counts = 0.6;  // of a sensor's noise [raw counts]
+  double size = 0.04;          // a factor on the bends of all joints of a person
+  double joint = 0.03;         // a factor on the bends of a single joint of a person
+  double fit = 0.025;          // a sensor's zero, because of the glove's fit, share
+  double habit = 0.045;        // a joint in one posture of one person, share
+  double take = 0.02;          // a joint each time that the person takes the posture, share
+  double wrist = 0.15;         // the wrist each time, share; no posture depends on it
+  double tremor = 0.006;       // a joint from sample to sample, share
+  double cross_talk = 0.04;    // the part of each neighbour's bend that a sensor measures
+  double sensor_counts = 0.6;  // a sensor's noise [raw counts]
 };
 
 struct JointSpan {
   float low_rad, high_rad;  // range of angles of the joint
-  float rad_per_count;      // of the 8-bit sensor, as in the default calibration
+  float rad_per_count;      // resolution of the 8-bit sensor, as in the default calibration
 };
 extern const std::array<JointSpan, kGloveSlots> kJointSpans;
 
@@ -43,7 +43,7 @@ class Person {
   // Joint angles with which this person habitually holds `shape`; the habit depends on its name.
   Angles pose(const Shape& shape) const;
 
-  // The same, with the random variation of one time.
+  // Like pose(), with the random variation of a single take.
   Angles take(const Shape& shape, Random& random) const;
 
   // Calibrated output of the glove when this person makes a gesture in which the average person's
@@ -55,7 +55,7 @@ class Person {
   PeopleSettings settings_;
   std::uint64_t seed_;
   Angles bend_{}, fit_rad_{};                             // factor and offset of each slot
-  std::array<std::array<float, 2>, kGloveSlots> leak_{};  // from the slots before and after
+  std::array<std::array<float, 2>, kGloveSlots> leak_{};  // cross-talk of the slots beside it
 };
 
 }  // namespace merlin::hand

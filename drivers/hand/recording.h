@@ -11,7 +11,7 @@
 namespace merlin::hand {
 
 struct Shot {
-  const char* shape = nullptr;  // that is held; nullptr in the transition between two
+  const char* shape = nullptr;  // name of the held shape; nullptr in a transition between two
   Angles angle_rad{};           // as the glove measures them
 };
 
@@ -27,8 +27,8 @@ struct RecordingSettings {
 std::vector<Shot> record(std::span<const Shape> shapes, const RecordingSettings& settings,
                          std::uint64_t seed);
 
-// Progress of a slot in the transition from one shape to another, 0..1, with slope 0 at both ends.
-// The fingers start one after the other, the thumb first. `share`: elapsed share of the
+// Progress of a slot in the transition from one shape to another, 0..1; its slope is 0 at both
+// ends. The fingers start one after the other, the thumb first. `share`: elapsed share of the
 // transition's time.
 double wayDone(std::size_t slot, double share);
 

@@ -6,8 +6,8 @@
 namespace merlin {
 
 struct HandSettings {
-  std::string name = "hand";  // of its slot in shared memory; unique among hands and devices
-  std::string person;         // whose it is, as in the settings of devices
+  std::string name = "hand";  // name of its slot in shared memory; unique among hands and devices
+  std::string person;         // its owner, as in the settings of devices
   std::string glove;          // name of the glove that it wears; empty: the first glove; kNoGlove
   std::string tracker;        // name of the tracker that follows it; empty: the first tracker
   int station = 1;            // the tracker's station that is on the hand
@@ -17,7 +17,7 @@ struct HandSettings {
   double cutoff_hz = 3;
   double cutoff_per_m_s = 25;
 
-  static constexpr const char* kNoGlove = "none";  // of a hand that holds a wand; no device's name
+  static constexpr const char* kNoGlove = "none";  // for a hand with a wand; no device's name
   bool wearsGlove() const { return glove != kNoGlove; }
 };
 

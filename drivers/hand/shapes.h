@@ -17,7 +17,7 @@ struct Shape {
   std::array<float, kGloveSlots> angle_rad;  // flexion positive; slot 7 is 0 (not measured)
 };
 
-std::span<const Shape> shapes();                // the eight of the shipped network
+std::span<const Shape> shapes();                // the eight that the shipped network knows
 std::span<const Shape> allShapes();             // these and others, 31 in all
 const Shape* findShape(std::string_view name);  // nullptr if there is none
 

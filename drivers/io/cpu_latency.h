@@ -10,10 +10,10 @@
 namespace merlin::io {
 
 // Until the returned descriptor is closed (also by the end of the process), no idle core enters a
-// sleep state from which it needs longer than `microseconds` to wake; 0: no core sleeps at all.
-// This applies to the whole machine; the strictest limit of all programs counts (the kernel's CPU
-// latency quality of service). It costs power. Errors: kNotFound, kIo; the messages say what to do.
-// Only tests set `device`. REQUIRES: microseconds >= 0.
+// sleep state from which it needs longer than `microseconds` to wake; 0: no core sleeps at all. The
+// limit applies to the whole machine and raises its power consumption; the strictest limit of all
+// programs takes effect (the kernel's CPU latency quality of service). Errors: kNotFound, kIo; the
+// messages say what to do. Only tests set `device`. REQUIRES: microseconds >= 0.
 Result<UniqueFd> limitCpuLatency(int microseconds,
                                  const std::string& device = "/dev/cpu_dma_latency");
 

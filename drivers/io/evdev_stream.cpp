@@ -35,7 +35,7 @@ EvdevRecord named(EvdevRecord::Kind kind, unsigned code, std::string_view text) 
   return record;
 }
 
-// "SOUTH" of "BTN_SOUTH"; the number of a key that has no name.
+// Returns "SOUTH" for BTN_SOUTH; for a key without a name, its number.
 std::string keyName(unsigned code) {
   const char* const name = libevdev_event_code_get_name(EV_KEY, code);
   if (!name) return fmt::format("{}", code);
@@ -52,7 +52,8 @@ std::string cased(std::string_view text, int (*change)(int)) {
   return changed;
 }
 
-// The fingers that touch a multi-touch device now, and the slot that the next event is about.
+// Appends the fingers that touch a multi-touch device now, and the slot to which the next event
+// belongs.
 void appendFingers(const libevdev* device, std::string& out) {
   const int slots = libevdev_get_num_slots(device);  // -1: it has none
   const auto add = [&](int code, int value) {
@@ -71,7 +72,7 @@ void appendFingers(const libevdev* device, std::string& out) {
   if (slots > 0) add(ABS_MT_SLOT, libevdev_get_current_slot(device));
 }
 
-// The description, then the present state.
+// Returns the records of the description, then those of the present state.
 std::string describe(const libevdev* device) {
   std::string out;
   std::string_view name = libevdev_get_name(device);
@@ -137,7 +138,7 @@ class EvdevStream final : public ByteStream {
   void interrupt() noexcept override { wait_.interrupt(); }
 
  private:
-  static constexpr std::size_t kAhead = 4096;  // bytes; a read of the kernel has fewer
+  static constexpr std::size_t kAhead = 4096;  // bytes; a read from the kernel gives fewer
   static constexpr std::size_t kRecord = 24;
 
   Result<Ok> fill(Duration timeout) {
@@ -161,7 +162,7 @@ class EvdevStream final : public ByteStream {
       if (status == LIBEVDEV_READ_STATUS_SYNC) dropped_ = true;
       append(event, ahead_.bytes);
     }
-    if (ahead_.empty()) return Error{Errc::kTimeout, "time-out"};  // events that are of no use
+    if (ahead_.empty()) return Error{Errc::kTimeout, "time-out"};  // all events were irrelevant
     return Ok{};
   }
 
@@ -169,7 +170,7 @@ class EvdevStream final : public ByteStream {
   Handle device_;
   FdWait wait_;
   ReadAhead ahead_;       // records that read() has not returned yet
-  bool dropped_ = false;  // the kernel dropped events; libevdev tells what changed
+  bool dropped_ = false;  // the kernel dropped events; libevdev reports the changes
 };
 
 }  // namespace

@@ -14,22 +14,22 @@
 
 namespace merlin::io {
 
-// Opens the device and grabs it, so that nobody else gets its events; its description is read
-// first. Errors: kNotFound, kBusy (something else has grabbed it), kIo (without permission, the
-// message names the group to join; not an input device). write() of the stream always fails with
-// kIo.
+// Opens the device and grabs it, so that no other program gets its events. The stream begins with
+// the device's description. Errors: kNotFound, kBusy (another program has grabbed it), kIo (not an
+// input device, or no permission: then the message names the group to join). write() of the stream
+// always fails with kIo.
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path);
 
-// The record that describes a key of this number of the kernel, as such a stream has it: with the
-// key's name.
+// Returns the record with which such a stream describes the key that has this number in the kernel;
+// it includes the key's name.
 EvdevRecord keyRecord(std::uint16_t code);
 
 // The kernel's numbers of keys and buttons are below this.
 inline constexpr std::uint16_t kKeyCodes = 0x300;
-// The kernel's number of a key or button by its name in lower case, "key_space" or "btn_south";
-// nothing if it has none of that name.
+// The kernel's number of the key or button with this name in lower case, "key_space" or
+// "btn_south"; nothing if there is none.
 std::optional<std::uint16_t> keyCode(std::string_view name);
-// The name of this number, as above; empty if it has none.
+// Inverse of keyCode(); empty if the number has no name.
 std::string keyNameOf(std::uint16_t code);
 
 }  // namespace merlin::io

@@ -24,7 +24,8 @@ class FdWait {
   UniqueFd wake_;  // eventfd that interrupt() signals; it is never cleared
 };
 
-// The error of a call that failed with errno: kClosed for a device that is gone, otherwise kIo.
+// Error for a call that has just failed and set errno: kClosed if the device is gone, otherwise
+// kIo.
 Error ioError(const char* call);
 
 }  // namespace merlin::io

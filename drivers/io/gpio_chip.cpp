@@ -79,8 +79,8 @@ class ChipLines final : public GpioLines {
                                      number, by ? ": " : "", by ? by : "")};
   }
 
-  // An output alone does not tell that its chip is gone until it is written. Asks the kernel, not
-  // the chip: some cannot read.
+  // Checks whether the chip is still there; an output alone would not show it before the next
+  // write. Asks the kernel instead of reading the line, because some chips cannot read.
   Result<Ok> answers() const {
     if (lines_.empty() || ::gpiod_line_update(lines_.begin()->second) == 0) return Ok{};
     return chipError(name_, fmt::format("line {}", lines_.begin()->first));
@@ -92,7 +92,7 @@ class ChipLines final : public GpioLines {
   gpiod_line* input_ = nullptr;
 };
 
-// Names the chips that there are. A chip that was unplugged may have another number afterwards.
+// Lists the existing chips, because a chip that was unplugged may have another number afterwards.
 Error noChip(const std::string& chip) {
   std::string others;
   gpiod_chip_iter* const all = ::gpiod_chip_iter_new();

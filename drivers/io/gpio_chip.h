@@ -11,9 +11,9 @@
 namespace merlin::io {
 
 // `chip`: "gpiochip0", "/dev/gpiochip0" or its label. Line numbers of -1 are skipped. Outputs start
-// low; the input reports both edges. Errors: kNotFound (no such chip; the message names those that
-// there are), kBusy (another program holds a line; the message names it), kIo (without permission,
-// the message names the group), kInvalidArgument (no such line).
+// low; the input reports both edges. Errors: kNotFound (no such chip; the message lists the chips),
+// kBusy (another program holds a line; the message names it), kIo (if permission is missing, the
+// message names the group to join), kInvalidArgument (no such line).
 Result<std::unique_ptr<GpioLines>> openGpioChip(const std::string& chip,
                                                 const std::vector<int>& outputs, int input);
 

@@ -1,4 +1,4 @@
-// Why a port's file cannot be opened, for people.
+// Explains to a person why a port's file cannot be opened.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace merlin::io {
 
-// Of open() on `path`, which failed with the errno value `error`: kNotFound or kIo; without
-// permission, the message names the group to join.
+// Returns the error of an open() of `path` that failed with the errno value `error`: kNotFound or
+// kIo. If permission is missing, the message names the group to join.
 Error openError(const std::string& path, int error);
 
 }  // namespace merlin::io

@@ -15,7 +15,7 @@ namespace merlin::io {
 // mode; bytes that were buffered before are dropped; low latency if a serial adapter supports it.
 // While it is open, no other process of MERLIN can open it (by flock, because TIOCEXCL does not
 // stop root). A transcript is replayed with the timing of its recording, then ends. Errors:
-// kNotFound, kBusy, kIo (without permission, the message names the group to join); those of
+// kNotFound, kBusy, kIo (if permission is missing, the message names the group to join); those of
 // openTcp(), openUdp(), openUnix(), openEvdev() and readTranscript().
 Result<std::unique_ptr<ByteStream>> openPort(const PortAddress& address, int baud);
 

@@ -11,8 +11,8 @@ namespace merlin::io {
 // One pseudo-terminal in raw mode, and a symbolic link to its slave. Thread-bound.
 class PtyMaster {
  public:
-  // Creates the symbolic link `link`; an existing one is replaced atomically, any other file there
-  // is an error. If `link` is empty, none is created. Errors: kIo.
+  // Creates the symbolic link `link`; an existing link is replaced atomically, any other file at
+  // this path is an error. If `link` is empty, none is created. Errors: kIo.
   static Result<PtyMaster> open(const std::string& link);
 
   PtyMaster(PtyMaster&& other) noexcept;

@@ -1,4 +1,4 @@
-// ReadAhead: bytes that a stream has read and not returned yet.
+// ReadAhead: buffer for bytes that a stream has read but not returned yet.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace merlin::io {
 
 struct ReadAhead {
-  std::string bytes;  // those from `next` on are not returned yet
+  std::string bytes;  // the ones from `next` on have not been returned yet
   std::size_t next = 0;
 
   bool empty() const noexcept { return next == bytes.size(); }
@@ -18,7 +18,7 @@ struct ReadAhead {
     bytes.clear();
     next = 0;
   }
-  // Returns as many as fit.
+  // Moves as many bytes as fit into `buffer`; returns their number.
   std::size_t take(std::span<std::byte> buffer) noexcept {
     const std::size_t n = std::min(buffer.size(), bytes.size() - next);
     std::memcpy(buffer.data(), bytes.data() + next, n);

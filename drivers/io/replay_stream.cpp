@@ -16,8 +16,8 @@ Player::Player(Transcript transcript, Timestamp start)
   skipHost(start);
 }
 
-// A chunk of the host is complete when the host has sent as many bytes; the transcript's time then
-// continues from the time of that chunk.
+// A chunk of the host is complete when the host has sent the same number of bytes; the transcript's
+// time then continues from the time of that chunk.
 void Player::hostSaid(std::size_t bytes, Timestamp now) {
   while (bytes > 0 && !ended() && transcript_.chunks[next_].to_device) {
     const std::size_t taken = std::min(bytes, host_owes_);

@@ -16,7 +16,7 @@ class Player {
  public:
   Player(Transcript transcript, Timestamp start);
 
-  // The host has sent this number of bytes.
+  // To be called when the host has sent this number of bytes.
   void hostSaid(std::size_t bytes, Timestamp now);
 
   // Appends the device's bytes that are due at `now`.

@@ -19,7 +19,7 @@
 namespace merlin::io {
 namespace {
 
-// A number for an address and port (FNV-1a), so that recordings hold no addresses.
+// Hash of an address and port (FNV-1a); recordings contain it instead of the address.
 std::uint32_t numberOf(const sockaddr_storage& from) noexcept {
   std::uint32_t number = 0x811C9DC5;
   const auto add = [&](const void* data, std::size_t size) {

@@ -10,11 +10,11 @@
 
 namespace merlin::io {
 
-// Binds the port at `address`, an IPv4 or IPv6 address of this machine; 0.0.0.0 and :: are all of
-// them. Every datagram that arrives there is passed on, whoever sent it; an empty one is left out.
-// While nobody reads, the system keeps about 200 KB and drops what follows. write() of the stream
-// always fails with kIo. Errors: kBusy (something else receives at this port), kIo, kNotFound (it
-// is no address of this machine).
+// Binds the port at `address`, an IPv4 or IPv6 address of this machine; 0.0.0.0 and :: mean all of
+// its addresses. The stream passes on every datagram that arrives there, from any sender, except
+// empty ones. While nobody reads, the system buffers about 200 KB and drops further datagrams.
+// write() of the stream always fails with kIo. Errors: kBusy (another program receives at this
+// port), kIo, kNotFound (this machine does not have that address).
 Result<std::unique_ptr<ByteStream>> openUdp(const std::string& address, const std::string& service);
 
 }  // namespace merlin::io

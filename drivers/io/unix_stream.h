@@ -9,8 +9,9 @@
 
 namespace merlin::io {
 
-// Errors: kInvalidArgument (the path is longer than a socket's may be), kNotFound (nobody has made
-// the socket), kIo (nobody listens there; without permission, the message names the group to join).
+// Errors: kInvalidArgument (the path is longer than a socket's may be), kNotFound (the socket does
+// not exist), kIo (no program listens at it, or permission is missing: then the message names the
+// group to join).
 Result<std::unique_ptr<ByteStream>> openUnix(const std::string& path);
 
 }  // namespace merlin::io

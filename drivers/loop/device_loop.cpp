@@ -57,7 +57,7 @@ std::unique_ptr<ByteStream> DeviceLoop::paced(std::unique_ptr<ByteStream> stream
   return std::make_unique<PacedStream>(std::move(stream), *pace_, clock_);
 }
 
-// Called during a read, in the set-up dialogue or while the device streams.
+// The PacedStream calls this during a read, in the set-up dialogue or while the device streams.
 void DeviceLoop::paceChanged() {
   settings_.on_pace(pace_->above());
   if (health_.state == HealthState::kOpening) enter(health_.state, withPace({}));
@@ -70,7 +70,7 @@ std::string DeviceLoop::withPace(const std::string& reason) {
   return pace_->sentence() + (reason.empty() ? "" : "; " + reason);
 }
 
-// Malformed bytes usually come from another device, or from a line at another baud rate.
+// Malformed bytes usually mean that another device is connected, or that the baud rate is wrong.
 std::string DeviceLoop::hintFor(const Error& end) const {
   const bool has_speed =
       settings_.port.starts_with("serial:") || settings_.port.starts_with("pty:");

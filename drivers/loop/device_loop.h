@@ -17,12 +17,12 @@ namespace merlin {
 
 struct DeviceLoopSettings {
   std::string port;  // as in the configuration, for the health record
-  int baud = 0;      // of the line, for a hint in the message about malformed bytes; 0: no hint
+  int baud = 0;      // for a hint in the message about malformed bytes; 0: no hint
   // Maximum rate at which the line is read; 0: no limit. Further bytes wait in the system's
   // buffers; when these are full, the sender blocks or bytes are lost.
   double max_bytes_s = 0;
-  // Called on the loop's thread when the line begins (`above` true) or ceases to send more than
-  // max_bytes_s, so that the caller can lower the thread's priority meanwhile.
+  // Called on the loop's thread when the line begins (`above` is true) or ceases (false) to send
+  // more than max_bytes_s, so that the caller can lower the thread's priority in between.
   std::function<void(bool above)> on_pace = [](bool) {};
   // Delay before the next attempt to open the device. It is doubled after each failure, up to
   // longest_retry, and reset after a connection that streamed.
@@ -41,8 +41,8 @@ class DeviceLoop {
 
   // Opens and polls the device until `stop`, with a delay after each failure; returns within about
   // 50 ms after the stop request. Shares nothing with other devices, so it cannot block them.
-  // `alive` is called before each attempt; while a port is open, the opener's stream has to count
-  // the progress.
+  // `alive` is called before each attempt. It is not called while a port is open: then the stream
+  // that the opener returns has to report progress.
   void run(
       const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
@@ -53,7 +53,7 @@ class DeviceLoop {
 
   std::unique_ptr<ByteStream> paced(std::unique_ptr<ByteStream> stream);
   void paceChanged();
-  // Text for the health record: that the line sends too much, if it does, then `reason`.
+  // Text for the health record: a warning if the line sends too much, then `reason`.
   std::string withPace(const std::string& reason);
   std::string hintFor(const Error& end) const;
   void enter(HealthState state, std::string_view reason) noexcept;

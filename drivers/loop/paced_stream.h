@@ -19,21 +19,21 @@ namespace merlin {
 // raise it. Thread-bound; allocates nothing after construction.
 class ReadPace {
  public:
-  // `bytes_s`: the limit [bytes/s]. A burst may have the bytes of a quarter of a second, but at
-  // least 4 KiB (a pty's buffer) and at most 64 KiB. `changed` is called when above() changes.
-  // REQUIRES: bytes_s > 0.
+  // `bytes_s`: the limit [bytes/s]. A burst may have as many bytes as the limit allows in a quarter
+  // of a second, but at least 4 KiB (a pty's buffer) and at most 64 KiB. `changed` is called when
+  // above() changes. REQUIRES: bytes_s > 0.
   ReadPace(double bytes_s, std::function<void()> changed);
 
-  // Whether the line sends more than the limit: true from when bytes had to wait, until half of the
-  // burst is available again.
+  // Whether the line sends more than the limit: true from the moment when bytes have to wait until
+  // half of a burst is available again.
   bool above() const noexcept { return above_; }
   // "sends more than 15.4 kB/s, the limit at which it is read".
   const std::string& sentence() const noexcept { return sentence_; }
 
   // Number of bytes that may be read at `now`; updates above().
   std::size_t allowed(Timestamp now);
-  // How long read() sleeps, while no byte may be read, before it asks again. Bytes collect
-  // meanwhile: to read several in one call costs less than to read each alone.
+  // How long read() sleeps while no byte may be read, before it tries again. Bytes collect in the
+  // meantime, and one call for several bytes costs less than one for each.
   static constexpr Duration kPause = std::chrono::milliseconds(10);
   // Subtracts bytes that were read from the allowance.
   void charge(std::size_t bytes, Timestamp now) noexcept;
@@ -41,9 +41,9 @@ class ReadPace {
  private:
   void setAbove(bool above);
 
-  // Capacity of a burst; number of bytes (those of kPause) that must be available before a line
-  // that waits is read again. Without the latter each byte would be read by a system call of its
-  // own.
+  // burst_: capacity of a burst. step_: number of bytes (the limit over kPause) that must be
+  // available before a line that waits is read again; otherwise each byte would need its own system
+  // call.
   double burst_, step_;
   bool waits_ = false;
   TokenBucket bucket_;

@@ -1,5 +1,5 @@
-// Driver of a tracker whose poses come as OSC messages. Its port is udp:PORT, to which the sender
-// sends.
+// Driver of a tracker whose poses arrive as OSC messages. Its port is udp:PORT, the port to which
+// the poses are sent.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,11 @@
 
 namespace merlin::osc {
 
-// open() takes at most 2 s; it ends with the first pose. Errors also: kTimeout (nothing comes),
-// kMalformed (what comes is no pose of a station). poll() fails with kTimeout after 3 s without a
-// datagram. A sender that sends other messages and no pose is no fault: cameras may have lost the
-// target; complaint() says so after 2 s. Publishes one sample per pose; each station has its own
-// counter.
+// open() takes at most 2 s; it ends with the first pose. Errors also: kTimeout (nothing arrives),
+// kMalformed (what arrives is not a pose of a station). poll() fails with kTimeout after 3 s
+// without a datagram. If only other messages arrive, poll() does not fail, because the cameras may
+// have lost the target; complaint() reports it after 2 s. Publishes one sample per pose; each
+// station has its own counter.
 class OscDevice final : public Device {
  public:
   OscDevice(const OscSettings& settings, const Clock& clock, SampleSink& sink)
@@ -39,9 +39,9 @@ class OscDevice final : public Device {
   DatagramParser parser_;
   OscReader osc_;
   Timestamp datagram_start_{}, heard_{}, posed_{};
-  std::uint64_t datagrams_ = 0;  // since open()
+  std::uint64_t datagrams_ = 0;  // number since open()
   std::uint64_t bad_datagrams_ = 0;
-  bool no_osc_ = false;  // the newest datagram was none
+  bool no_osc_ = false;  // the newest datagram was not OSC
   const char* complaint_ = "";
 };
 

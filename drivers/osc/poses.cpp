@@ -10,7 +10,7 @@
 namespace merlin::osc {
 namespace {
 
-constexpr std::size_t kPosition = 3, kPose = 7;  // numbers of a message
+constexpr std::size_t kPosition = 3, kPose = 7;  // numbers in a message
 
 constexpr const char* kOtherAddress = "OSC messages come, but none to the address of a station";
 constexpr const char* kOtherStation = "poses come only of stations that \"stations\" does not have";
@@ -23,8 +23,8 @@ bool isNumber(const OscArgument& argument) noexcept {
   return argument.kind == OscArgument::kReal || argument.kind == OscArgument::kInteger;
 }
 
-// Whether an argument is this name: a text, or a whole number whose digits are the name; a sender
-// may have one type for all its numbers.
+// Whether an argument is this name: a text, or a whole number whose digits are the name. The number
+// may be an integer or a real, because some senders use one type for all numbers.
 bool names(const OscArgument& argument, std::string_view name) noexcept {
   if (argument.kind == OscArgument::kText) return argument.text == name;
   if (!isNumber(argument)) return false;
@@ -39,7 +39,7 @@ void normalise(float (&q)[4]) noexcept {
   for (float& v : q) v /= norm;
 }
 
-// Why no tracker can have measured this.
+// Explains why the sample is implausible.
 const char* faultOf(const TrackerSample& sample) noexcept {
   const auto isFinite = [](float v) { return std::isfinite(v); };
   const auto isNear = [](float v) { return std::abs(v) <= kFurthest_m; };

@@ -1,4 +1,4 @@
-// Poses: the tracker's samples in OSC messages. Pure, but that it publishes.
+// Poses: extracts the tracker's samples from OSC messages and publishes them. Otherwise pure.
 #pragma once
 
 #include <array>
@@ -15,16 +15,17 @@ namespace merlin::osc {
 
 class Poses final : public OscSink {
  public:
-  // REQUIRES: settings that validate() has no fault of.
+  // REQUIRES: validate() finds no fault in the settings.
   Poses(const OscSettings& settings, SampleSink& sink);
 
-  // The messages that follow arrived at that time.
+  // Sets the arrival time of the messages that follow.
   void begin(Timestamp received) noexcept { received_ = received; }
-  // Publishes a sample if the message is the pose of a station. A pose that no tracker can have
-  // measured is dropped and counted. Allocates only while addresses are collected.
+  // Publishes a sample if the message is the pose of a station. An implausible pose
+  // (drivers/port/plausible.h) is dropped and counted. Allocates only while addresses are
+  // collected.
   void take(const OscMessage& message) noexcept override;
 
-  // From now on, or no more, the addresses of messages that are no pose are collected, up to
+  // Starts or stops the collection of the addresses of messages that are not poses, at most
   // kMostOthers.
   void collectOthers(bool collect);
   const std::vector<std::string>& others() const noexcept { return others_; }
@@ -41,10 +42,11 @@ class Poses final : public OscSink {
  private:
   struct Station {
     bool used = false;
-    std::string name, address;  // the address only if it has the name
+    std::string name, address;  // address: only if it contains the name
   };
 
-  // The station of the message, and how many of its arguments name it; kStations: none.
+  // Returns the station of the message, or kStations if it has none; `names` is set to the number
+  // of arguments that name the station.
   std::size_t stationOf(const OscMessage& message, std::size_t& names) const noexcept;
   void other(const OscMessage& message) noexcept;
   void bad(const char* why) noexcept;
@@ -53,7 +55,7 @@ class Poses final : public OscSink {
   SampleSink& sink_;
   std::array<Station, kStations> stations_;
   bool named_by_address_ = false;
-  std::array<TrackerSample, kStations> sample_{};  // the newest of each station
+  std::array<TrackerSample, kStations> sample_{};  // newest sample of each station
   Timestamp received_{};
   std::uint64_t samples_ = 0, bad_poses_ = 0;
   const char* silence_ = "";

@@ -11,7 +11,8 @@ namespace merlin {
 namespace {
 
 constexpr std::size_t kLongestAddress = 200, kLongestName = 40;
-// Characters that OSC keeps for patterns, and the space; "{station}" is taken out before.
+// Characters that OSC reserves for patterns, and the space; "{station}" is replaced before the
+// check.
 constexpr std::string_view kNotInAddress = " #*,?[]{}";
 
 bool hasOnlyPrintable(std::string_view text) {

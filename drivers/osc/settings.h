@@ -1,4 +1,4 @@
-// Settings of a tracker whose poses come as OSC messages.
+// Settings of a tracker whose poses arrive as OSC messages.
 #pragma once
 
 #include <string>
@@ -16,9 +16,9 @@ struct OscSettings {
   enum class Quaternion { kXyzw, kWxyz };
 
   // Address of the messages. kStation in it stands for the station's name; without it, the first
-  // argument is the name, or, if it is none, every message is of the first station.
+  // argument is the name; if that is no name, every message belongs to the first station.
   std::string address = "/tracker/{station}/pose";
-  // For station 1, 2 and so on its name at the sender; empty: the station is not used.
+  // Names that the sender gives to stations 1, 2 and so on; empty: the station is not used.
   std::vector<std::string> stations = {"1", "2", "3", "4"};
   Quaternion quaternion = Quaternion::kXyzw;  // order in which its components are sent
   double scale = 1;                           // metres in the sender's unit of length
@@ -27,8 +27,8 @@ struct OscSettings {
   static constexpr const char* kStation = "{station}";
 };
 
-// Finds an address that no message can have, stations without a name of their own, and a port at
-// which no datagram can arrive. Pointers, relative to the tracker: "/port", "/osc/address",
+// Finds an address that is not valid in OSC, names of stations that are invalid, repeated or all
+// empty, and a port of the wrong kind. Pointers, relative to the tracker: "/port", "/osc/address",
 // "/osc/stations", "/osc/axes".
 SettingFaults validate(const OscSettings& settings, const LineSettings& line);
 

@@ -1,4 +1,4 @@
-// The password of a projector, which stands in a file of its own.
+// Reads the password of a projector from its file.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace merlin::pjlink {
 
-// The first line of the file, 1 to 64 printable ASCII characters; empty if `path` is. Errors name
-// the file and never its content: kNotFound, kIo, kMalformed.
+// Returns the first line of the file, 1 to 64 printable ASCII characters; empty if `path` is empty.
+// Error messages name the file, but never its content: kNotFound, kIo, kMalformed.
 Result<std::string> readPassword(const std::string& path);
 
 }  // namespace merlin::pjlink

@@ -12,10 +12,10 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr Duration kPoll = seconds(10);        // between questions for the power, at rest
-constexpr Duration kPollBusy = seconds(2);     // the same while the power changes, or is to
-constexpr Duration kRepeat = seconds(10);      // until a command without effect is sent again
-constexpr Duration kUnavailable = seconds(3);  // the same after ERR3
+constexpr Duration kPoll = seconds(10);        // between queries of the power, at rest
+constexpr Duration kPollBusy = seconds(2);     // while it changes or is to change
+constexpr Duration kRepeat = seconds(10);      // before a command without effect is repeated
+constexpr Duration kUnavailable = seconds(3);  // the same, after ERR3
 constexpr Duration kReconnect = seconds(5);
 constexpr Duration kPasswordRetry = seconds(30);
 constexpr Duration kErrorPeriod = seconds(30);
@@ -33,7 +33,8 @@ std::optional<Power> parsePower(std::string_view value) {
   }
 }
 
-// "1234 1 900 0": hours and whether it is lit, of each lamp. Empty if it is not such a list.
+// Parses "1234 1 900 0": for each lamp, its hours and whether it is lit. Empty if the text is not
+// such a list.
 std::vector<int> parseLamps(std::string_view text) {
   std::vector<int> hours;
   while (!text.empty() && hours.size() < kMostLamps) {
@@ -145,8 +146,8 @@ void Projector::answered(Command command, const Answer& answer, Timestamp now) {
   }
 }
 
-// For some seconds a projector may still say what it was, after it has accepted to become the
-// other.
+// Right after it has accepted a switching to the opposite state, a projector may still report the
+// old state for some seconds; that does not count as reached.
 bool Projector::isReached(Timestamp now) const {
   const bool becomes_other = accepted_ && accepted_ != wanted_ && now - accepted_at_ < kRepeat;
   return wanted_ && !becomes_other && power_ == (*wanted_ ? Power::kOn : Power::kOff);
@@ -191,13 +192,14 @@ void Projector::inputSelected(const Answer& answer, Timestamp now) {
                                errorText(answer.code), input_wanted_ ? "; it is tried again" : "");
 }
 
-// Six digits: fan, lamp, temperature, cover, filter, other; 0 no fault, 1 a warning, 2 an error.
+// The answer has six digits, for fan, lamp, temperature, cover, filter, other: 0 no fault, 1 a
+// warning, 2 an error.
 void Projector::errors(const Answer& answer) {
   constexpr const char* kParts[] = {"fan", "lamp", "temperature", "cover", "filter", "other"};
   const std::string& value = answer.value;
   const bool good = answer.code == Answer::Code::kValue && value.size() == std::size(kParts) &&
                     value.find_first_not_of("012") == std::string::npos;
-  if (!good) return;  // in standby some do not tell: what was known stays
+  if (!good) return;  // some do not report it in standby: keeps the last report
   warnings_.clear();
   faulty_ = false;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -240,7 +242,8 @@ ProjectorState Projector::state(Timestamp now) const {
   return s;
 }
 
-// The fault that hides the others comes first.
+// Reports one fault, the most fundamental first: without a connection, for example, nothing else is
+// known.
 void Projector::judge(ProjectorState& s, Timestamp now) const {
   s.health = asked_ ? Health::kOk : Health::kOpening;
   s.reason = warnings_;

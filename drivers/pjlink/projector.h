@@ -1,10 +1,10 @@
-// Projector: what is known of one projector, and what is to be sent to it next. Pure: time and
-// answers are passed in.
+// Projector: keeps the known state of one projector, and determines what is to be sent to it next.
+// Pure: time and answers are passed in.
 //
-// What the projector answers counts, not what it was sent: it is asked for its power before each
-// switching and until it has reached the state that is wanted. A projector that cools down is
-// switched on when it says that it is off, one that warms up is switched off when it says that it
-// is on. A command that it refuses is repeated until it is accepted, or until another is wanted.
+// The state is what the projector reports, not what it was told: it is asked for its power before
+// each switching, and afterwards until it has reached the wanted state. A projector that cools down
+// is switched on once it reports that it is off; one that warms up is switched off once it reports
+// that it is on. A refused command is repeated until it is accepted or another state is wanted.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ namespace merlin::pjlink {
 
 enum class Power { kUnknown, kOff, kWarming, kOn, kCooling };
 enum class Health {
-  kOpening,      // not reached yet
+  kOpening,      // no connection so far
   kOk,           // answers, and reports no fault
   kUnreachable,  // cannot be connected to, or does not answer
   kPassword,     // the password is wrong or missing
@@ -36,23 +36,23 @@ struct ProjectorState {
   std::string name, address;
   std::string identity;  // as the projector calls itself; empty: unknown
   Power power = Power::kUnknown;
-  std::optional<bool> wanted;  // the state that it has not reached yet
-  // Time within which it must have reached that; PJLink does not tell more. Nothing: unknown.
+  std::optional<bool> wanted;  // requested state, until it is reached
+  // Time left to reach `wanted`; PJLink reports no progress. Nothing: unknown.
   std::optional<Duration> within{};
   Health health = Health::kOpening;
   std::string reason;           // what is wrong; empty: nothing
-  bool answers = false;         // whether the last connection did what it was for
-  std::vector<int> lamp_hours;  // of each lamp; empty: unknown
+  bool answers = false;         // whether the last connection served its purpose
+  std::vector<int> lamp_hours;  // for each lamp; empty: unknown
 };
 
 // Thread-bound.
 class Projector {
  public:
-  // It is asked for its power at once; what it is to be is not known.
+  // The projector is asked for its power at once; no state is wanted yet.
   Projector(const PjlinkSettings& settings, Timestamp now);
 
-  // The power that it is to have from now on. A state that it reached by itself or by its remote
-  // control is not changed.
+  // Sets the wanted state. Once the projector has reached it, later changes by itself or its remote
+  // control are left alone.
   void want(bool on, Timestamp now);
 
   // What is to be sent now; nothing before due().
@@ -81,14 +81,14 @@ class Projector {
   Power power_ = Power::kUnknown;
   std::optional<bool> wanted_;
   bool input_wanted_ = false;
-  bool asked_ = false;  // it has answered since the last connection was lost
+  bool asked_ = false;  // has answered since the last connection was lost
   bool asks_for_lamps_ = true;
-  std::optional<bool> accepted_;  // the switching that it accepted last
+  std::optional<bool> accepted_;  // last command to switch that it accepted
   Timestamp accepted_at_;
   Timestamp quiet_until_;  // nothing is sent before
   Timestamp power_due_, switch_due_, input_due_, errors_due_, lamps_due_, name_due_;
   Timestamp deadline_;             // by which `wanted_` must be reached
-  std::optional<Health> trouble_;  // of the connection
+  std::optional<Health> trouble_;  // trouble of the connection
   std::string trouble_reason_, refusal_, power_fault_, input_refusal_;
   std::string identity_, warnings_;
   bool faulty_ = false;  // one of `warnings_` is an error

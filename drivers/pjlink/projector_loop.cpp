@@ -11,10 +11,10 @@
 namespace merlin::pjlink {
 namespace {
 
-constexpr Duration kSlice = std::chrono::milliseconds(100);  // between looks at `stop` and want()
-constexpr int kMostCommands = 16;                            // of one connection
+constexpr Duration kSlice = std::chrono::milliseconds(100);  // between checks of `stop` and want()
+constexpr int kMostCommands = 16;                            // over one connection
 
-// kIo: a connection that is closed with bytes unread is reset.
+// kIo is included because a peer that closes a connection with unread bytes resets it.
 bool isClosed(const Error& error) { return error.code == Errc::kClosed || error.code == Errc::kIo; }
 
 }  // namespace
@@ -58,7 +58,7 @@ ProjectorState ProjectorLoop::state() const {
   return projector_.state(clock_.now());
 }
 
-// The password is read each time, so that a file that was mended takes effect.
+// Reads the password for each connection, so that a corrected file takes effect.
 Result<Ok> ProjectorLoop::talk(const Waiting& waiting) {
   auto password = readPassword(settings_.password_file);
   if (!password) return Error{Errc::kInvalidArgument, password.error().what};
@@ -71,7 +71,7 @@ Result<Ok> ProjectorLoop::talk(const Waiting& waiting) {
     const auto command = next();
     if (!command) break;
     const auto answer = ask(**stream, session, *command, waiting);
-    // A projector that closes after each answer is asked the rest over the next connection.
+    // If the projector closes the connection after each answer, the next connection sends the rest.
     const bool between = sent > 0 && session.isAtLineStart();
     if (!answer && between && isClosed(answer.error())) break;
     if (!answer) return answer.error();
@@ -103,8 +103,8 @@ Result<Answer> ProjectorLoop::ask(ByteStream& stream, Session& session, Command 
   }
 }
 
-// Whatever has arrived within a slice of time; nothing if that completes no answer. Errors also:
-// kTimeout (the deadline has passed).
+// Reads what arrives within one kSlice; returns the answer that it completes, or nothing. Errors
+// also: kTimeout (the deadline has passed).
 Result<std::optional<Answer>> ProjectorLoop::receive(ByteStream& stream, Session& session,
                                                      Timestamp deadline, const Waiting& waiting) {
   waiting.alive();

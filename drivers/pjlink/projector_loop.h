@@ -1,6 +1,6 @@
 // ProjectorLoop: connects to one projector, asks it and sends it commands; run() is the body of its
-// thread. A connection lasts as long as there is something to say: some projectors serve only one
-// client at a time, and some close a connection after each answer.
+// thread. A connection is closed when nothing is left to send: some projectors serve only one
+// client at a time, and some close the connection after each answer.
 #pragma once
 
 #include <functional>

@@ -16,7 +16,7 @@ constexpr std::size_t kMostRandom = 32;
 
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
-// Compares without regard to case: some projectors answer in lower case.
+// Ignores case, because some projectors answer in lower case.
 bool beginsWith(std::string_view line, std::string_view prefix) {
   return line.size() >= prefix.size() &&
          std::equal(prefix.begin(), prefix.end(), line.begin(),

@@ -29,13 +29,13 @@ enum class Command { kPowerOn, kPowerOff, kInput, kAskPower, kAskErrors, kAskLam
 std::string commandText(Command command, std::string_view input);
 
 struct Answer {
-  // kValue: OK, or what was asked for. Otherwise ERR1 to ERR4.
+  // kValue: OK, or the requested value. The others are ERR1 to ERR4.
   enum class Code { kValue, kUndefined, kOutOfRange, kUnavailable, kFailure };
   Code code = Code::kValue;
   std::string value;  // "OK", "0"
 };
 
-// "ERR3, not available at this time", for a message. REQUIRES: not kValue.
+// Text for a message: "ERR3, not available at this time". REQUIRES: code is not kValue.
 const char* errorText(Answer::Code code);
 
 // The dialogue of one connection. Thread-bound.
@@ -63,8 +63,8 @@ class Session {
   Result<Ok> greet(std::string_view line);
 
   std::string password_;
-  std::string line_;      // what has arrived of the next line
-  std::string expected_;  // "%1POWR=" while an answer to it is awaited
+  std::string line_;      // the incomplete line
+  std::string expected_;  // "%1POWR=" while the answer to POWR is awaited
   std::string digest_;    // precedes the first command
   bool open_ = false;
 };

@@ -23,8 +23,9 @@ class Schedule {
   // Whether projectors are to be on: at least one entry says so. O(entries).
   bool isOn(LocalMinute now) const;
 
-  // The next minute after `now` in which the scheduled state changes, and what it is then; nothing
-  // if it stays as it is for a week. O(entries^2). May be called while another thread calls step().
+  // The next minute after `now` in which the scheduled state changes, and the state from then on;
+  // nothing if it does not change within a week. O(entries^2). May be called while another thread
+  // calls step().
   struct Switching {
     LocalMinute at = 0;
     bool on = false;
@@ -33,9 +34,9 @@ class Schedule {
 
   // To be called at least once a minute. Returns true (on) or false (off) when the scheduled state
   // has changed since the last call, and at the first call. While the local time repeats an hour
-  // (daylight-saving time ends), or was set back by at most three hours, it returns nothing until
-  // the time is past what it was: each point switches once. An hour that is left out counts as
-  // passed: its points switch at its end.
+  // (daylight-saving time ends), or after it was set back by at most three hours, it returns
+  // nothing until the time is later than before, so that each switching happens once. An hour that
+  // is skipped counts as passed: its switchings happen at its end.
   std::optional<bool> step(LocalMinute now);
 
  private:

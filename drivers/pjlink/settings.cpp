@@ -13,7 +13,7 @@
 namespace merlin {
 namespace {
 
-constexpr std::string_view kPort = ":4352";  // of PJLink
+constexpr std::string_view kPort = ":4352";  // PJLink's port
 
 bool isName(std::string_view name) {
   return !name.empty() && name.size() <= 32 && std::ranges::all_of(name, [](unsigned char c) {

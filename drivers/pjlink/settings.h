@@ -1,4 +1,4 @@
-// Settings of projectors that are controlled over the network by PJLink, and of the times of day at
+// Settings of projectors that are controlled over the network by PJLink, and the times of day at
 // which all projectors are switched.
 #pragma once
 
@@ -41,11 +41,11 @@ std::optional<TcpAddress> projectorAddress(std::string_view text);
 // Parses "HH:MM" from 00:00 to 23:59 to minutes after midnight; nothing if it is not a time.
 std::optional<int> minuteOfDay(std::string_view text);
 
-// Bit i: kWeekdays[i] is among the names. Other names count for nothing.
+// Bit i: kWeekdays[i] is among the names. Other names are ignored.
 unsigned weekdayBits(const std::vector<std::string>& names);
 
-// Finds projectors without a name or with another's, addresses and inputs that are none, and days
-// and times that are none. Pointers: "/2/name".
+// Finds projectors without a name or with the name of another, and invalid addresses, inputs, days
+// and times. Pointers: "/2/name".
 SettingFaults validate(const std::vector<PjlinkSettings>& projectors);
 SettingFaults validate(const std::vector<SwitchingTimes>& schedule);
 

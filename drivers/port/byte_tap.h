@@ -9,14 +9,14 @@
 
 namespace merlin {
 
-// Called on the thread that uses the line; an implementation in the daemon takes no lock and
-// allocates nothing.
+// heard() gets bytes from the device, said() bytes to it. Called on the thread that uses the line;
+// an implementation in the daemon takes no lock and allocates nothing.
 class ByteTap {
  public:
   virtual ~ByteTap() = default;
   virtual void opened(Timestamp at) noexcept = 0;
-  virtual void heard(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;  // from it
-  virtual void said(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;   // to it
+  virtual void heard(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;
+  virtual void said(Timestamp at, std::span<const std::byte> bytes) noexcept = 0;
 };
 
 }  // namespace merlin

@@ -24,7 +24,7 @@ std::uint8_t checkOf(const Header& header) noexcept {
 
 DatagramParser::DatagramParser() : bytes_(kLongestDatagram) {}
 
-// Whether what is there of the header may begin one.
+// Whether the bytes received so far may be the beginning of a header.
 bool DatagramParser::headerFits() const noexcept {
   if (header_length_ > 0 && header_[0] != kMark) return false;
   if (header_length_ < 4) return true;

@@ -1,6 +1,7 @@
-// What the port udp: carries: the datagrams that arrive, each with its length and a number for its
-// sender, so that they can be recorded, replayed and watched by the flight recorder as the bytes of
-// every other line. drivers/io writes them, drivers/tuio and drivers/osc read them. Pure.
+// Format of the bytes of a port udp: each datagram that arrives is preceded by its length and a
+// number for its sender, so that datagrams can be recorded, replayed and watched by the flight
+// recorder like the bytes of every other line. drivers/io writes them, drivers/tuio and drivers/osc
+// read them. Pure.
 //
 //   byte 0     0xDA
 //   byte 1     0x67 xor bytes 2 to 7, so that a damaged length is not believed
@@ -20,12 +21,12 @@
 namespace merlin {
 
 inline constexpr std::size_t kDatagramHeader = 8;
-// The most that UDP carries over IPv4.
+// The largest payload of a UDP datagram over IPv4.
 inline constexpr std::size_t kLongestDatagram = 65507;
 
 struct Datagram {
   std::uint32_t sender = 0;
-  std::span<const std::byte> bytes;  // of the parser, until its next feed()
+  std::span<const std::byte> bytes;  // owned by the parser; valid until its next feed()
 };
 
 class DatagramParser {
@@ -33,7 +34,7 @@ class DatagramParser {
   DatagramParser();
 
   // Takes one byte; returns a datagram when `byte` completes one. Never blocks, never allocates.
-  // What is no datagram is dropped byte by byte and counted.
+  // Bytes that do not belong to a datagram are dropped one by one and counted.
   std::optional<Datagram> feed(std::byte byte) noexcept;
 
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
@@ -48,7 +49,7 @@ class DatagramParser {
   std::array<std::uint8_t, kDatagramHeader> header_{};
   std::size_t header_length_ = 0, length_ = 0, wanted_ = 0;
   std::vector<std::byte> bytes_;
-  bool lost_ = false;  // since the last datagram, bytes were dropped
+  bool lost_ = false;  // bytes were dropped since the last datagram
   std::uint64_t bad_packets_ = 0, bad_bytes_ = 0;
 };
 

@@ -27,7 +27,7 @@ class Device {
 
   // Resets, identifies and sets up the device, and starts its stream; returns the device's identity
   // for a person ("CyberGlove, 22 sensors"). Errors: kTimeout (no answer or an incomplete one),
-  // kMalformed (the answer is not one of this device), and those of the stream. May allocate.
+  // kMalformed (the answer is not that of such a device), and those of the stream. May allocate.
   virtual Result<std::string> open(ByteStream& stream) = 0;
 
   // Reads the bytes that arrive within about 250 ms and publishes every complete sample in them.

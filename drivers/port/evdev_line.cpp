@@ -33,7 +33,7 @@ std::optional<EvdevRecord> EvdevParser::feed(std::byte byte) noexcept {
     ++bad_bytes_;
     if (!lost_) ++bad_packets_;
     lost_ = true;
-    // Only two bytes are looked at, so no more than two are there.
+    // The check rejects a record at its second byte, so the buffer has at most two bytes here.
     bytes_[0] = bytes_[1];
     --length_;
     return std::nullopt;

@@ -1,6 +1,7 @@
-// What the port evdev:PATH carries: the description of an input device of the kernel, then its
-// events, as records of 24 bytes. drivers/io writes them, drivers/evdev reads them; so a gamepad
-// can be recorded, replayed and watched by the flight recorder as every other device. Pure.
+// Format of the bytes of a port evdev:PATH: the description of an input device of the kernel, then
+// its events, as records of 24 bytes. drivers/io writes them, drivers/evdev and drivers/touch read
+// them. Thus a gamepad can be recorded, replayed and watched by the flight recorder like every
+// other device. Pure.
 //
 //   byte 0     0xE5
 //   byte 1     EvdevRecord::Kind
@@ -19,17 +20,17 @@
 namespace merlin {
 
 struct EvdevRecord {
-  // The description is kName, kAxis, kRelative and kKey, in any order, then the events that set the
-  // present state, then kReady. The fingers of a multi-touch device are as the kernel's protocol B
-  // has them: kMoved of ABS_MT_SLOT, then of what belongs to this slot. Each report of the device
-  // is some of kMoved, kShifted, kPressed, and then kReport.
+  // The description consists of kName, kAxis, kRelative and kKey records in any order, the events
+  // that set the present state, and kReady. The fingers of a multi-touch device follow the kernel's
+  // protocol B: a kMoved record of ABS_MT_SLOT, then those of this slot's axes. Each report of the
+  // device consists of kMoved, kShifted and kPressed records, and ends with kReport.
   enum Kind : std::uint8_t {
     kName = 1,      // text: the device's name
     kAxis = 2,      // code, value, low, high, resolution: an absolute axis, its value and its range
     kRelative = 3,  // code: a relative axis
     kKey = 4,       // code, text: a key or button, and the kernel's name of it without KEY_ or BTN_
     kReady = 5,
-    kMoved = 6,    // code, value: of an absolute axis
+    kMoved = 6,    // code, value: new value of an absolute axis
     kShifted = 7,  // code, value: by how much a relative axis moved
     kPressed = 8,  // code, value: 1 pressed, 0 released, 2 repeated
     kReport = 9,
@@ -39,14 +40,14 @@ struct EvdevRecord {
   Kind kind = kReport;
   std::uint16_t code = 0;
   std::int32_t value = 0, low = 0, high = 0;
-  std::int32_t resolution = 0;         // of a position [1/mm]; 0: not known
+  std::int32_t resolution = 0;         // of a position axis [1/mm]; 0: unknown
   std::array<char, kText + 1> text{};  // NUL-ended
 };
 
 class EvdevParser {
  public:
-  // Takes one byte; returns a record when `byte` completes one. Never blocks, never allocates. What
-  // is no record is dropped byte by byte and counted.
+  // Takes one byte; returns a record when `byte` completes one. Never blocks, never allocates.
+  // Bytes that do not belong to a record are dropped one by one and counted.
   std::optional<EvdevRecord> feed(std::byte byte) noexcept;
 
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
@@ -58,7 +59,7 @@ class EvdevParser {
   static constexpr std::size_t kSize = 24;
   std::array<std::uint8_t, kSize> bytes_{};
   std::size_t length_ = 0;
-  bool lost_ = false;  // since the last record, bytes were dropped
+  bool lost_ = false;  // bytes were dropped since the last record
   std::uint64_t bad_packets_ = 0, bad_bytes_ = 0;
 };
 

@@ -19,7 +19,7 @@ class EvdevReader {
   explicit EvdevReader(const Clock& clock) : clock_(clock) {}
 
   // Reads a new connection's description; calls describe(record) for each of its records. Errors:
-  // kTimeout (no complete one within 1 s), and those of the stream.
+  // kTimeout (no complete description within 1 s), and those of the stream.
   template <typename Describe>
   Result<Ok> open(ByteStream& stream, const Describe& describe) {
     parser_.reset();
@@ -27,7 +27,7 @@ class EvdevReader {
     keys_.reset();
     const Timestamp until = clock_.now() + kDescriptionTime;
     for (;;) {
-      std::byte byte{};  // one by one: what follows the description is for poll()
+      std::byte byte{};  // one by one: bytes after the description are left for poll()
       const Duration left = until - clock_.now();
       if (left <= Duration::zero())
         return Error{Errc::kTimeout, "no complete description of an input device within 1 s"};
@@ -43,8 +43,8 @@ class EvdevReader {
   }
 
   // Reads what arrives within `wait`, once: calls take(record) for each record, and report(at) at
-  // the end of each report, whose first byte arrived at `at`. Returns when the bytes arrived. A
-  // time-out is no error. Errors: the others of the stream.
+  // the end of each report, whose first byte arrived at `at`. Returns the time at which the bytes
+  // arrived. A time-out is not an error. Errors: all others of the stream.
   template <typename Take, typename Report>
   Result<Timestamp> poll(ByteStream& stream, Duration wait, const Take& take,
                          const Report& report) {
@@ -65,14 +65,14 @@ class EvdevReader {
     return now;
   }
 
-  // Those of the device that was opened last.
+  // Keys of the device that was opened last.
   const DeviceKeys& keys() const noexcept { return keys_; }
   std::uint64_t badBytes() const noexcept { return parser_.badBytes(); }
   std::uint64_t badPackets() const noexcept { return parser_.badPackets(); }
 
  private:
   static constexpr Duration kDescriptionTime = std::chrono::milliseconds(1000);
-  static constexpr std::size_t kBuffer = 16 * 24;  // of sixteen records
+  static constexpr std::size_t kBuffer = 16 * 24;  // sixteen records
 
   const Clock& clock_;
   EvdevParser parser_;

@@ -17,7 +17,7 @@ constexpr GuidedStep kSteps[] = {
 };
 enum Step : std::size_t { kTopLeft, kTopRight, kBottomLeft };
 
-constexpr float kLeastSide = 0.3F;  // distance of two corners; a picture may not fill the surface
+constexpr float kLeastSide = 0.3F;  // of two corners; the image may be smaller than the surface
 
 SurfacePlace between(const SurfacePlace& from, const SurfacePlace& to) {
   return {to[0] - from[0], to[1] - from[1]};
@@ -65,7 +65,7 @@ Result<SurfacePlace> GuidedCorners::end() {
   return place;
 }
 
-// The device's axes are swapped first, and those of the surface are reversed then.
+// The device's axes are swapped first, then the resulting axes of the surface are reversed.
 TouchOrientation GuidedCorners::solve() const {
   const SurfacePlace right = between(corners_[kTopLeft], corners_[kTopRight]);
   const SurfacePlace down = between(corners_[kTopLeft], corners_[kBottomLeft]);

@@ -16,17 +16,18 @@ namespace merlin {
 // The top left corner, the top right one, the bottom left one.
 std::span<const GuidedStep> cornerSteps();
 
-// A place on the surface: shares of the device's own axes.
+// A place on the surface, in shares of the device's own axes.
 using SurfacePlace = std::array<float, 2>;
 
 class GuidedCorners {
  public:
   void begin(std::size_t step);  // starts or restarts a step; later samples belong to it
-  // A sample in the device's own axes: of settings whose orientation is the default one.
+  // Adds a sample that was measured with the default orientation, thus in the device's own axes.
   void add(const TouchSample& sample);
 
   // Ends the current step with the mean place of the finger. Errors, all kMalformed: no finger or
-  // several touched; the corner lies where an earlier one does, or not beside or below the first.
+  // several touched; the corner coincides with an earlier one, or is neither beside nor below the
+  // first.
   Result<SurfacePlace> end();
 
   // REQUIRES: each step has ended without an error.

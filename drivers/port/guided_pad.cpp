@@ -23,11 +23,11 @@ constexpr GuidedStep kSteps[] = {
 };
 constexpr std::size_t kRest = 0;
 
-constexpr float kNothing = 0.15F;     // a change that nobody has made on purpose
-constexpr float kLeast = 0.5F;        // a change that somebody has
+constexpr float kNothing = 0.15F;     // smaller changes are not intended
+constexpr float kLeast = 0.5F;        // smallest intended change
 constexpr float kMostNext = 0.6F;     // change of the next axis, relative to the strongest
-constexpr float kMostNoise = 0.2F;    // at rest
-constexpr float kTriggerRest = 0.6F;  // nearer to its end than a stick ever rests
+constexpr float kMostNoise = 0.2F;    // largest motion of an axis at rest
+constexpr float kTriggerRest = 0.6F;  // farther from the middle than a stick rests
 constexpr double kLeastDeadZone = 0.05, kMostDeadZone = 0.5;  // sticks seldom return exactly
 
 }  // namespace
@@ -99,7 +99,8 @@ Result<std::string> GuidedPad::sourceOf(const std::string& name, const Axis& axi
     if (other != name && its.isTrigger() && (its.rest() < 0) == (axis.rest() < 0))
       others.push_back(other);
   }
-  // A pair pulls towards the axis that is named first, once that leaves its lower end.
+  // The first name is the axis that deflects the pair in the positive direction when it rises from
+  // the lower end of its range.
   if (others.size() == 1)
     return axis.rest() < 0 ? fmt::format("{}-{}", name, others[0])
                            : fmt::format("{}-{}", others[0], name);

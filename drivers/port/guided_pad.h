@@ -1,5 +1,5 @@
-// Determines which axes of an input device are a ball's, and its dead zone, from what a person
-// moves on request. Pure.
+// Determines which axes of an input device serve as the axes of a ball, and the dead zone, from
+// motions that a person makes on request. Pure.
 #pragma once
 
 #include <array>
@@ -19,13 +19,13 @@ namespace merlin {
 // First rest, then a push along x, y, z and a turn about each.
 std::span<const GuidedStep> padSteps();
 
-// What answered a step. At rest: the axis that moved the most by itself, and by how much.
+// The axis that responded in a step. In the step "rest": the axis that moved the most by itself.
 struct PadAnswer {
   std::string source = "none";  // the text of an AxisSource
   float deflection = 0;         // change from rest
 };
 
-// What is written into the settings.
+// The result, as it is written into the settings.
 struct PadAxes {
   std::vector<std::string> axes;  // six texts of AxisSources
   double dead_zone = 0;           // share of the full deflection
@@ -36,19 +36,19 @@ class GuidedPad {
   void begin(std::size_t step);  // starts or restarts a step; later readings belong to it
   void add(std::span<const AxisReading> readings);
 
-  // Ends the current step. A step in which nothing moves is answered by "none": few devices have
-  // six axes. An axis that rests at its end is a trigger, and makes a pair with the other one.
-  // Errors, all kMalformed: something moved in the step "rest"; an axis moved too little; two axes
-  // answer alike; the axis has answered an earlier step; a trigger is the only one, or one of more
-  // than two.
+  // Ends the current step. If nothing moved, the answer is "none", because few devices have six
+  // axes. An axis that rests at one end of its range is a trigger, and forms a pair with the other
+  // trigger. Errors, all kMalformed: something moved in the step "rest"; an axis moved too little;
+  // two axes respond alike; the axis responded in an earlier step; the device has one trigger only,
+  // or more than two.
   Result<PadAnswer> end();
 
-  // Nothing if no step was answered by an axis. REQUIRES: each step has ended without an error.
+  // Nothing if no axis responded in any step. REQUIRES: each step has ended without an error.
   std::optional<PadAxes> solve() const;
 
  private:
   struct Axis {
-    float low = 0, high = 0;  // at rest
+    float low = 0, high = 0;  // range of the values at rest
     float strongest = 0;      // signed change from rest in the current step
     float rest() const noexcept { return (low + high) / 2; }
     bool isTrigger() const noexcept;

@@ -1,4 +1,4 @@
-// Reasons in DeviceHealth of a device that is absent as it should be.
+// Texts of DeviceHealth::reason for a device whose absence is not a fault.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace merlin {
 
 inline constexpr std::string_view kNotConfigured = "not configured";  // its entry names no port
-// It is configured, and its process has not tried to open it since it started.
+// It is configured, but its process has not tried to open it since the process started.
 inline constexpr std::string_view kNotOpenedYet = "not opened yet";
 inline constexpr std::string_view kStopped = "stopped";  // its process ends, or closes the line
 

@@ -1,6 +1,7 @@
 // HeldBall: publishes a ball's samples, and publishes a push again while it is held. A device that
-// only tells of changes is silent meanwhile, and whoever reads the samples takes an old push for
-// one whose release was lost; what a held button does later has to be begun then.
+// reports only changes is silent meanwhile, but readers of the samples take an old push for one
+// whose release was lost. For the same reason the driver has to trigger the later effects of a held
+// button.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +22,16 @@ class HeldBall {
 
   // Publishes the sample as measured at `at`.
   void publish(Timestamp at) noexcept;
-  // Publishes it again if the ball is pushed and has not published for kAgain; calls the sink's
-  // tick() when it is due.
+  // Publishes the sample again if the ball is pushed and nothing was published for kAgain; calls
+  // the sink's tick() when that is due.
   void hold(Timestamp now) noexcept;
   // Longest time for which the driver may wait for bytes before it calls hold().
   Duration wait(Timestamp now) const noexcept;
 
-  // For a new connection: buttons and pushes of an earlier one are over.
+  // Begins a new connection: buttons and pushes of an earlier one have ended.
   void restart() noexcept;
-  // At the end of open(): publishes the sample if nothing was published since restart() and what
-  // was published before held a button or a push, whose end nobody has seen.
+  // To be called at the end of open(). Publishes the sample if none was published since restart()
+  // and the last one before had a button or push, whose end would not be seen otherwise.
   void settle(Timestamp now) noexcept;
   std::uint64_t samples() const noexcept { return samples_; }  // published, over all connections
 
@@ -39,8 +40,8 @@ class HeldBall {
  private:
   SampleSink& sink_;
   BallSample sample_{};
-  bool held_ = false;   // the newest sample that was published holds a button or a push
-  bool ended_ = false;  // which is over, but not published
+  bool held_ = false;   // the newest published sample has a button or a push
+  bool ended_ = false;  // that has ended, but its end has not been published
   std::uint64_t samples_ = 0;
 };
 

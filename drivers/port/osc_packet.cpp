@@ -10,13 +10,14 @@
 namespace merlin {
 namespace {
 
-// oscpack compares the first eight bytes of an element with the word that begins a bundle, whether
-// the element has eight or not.
+// oscpack compares the first eight bytes of an element with "#bundle" even if the element is
+// shorter, so that many zeros follow the copy.
 constexpr std::size_t kPadding = 8;
 
 // Whether a message has a blob among its arguments. oscpack 1.1.0 does not check a blob's length
-// (it makes an exception there and does not throw it), so that what follows would be read anywhere.
-// The address ends where oscpack sees its end: at the first zero that is the last of four bytes.
+// (it constructs an exception but does not throw it), so later arguments would be read out of
+// bounds. The address ends where oscpack sees its end: at the first group of four bytes whose last
+// byte is zero.
 bool hasBlob(const char* message, std::size_t size) noexcept {
   std::size_t last = 3;
   while (message[0] != '\0' && last < size && message[last] != '\0') last += 4;
@@ -51,8 +52,8 @@ OscArgument argumentOf(const osc::ReceivedMessageArgument& from) {
   return to;
 }
 
-// Reads one packet; `sink` may be null: then it is only checked. Throws what oscpack throws, and
-// osc::Exception for what is beyond the limits.
+// Reads one packet; if `sink` is null, only checks it. Throws the exceptions of oscpack, and
+// osc::Exception if a limit is exceeded.
 class Reading {
  public:
   Reading(std::vector<OscArgument>& arguments, OscSink* sink)
@@ -68,7 +69,7 @@ class Reading {
     }
   }
 
-  // Of a packet or of an element of a bundle.
+  // `Holder`: a packet, or an element of a bundle.
   template <typename Holder>
   void message(const Holder& holder) {
     if (hasBlob(holder.Contents(), static_cast<std::size_t>(holder.Size()))) return;

@@ -13,12 +13,12 @@
 namespace merlin {
 
 struct OscArgument {
-  enum Kind : std::uint8_t { kInteger, kReal, kText, kOther };  // kOther: of another type
+  enum Kind : std::uint8_t { kInteger, kReal, kText, kOther };  // kOther: any other type
 
   Kind kind = kOther;
-  double number = 0;         // of kInteger and kReal; may be NaN or infinite
-  std::int32_t integer = 0;  // of kInteger
-  std::string_view text;     // of kText
+  double number = 0;         // for kInteger and kReal; may be NaN or infinite
+  std::int32_t integer = 0;  // for kInteger
+  std::string_view text;     // for kText
 };
 
 struct OscMessage {
@@ -26,7 +26,7 @@ struct OscMessage {
   std::span<const OscArgument> arguments;
 };
 
-// Receives the messages of a datagram, in their order. All texts last as long as the call.
+// Receives the messages of a datagram, in their order. All texts are valid only during the call.
 class OscSink {
  public:
   virtual ~OscSink() = default;
@@ -35,17 +35,17 @@ class OscSink {
 
 class OscReader {
  public:
-  // Bundles may be nested; more than this is no packet that anybody sends.
+  // Maximum nesting of bundles; no known sender comes near it.
   static constexpr int kDeepest = 8;
   static constexpr std::size_t kMostArguments = 512;
 
   OscReader();
 
-  // Passes on the messages of the datagram; if any part of it is malformed, nested too deeply or
-  // has too many arguments, none of them, and returns false. Time tags of bundles are not looked
-  // at: what arrives counts now. Allocates only if the datagram is malformed (oscpack throws).
-  // Cost: linear in the datagram's length, for each level of nesting. A datagram that is longer
-  // than kLongestDatagram is malformed.
+  // Passes the messages of the datagram to `sink`. If any part of it is malformed, nested too
+  // deeply or has too many arguments, passes none of them and returns false. Time tags of bundles
+  // are ignored: all messages take effect on arrival. Allocates only if the datagram is malformed
+  // (oscpack throws). Cost: linear in the datagram's length, for each level of nesting. A datagram
+  // that is longer than kLongestDatagram is malformed.
   bool read(std::span<const std::byte> datagram, OscSink& sink) noexcept;
 
  private:

@@ -9,8 +9,8 @@ namespace {
 
 // Largest accepted joint angle: far above what the default calibration can give (6 rad).
 constexpr float kWidest_rad = 1000;
-// Largest accepted speed of a hand [m/s, rad/s]: the smoothed speed after a jump across the whole
-// range within one record.
+// Largest accepted speed of a hand [m/s, rad/s]. The smoothed speed reaches it after a jump across
+// the whole range within one record.
 constexpr float kFastest = 100'000;
 constexpr std::uint32_t kButtons = 12, kGloveFlags = 7;
 

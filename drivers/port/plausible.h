@@ -15,8 +15,8 @@ inline constexpr float kTrackerReach_m = 5;
 // configuration can set (10 m along each axis), plus the stylus's tip (1 m along each).
 inline constexpr float kFurthest_m = 25;
 
-// Return false if a number is NaN, infinite or out of its range, if the norm of a quaternion is not
-// 0.98..1.02, or if a code, letter or text is not valid. Counters and times are not checked.
+// Return false if a number is NaN, infinite or out of its range, if the norm of a quaternion is
+// outside 0.98..1.02, or if a code, letter or text is invalid. Counters and times are not checked.
 bool plausible(const GloveSample& sample) noexcept;
 bool plausible(const TrackerSample& sample) noexcept;
 bool plausible(const BallSample& sample) noexcept;

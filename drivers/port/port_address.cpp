@@ -20,7 +20,7 @@ constexpr const char* kForms =
     "serial:/dev/..., pty:PATH, tcp://HOST:PORT, udp:PORT, udp://ADDRESS:PORT, unix:PATH, "
     "evdev:/dev/input/... and replay:FILE";
 
-// Ports whose bytes are of a form of their own, which only some drivers read.
+// Kinds of ports whose bytes have a format of their own, which only some drivers can read.
 struct OwnForm {
   PortKind kind = PortKind::kEvdev;
   const char* what = "";
@@ -31,7 +31,7 @@ constexpr OwnForm kOwnForms[] = {
     {PortKind::kUdp, "a port for datagrams", {"tuio", "osc"}},
 };
 
-// "udp:PORT" or "udp://ADDRESS:PORT", whose ADDRESS is not a name.
+// Parses "udp:PORT" or "udp://ADDRESS:PORT", where ADDRESS is numeric.
 std::optional<PortAddress> parseUdp(std::string_view text) {
   constexpr std::string_view kScheme = "udp:", kLoopback = "127.0.0.1";
   if (!text.starts_with(kScheme)) return std::nullopt;
@@ -47,7 +47,7 @@ std::optional<PortAddress> parseUdp(std::string_view text) {
   return PortAddress{PortKind::kUdp, address->host, address->port};
 }
 
-// An address of the network as 16 bytes, that of IPv4 as ::ffff:a.b.c.d; nothing for a name.
+// A network address as 16 bytes, an IPv4 address in the form ::ffff:a.b.c.d; nothing for a name.
 using NetworkAddress = std::array<unsigned char, 16>;
 constexpr NetworkAddress kAnyIpv4{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF}, kAny{};
 
@@ -62,8 +62,8 @@ bool isIpv4(const NetworkAddress& address) {
   return std::equal(kAnyIpv4.begin(), kAnyIpv4.begin() + 12, address.begin());
 }
 
-// Whether a datagram to one of these addresses of this machine may arrive at the other one: :: is
-// also all of IPv4.
+// Whether a datagram to one of these local addresses may arrive at the other one; :: includes all
+// addresses of IPv4.
 bool overlap(const NetworkAddress& a, const NetworkAddress& b) {
   const auto within = [](const NetworkAddress& all, const NetworkAddress& one) {
     return all == kAny || (all == kAnyIpv4 && isIpv4(one));
@@ -85,7 +85,7 @@ bool sameHost(const PortAddress& a, const PortAddress& b) {
   return a.kind == PortKind::kUdp ? overlap(*first, *second) : *first == *second;
 }
 
-// The number of a port without the zeros before it.
+// Returns the number of a port without leading zeros.
 std::string_view plainNumber(std::string_view port) {
   return port.substr(std::min(port.size(), port.find_first_not_of('0')));
 }

@@ -1,8 +1,8 @@
 // PortAddress: address of a device's line: `serial:/dev/...`, `pty:PATH` (an emulator or another
 // program's pseudo-terminal), `tcp://HOST:PORT` (a raw serial server), `unix:PATH` (a local socket
 // that another program listens at, such as spacenavd's), `evdev:PATH` (an input device of the
-// kernel), `udp:PORT` or `udp://ADDRESS:PORT` (datagrams that other programs send to this port, of
-// this machine or at that address of it) or `replay:FILE` (a transcript).
+// kernel), `udp:PORT` or `udp://ADDRESS:PORT` (datagrams that other programs send to this port, at
+// 127.0.0.1 or at that address of this machine) or `replay:FILE` (a transcript).
 #pragma once
 
 #include <span>
@@ -30,15 +30,15 @@ struct PortAddress {
 // Errors: kInvalidArgument, with the allowed forms.
 Result<PortAddress> parsePort(std::string_view text);
 
-// Whether both are one line, however the addresses and the numbers of their ports are spelt, or
-// receive the same datagrams, as 0.0.0.0 does those of 127.0.0.1. Of a path, serial: and pty: are
-// one; what links make of it is for the caller to find. Two transcripts are two lines.
+// Whether both denote the same line, in whatever notation, or receive the same datagrams, as
+// 0.0.0.0 receives those of 127.0.0.1. serial: and pty: with the same path are one line; the caller
+// has to resolve links first. Two transcripts are always two lines.
 bool sameLine(const PortAddress& a, const PortAddress& b);
 
 // Speeds of a serial line that the drivers support, ascending [baud].
 std::span<const int> lineSpeeds();
 
-// Speed of a line whose driver has no usual one.
+// Speed of a line whose driver has no default.
 inline constexpr int kUsualBaud = 38400;
 
 // Settings of one device's line.

@@ -25,18 +25,18 @@ class SampleSink {
   virtual void publish(const BallSample& sample) noexcept = 0;
   virtual void publish(const TouchSample& sample) noexcept = 0;
 
-  // Told each time that a device of the kernel has been opened, before its first sample; other
-  // devices tell nothing.
+  // Called each time that an input device of the kernel has been opened, before its first sample;
+  // drivers of other devices do not call it.
   virtual void describe(const DeviceKeys&) noexcept {}
 
-  // When time alone will change something here, unless a sample comes before: a button that is held
-  // acts after a while. Timestamp::max(): never. The driver of a device that sends nothing while an
-  // input is held then calls tick(), with what time it is.
+  // When this sink has to act even if no sample arrives, for example because a held button takes
+  // effect after a delay. Timestamp::max(): never. The driver of a device that sends nothing while
+  // an input is held must then call tick() with the present time.
   virtual Timestamp due() const noexcept { return Timestamp::max(); }
   virtual void tick(Timestamp) noexcept {}
 };
 
-// How long the driver may wait for bytes before it calls tick(), and at most `most`.
+// How long the driver may wait for bytes before it has to call tick(), at most `most`.
 inline Duration untilDue(const SampleSink& sink, Timestamp now, Duration most) noexcept {
   const Timestamp due = sink.due();
   return due < now + most ? std::max<Duration>(due - now, Duration::zero()) : most;

@@ -14,7 +14,7 @@ namespace merlin {
 // What a device measures.
 enum class SampleKind { kGlove, kTracker, kBall, kTouch };
 
-// The most devices that one daemon reads, of all kinds and of each, and the most hands.
+// Maximum numbers of a daemon's devices, in all and of each kind, and of its hands.
 inline constexpr std::size_t kMostDevices = 16, kMostGloves = 4, kMostTrackers = 4, kMostBalls = 6,
                              kMostTouches = 2;
 inline constexpr std::size_t kMostHands = 4;
@@ -42,8 +42,8 @@ struct TrackerSample {
   std::int64_t received_ns;
   std::uint32_t counter;
   std::uint32_t station;  // 1..4, as numbered on the unit
-  // In the station's frame (TrackerFrames); by default the transmitter's: x away from the cable, y
-  // right, z down. The orientation is the unit quaternion q_frame_receiver.
+  // Pose in the station's frame (TrackerFrames); by default the transmitter's: x away from the
+  // cable, y right, z down. The orientation is the unit quaternion q_frame_receiver.
   float position_m[3];
   float orientation_wxyz[4];
   char error;           // letter of the unit's built-in test; ' ': no error
@@ -60,8 +60,8 @@ struct TrackerFrames {
 };
 static_assert(sizeof(TrackerFrames) == 208);
 
-// Keys of an input device that are followed at once, and the numbers that the kernel has for them,
-// from 0 on.
+// kKeys: maximum number of keys in a sample. kKeyNumbers: the kernel's numbers of keys are below
+// it.
 inline constexpr std::size_t kKeys = 8, kKeyNumbers = 0x300;
 
 struct BallSample {
@@ -72,8 +72,8 @@ struct BallSample {
   float rotation[3];        // about the same axes, right-handed, share of full scale
   std::int16_t raw[6];      // as on the wire: X Y Z A B C
   std::uint32_t period_us;  // since the last displacement packet, by the device's clock
-  // Of an input device of the kernel: the kernel's numbers of the keys and buttons that are
-  // pressed, in ascending order, then 0.
+  // For an input device of the kernel, the kernel's numbers of the keys and buttons that are
+  // pressed, in ascending order; 0 in the rest.
   std::uint16_t keys[kKeys];
 };
 static_assert(sizeof(BallSample) == 72 && offsetof(BallSample, translation) == 16);
@@ -81,20 +81,20 @@ static_assert(sizeof(BallSample) == 72 && offsetof(BallSample, translation) == 1
 // The kernel's number of the first button of a mouse, BTN_LEFT.
 inline constexpr std::uint16_t kFirstMouseButton = 0x110;
 
-// Fingers that a touch frame follows at once.
+// Maximum number of fingers in a sample.
 inline constexpr std::size_t kFingers = 10;
 
-// The fingers on a touch frame or a screen, or the buttons and the wheel of a mouse. Sent when a
-// finger comes, moves or goes, and when a button or the wheel does.
+// The fingers on a touch frame or a screen, or the buttons and the wheel of a mouse. Published when
+// a finger comes, moves or goes, and when a button or the wheel changes.
 struct TouchSample {
   std::int64_t received_ns;
   std::uint32_t counter;
-  std::uint32_t fingers;        // that touch now: the first of the lists below
-  std::uint32_t id[kFingers];   // of a finger, the same for as long as it stays down
-  float position[kFingers][2];  // share of the width, to the right, and of the height, down: 0..1
-  float aspect;                 // the surface's width by its height
-  std::uint16_t buttons;  // that are pressed: bit i is the kernel's number kFirstMouseButton + i
-  std::uint16_t wheel;    // notches by which it was turned away from the person, modulo 65536
+  std::uint32_t fingers;        // number that touch now: entries used in the lists below
+  std::uint32_t id[kFingers];   // of each finger, constant while it stays down
+  float position[kFingers][2];  // right and down, shares of width and height: 0..1
+  float aspect;                 // the surface's width divided by its height
+  std::uint16_t buttons;        // pressed: bit i is the kernel's number kFirstMouseButton + i
+  std::uint16_t wheel;          // notches turned away from the person, modulo 65536
 };
 static_assert(sizeof(TouchSample) == 144 && offsetof(TouchSample, position) == 56);
 
@@ -108,8 +108,9 @@ struct PostureSample {
 };
 static_assert(sizeof(PostureSample) == 64 && offsetof(PostureSample, activation) == 24);
 
-// The current posture: the last one that was held for the minimum time, until it has been absent
-// for a minimum time, as configured. A PostureSample is the result of a single record.
+// The current posture. A posture becomes current when it was held for a minimum time, and stays
+// current until it has been absent for a minimum time; both are configured. A PostureSample is the
+// result of a single record.
 struct PostureState {
   std::int64_t received_ns;  // of the newest glove record
   std::int64_t since_ns;     // received_ns of the record with which the posture (or none) began
@@ -118,7 +119,7 @@ struct PostureState {
   float margin;              // of the newest record: the least |2 y - 1| over the outputs y, 0..1
   std::uint32_t entered;     // number of postures that became current since the daemon started
   char name[20];             // of the current posture, NUL-ended; empty: none
-  char seen[20];             // of the posture that the newest record alone shows
+  char seen[20];             // name of the posture in the newest record alone
 };
 static_assert(sizeof(PostureState) == 72 && offsetof(PostureState, name) == 32);
 
@@ -127,7 +128,7 @@ struct GestureState {
   std::int64_t received_ns;   // of the tracker record with which the gesture ended; 0: none so far
   std::int64_t began_ns;      // received_ns of the record with which it began
   std::uint32_t counter;      // number of gestures
-  std::uint32_t passed_over;  // number of motions like a gesture while the hand held the model
+  std::uint32_t passed_over;  // gestures ignored because the hand held the model
   float certainty;            // 0..1: 1 is a gesture like the mean of those that were trained
   char name[36];              // of the gesture, NUL-ended; empty: none so far
 };

@@ -9,13 +9,13 @@
 
 namespace merlin {
 
-// How a device's axes lie on the surface as a person sees it: first they are swapped, then those of
-// the surface are reversed.
+// How a device's axes lie on the surface as a person sees it: first the axes are swapped, then the
+// resulting ones are reversed.
 struct TouchOrientation {
   bool swap_axes = false, invert_x = false, invert_y = false;
 };
 
-// The ratio of sides that counts where nothing is known of it: that of most screens.
+// The aspect ratio that is assumed if none is known: that of most screens.
 inline constexpr float kUsualAspect = 16.0F / 9;
 
 // Thread-bound; allocates nothing.
@@ -23,28 +23,28 @@ class TouchFrames {
  public:
   TouchFrames(SampleSink& sink, TouchOrientation orientation) noexcept;
 
-  // The surface's width by its height, as a person sees it.
+  // Sets the surface's width divided by its height, as a person sees it.
   void setAspect(float aspect) noexcept { next_.aspect = aspect; }
 
-  // A frame: begin(), add() for each finger that touches, publish(). `x` and `y` are shares of the
-  // device's own axes, to its right and down; they are limited to 0..1 (NaN counts as 0). Fingers
-  // beyond kFingers are left out.
+  // A frame consists of begin(), add() for each finger that touches, and publish(). `x` and `y` are
+  // shares of the device's own axes, to its right and down; they are limited to 0..1 (NaN counts as
+  // 0). Fingers beyond kFingers are left out.
   void begin() noexcept { next_.fingers = 0; }
-  // Of a mouse: TouchSample::buttons, and notches that the wheel has turned since the last frame.
+  // For a mouse: sets TouchSample::buttons, and adds the notches that the wheel has turned since
+  // the last frame.
   void setMouse(std::uint16_t buttons, int notches) noexcept;
   void add(std::uint32_t id, float x, float y) noexcept;
-  // Publishes the frame, unless it has the same fingers at the same places as the one before, the
-  // same buttons, and the wheel was not turned.
+  // Publishes the frame unless fingers, their places, buttons and wheel are as in the frame before.
   void publish(Timestamp at) noexcept;
   // Publishes the frame in any case.
   void publishAnyway(Timestamp at) noexcept;
 
-  // Longest time for which the driver may wait for bytes before it calls hold(), which lets
-  // happen what a held button or pinch does later.
+  // Longest time for which the driver may wait for bytes before it calls hold(), which triggers the
+  // later effects of a held button or pinch.
   Duration wait(Timestamp now) const noexcept { return untilDue(sink_, now, kLongestWait); }
   void hold(Timestamp now) noexcept { tickIfDue(sink_, now); }
 
-  // No finger touches any more, and no button is pressed; published if one was.
+  // Removes all fingers and releases all buttons; publishes this if there were any.
   void lift(Timestamp at) noexcept;
 
   std::uint64_t samples() const noexcept { return samples_; }

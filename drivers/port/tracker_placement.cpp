@@ -25,7 +25,7 @@ Vector along(const std::array<int, 3>& axes, const Vector& v) {
   return placed;
 }
 
-// 1 or -1: whether the axes are right-handed.
+// 1 if the axes are right-handed, otherwise -1.
 float handedness(const std::array<int, 3>& axes) {
   const Vector x = along(axes, {1, 0, 0}), y = along(axes, {0, 1, 0}), z = along(axes, {0, 0, 1});
   const Vector cross = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2],
@@ -35,8 +35,8 @@ float handedness(const std::array<int, 3>& axes) {
 
 constexpr double kMostOff_deg = 20;
 
-// The axis that is sent along which the way from `origin` to `to` goes: 1 to 3, negative if against
-// it.
+// Returns the tracker's axis that is nearest to the direction from `origin` to `to`: 1 to 3,
+// negative if it points the opposite way.
 Result<int> nearestAxis(const std::array<double, 3>& origin, const std::array<double, 3>& to,
                         const char* name) {
   std::array<double, 3> way{};
@@ -106,14 +106,13 @@ void checkPlacement(const TrackerPlacement& placement, const std::string& pointe
 void describe(TrackerPlacement& placement, SettingsVisitor& v) {
   v.numbers(
       "axes", placement.axes, {-3, 3},
-      "Which of the axes that the sender uses become the tracker's x, y and z: 1 is x, 2 is y, 3 "
-      "is z; a negative number reverses the axis. /wall/scene/tracker_axes then applies to the "
-      "result, as it does to all trackers. For a sender with x to the right, y up and z towards "
-      "the person, as most motion capture and VR systems have it, used together with a Fastrak: "
-      "[3, -1, -2].");
+      "Axes of the sender that become the tracker's x, y and z: 1 is x, 2 is y, 3 is z; a negative "
+      "number reverses the axis. /wall/scene/tracker_axes then applies to the result, as it does "
+      "to all trackers. For a sender with x to the right, y up and z towards the person, as most "
+      "motion capture and VR systems have it, used together with a Fastrak: [3, -1, -2].");
   v.numbers("origin_m", placement.origin_m, {-100, 100},
-            "Place, in the tracker's frame, of the point that the sender calls 0, 0, 0: x, y, z in "
-            "metres.");
+            "Position, in the tracker's frame, of the sender's origin (the point 0, 0, 0): x, y, z "
+            "in metres.");
 }
 
 }  // namespace merlin

@@ -1,5 +1,5 @@
-// TrackerPlacement: how the frame of a tracker that measures in one of its own, as motion capture
-// and VR systems do, lies in the frame that the rest of MERLIN takes all trackers to have. Pure.
+// TrackerPlacement: transformation from the frame of a tracker that has its own, as motion capture
+// and VR systems do, to the frame that the rest of MERLIN assumes for all trackers. Pure.
 #pragma once
 
 #include <array>
@@ -14,24 +14,26 @@ namespace merlin {
 class SettingsVisitor;
 
 struct TrackerPlacement {
-  // Which of its axes (1 x, 2 y, 3 z; negative: reversed) are x, y and z of the samples.
+  // The tracker's axes (1 x, 2 y, 3 z; negative: reversed) that are x, y and z of the samples.
   std::array<int, 3> axes = {1, 2, 3};
   // The place of its origin, in the frame of the samples [m].
   std::array<double, 3> origin_m{};
 };
 
-// Turns and moves the sample's pose. Axes may also mirror the frame: rotations then turn the other
-// way about their mirrored axis. REQUIRES: checkPlacement() finds nothing.
+// Transforms the sample's pose. Axes may also mirror the frame; rotations about the mirrored axis
+// are then reversed. REQUIRES: checkPlacement() finds nothing.
 void place(const TrackerPlacement& placement, TrackerSample& sample) noexcept;
 
-// The placement whose origin is `origin`, whose x axis goes through `on_x` and whose y axis lies on
-// the side of `on_y`: places as they are sent [m]. Errors: kMalformed (an axis lies more than 20
-// degrees off those that are sent, both lie along one).
+// Returns the placement whose origin is `origin`, whose x axis goes through `on_x` and whose y axis
+// lies on the side of `on_y`. The three places are as the tracker sends them [m]. Errors:
+// kMalformed (an axis lies more than 20 degrees off each of the tracker's axes, or both lie along
+// the same one).
 Result<TrackerPlacement> placementOf(const std::array<double, 3>& origin,
                                      const std::array<double, 3>& on_x,
                                      const std::array<double, 3>& on_y);
 
-// Adds a fault if the axes are not each of x, y and z once. `pointer`: of the driver's settings.
+// Adds a fault unless each of x, y and z is used by one axis. `pointer`: that of the driver's
+// settings.
 void checkPlacement(const TrackerPlacement& placement, const std::string& pointer,
                     SettingFaults& faults);
 

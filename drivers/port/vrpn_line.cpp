@@ -8,7 +8,7 @@ namespace merlin {
 namespace {
 
 constexpr std::string_view kMagic = "vrpn: ver. 07.38";
-constexpr std::size_t kMajor = kMagic.rfind('.') + 1;  // length of what has to agree
+constexpr std::size_t kMajor = kMagic.rfind('.') + 1;  // length of the part that must agree
 constexpr std::size_t kPoseLength = 64;
 
 std::uint32_t loadU32(std::string_view bytes, std::size_t at) noexcept {
@@ -22,7 +22,7 @@ double loadDouble(std::string_view bytes, std::size_t at) noexcept {
 }
 std::size_t padded(std::size_t payload) noexcept { return (payload + 7) / 8 * 8; }
 
-// VRPN's own numbers of the state of a button.
+// Interprets VRPN's codes for the state of a button.
 bool isDown(std::int32_t state) noexcept {
   constexpr std::int32_t kOn = 1, kToggleOn = 21;
   return state == kOn || state == kToggleOn;
@@ -144,7 +144,8 @@ std::string vrpnChannels(std::span<const double> channels) {
   return out;
 }
 
-// The number of channels comes as a double; only the one that fits the payload's length is right.
+// The number of channels is sent as a double; the payload is valid only if its length agrees with
+// it.
 std::optional<VrpnChannels> readVrpnChannels(std::string_view payload) noexcept {
   if (payload.size() < 8 || payload.size() % 8 != 0) return std::nullopt;
   VrpnChannels channels;

@@ -1,10 +1,10 @@
-// What a port that speaks VRPN carries: the cookies and messages by which our server (daemon/serve)
-// and our client (drivers/vrpn) speak. Pure.
+// The VRPN wire format, cookies and messages, as our server (daemon/serve) and our client
+// (drivers/vrpn) use it. Pure.
 //
 // Both sides begin with a cookie of 24 bytes. A message: i32be x 5: length (24 + payload), seconds,
 // microseconds, sender, type; i32be sequence number; payload, padded to a multiple of 8. Negative
-// types are the system's: -1 describes a sender, -2 a type, each by a name; the number described is
-// in the place of the sender. Each side has numbers of its own.
+// types are the system's: -1 describes a sender, -2 a type, each by a name; the field of the sender
+// holds the number that is described. Each side assigns its own numbers.
 //
 // Source: VRPN 07.38, vrpn_Connection.C, vrpn_Tracker.C, vrpn_Button.C, vrpn_Analog.C.
 #pragma once
@@ -32,15 +32,15 @@ inline constexpr const char* kVrpnControl = "VRPN Control";
 inline constexpr const char* kVrpnPing = "vrpn_Base ping_message";
 inline constexpr const char* kVrpnPong = "vrpn_Base pong_message";
 inline constexpr const char* kVrpnPoseType = "vrpn_Tracker Pos_Quat";
-inline constexpr const char* kVrpnButtonType = "vrpn_Button Change";   // of one button
-inline constexpr const char* kVrpnButtonsType = "vrpn_Button States";  // of all of a device
+inline constexpr const char* kVrpnButtonType = "vrpn_Button Change";   // state of one button
+inline constexpr const char* kVrpnButtonsType = "vrpn_Button States";  // states of all buttons
 inline constexpr const char* kVrpnChannelsType = "vrpn_Analog Channel";
 
 // A server of MERLIN also describes a type of this name with its instance after it. No message has
-// the type: it says whose the server is, so that no merlind is offered its own devices.
+// this type. It identifies the server, so that a merlind does not offer its own devices to itself.
 inline constexpr const char* kVrpnInstance = "MERLIN instance ";
 
-// The most buttons and channels that VRPN knows of one device; both are numbered from 0.
+// Maximum numbers of buttons and channels of one device in VRPN; both are numbered from 0.
 inline constexpr std::size_t kVrpnButtons = 256, kVrpnChannels = 128;
 
 // The cookie that we send.
@@ -65,17 +65,18 @@ void appendVrpn(const VrpnHeader& header, std::string_view payload, std::string&
 // The beginning of a message.
 struct VrpnStart {
   VrpnHeader header;
-  std::size_t payload = 0;  // its length without padding
+  std::size_t payload = 0;  // length of the payload without padding
   std::size_t bytes = 0;    // length of the whole message; 0: invalid, no message has this length
 };
 // REQUIRES: `bytes` begins with kVrpnHeaderLength bytes.
 VrpnStart readVrpnStart(std::string_view bytes) noexcept;
 
-// Encode and decode payloads. What is read is part of the payload; nothing if it is malformed.
-std::string vrpnName(std::string_view name);  // of a message that describes a sender or type
+// Encode and decode payloads. A text that is returned is a view of the payload; nothing is returned
+// if the payload is malformed.
+std::string vrpnName(std::string_view name);  // for a description of a sender or type
 std::optional<std::string_view> readVrpnName(std::string_view payload) noexcept;
 
-// Pos_Quat: a sensor's pose. The numbers that are read can be any, NaN and infinity included.
+// Pos_Quat: a sensor's pose. The decoded numbers are unchecked and can be NaN or infinite.
 struct VrpnPose {
   std::int32_t sensor = 0;
   std::array<double, 3> position{};  // in the server's unit; VRPN asks for metres
@@ -85,7 +86,7 @@ std::string vrpnPose(std::int32_t sensor, std::span<const float> position_m,
                      std::span<const float> orientation_wxyz);
 std::optional<VrpnPose> readVrpnPose(std::string_view payload) noexcept;
 
-// Button Change. A button is also down that its server has made a toggle, while it is on.
+// Button Change. A button that the server treats as a toggle is down while the toggle is on.
 struct VrpnButton {
   std::size_t button = 0;  // less than kVrpnButtons
   bool down = false;
@@ -93,7 +94,7 @@ struct VrpnButton {
 std::string vrpnButton(std::int32_t button, bool down);
 std::optional<VrpnButton> readVrpnButton(std::string_view payload) noexcept;
 
-// Button States. `down`: bit i is button i. REQUIRES of what is encoded: at most 32 buttons.
+// Button States. `down`: bit i is button i. vrpnButtons() REQUIRES: count <= 32.
 struct VrpnButtons {
   std::size_t count = 0;  // at most kVrpnButtons
   std::bitset<kVrpnButtons> down;
@@ -101,7 +102,7 @@ struct VrpnButtons {
 std::string vrpnButtons(std::uint32_t down, std::int32_t count);
 std::optional<VrpnButtons> readVrpnButtons(std::string_view payload) noexcept;
 
-// Analog Channel: the values of all channels of a device, in the server's unit; what is read is
+// Analog Channel: the values of all channels of a device, in the server's unit; decoded values are
 // finite.
 struct VrpnChannels {
   std::size_t count = 0;  // at most kVrpnChannels

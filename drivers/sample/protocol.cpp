@@ -7,7 +7,7 @@
 namespace merlin::sample {
 namespace {
 
-constexpr int kAllButtons = 0xFFF;  // twelve, as BallSample has them
+constexpr int kAllButtons = 0xFFF;  // the twelve of BallSample
 
 }  // namespace
 

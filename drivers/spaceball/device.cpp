@@ -49,12 +49,12 @@ Result<std::string> SpaceballDevice::open(ByteStream& stream) {
   model_ = modelOf(*firmware);
   set_ups_ = 0;
   complaint_ = "";
-  parser_ = {};  // of an earlier connection may be half a packet
+  parser_ = {};  // drops half a packet of an earlier connection
   pinged_ = false;
   if (const auto done = setUp(stream); !done) return done.error();
   last_heard_ = clock_.now();
   const std::uint32_t counter = sample_.counter;
-  sample_ = {};  // buttons and pushes of an earlier connection are over
+  sample_ = {};  // buttons and pushes of an earlier connection have ended
   sample_.counter = counter;
   fresh_ = true;
   return fmt::format("{}, firmware {}", nameOf(model_), *firmware);
@@ -116,7 +116,7 @@ Result<Ok> SpaceballDevice::poll(ByteStream& stream) {
     if (auto done = handle(*packet, packet_start_, stream); !done) return done;
   }
   tickIfDue(sink_, now);
-  return keepAlive(stream);  // bytes that form no packet count as silence
+  return keepAlive(stream);  // bytes that do not form a packet count as silence
 }
 
 // If the line loses the set-up, the ball answers queries but never sends displacements. So the

@@ -20,7 +20,7 @@ constexpr GuidedStep kSteps[] = {
 };
 constexpr std::size_t kRest = 0;
 
-constexpr int kMostNext_percent = 60;           // next axis of the kind, relative to the strongest
+constexpr int kMostNext_percent = 60;           // second axis of a kind, relative to the first
 constexpr int kMargin = 4;                      // counts, added to the dead zone
 constexpr int kMostNoise = (99 - kMargin) / 2;  // keeps the dead zone within 0..99
 
@@ -36,7 +36,7 @@ char nameOfAxis(int axis) noexcept {
   return std::string_view("-XYZABC")[static_cast<std::size_t>(std::abs(axis))];
 }
 
-// Counts of a push, or counts of a twist scaled to those of a push.
+// Returns the counts of a push unchanged, those of a twist scaled to a push.
 int GuidedAxes::strength(int axis, int counts) const noexcept {
   return counts * (isPushAxis(axis) ? 1 : response_.push_of_twist);
 }
@@ -57,7 +57,7 @@ Result<AxisAnswer> GuidedAxes::end() {
   const auto counts = [&](int axis) {
     return std::abs(strongest_[static_cast<std::size_t>(axis - 1)]);
   };
-  const auto asked = [&](int axis) {  // at rest, unscaled
+  const auto asked = [&](int axis) {  // unscaled in the step "rest"
     return step_ == kRest ? counts(axis) : strength(axis, counts(axis));
   };
   std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return asked(a) > asked(b); });

@@ -16,20 +16,20 @@ namespace merlin::spaceball {
 std::span<const GuidedStep> axesSteps();
 
 // The ball's axis with the largest response: 1..6 (X Y Z A B C), negative if it is reversed, and
-// its raw counts; and the axis of the same kind (push or twist) with the next largest.
+// its raw counts; also the axis of the same kind (push or twist) with the second largest response.
 struct AxisAnswer {
   int axis = 0, counts = 0;
   int next_axis = 0, next_counts = 0;
 };
 char nameOfAxis(int axis) noexcept;  // 'X' for 1 and -1
 
-// How strongly a kind of ball answers a person, in its raw counts.
+// How strongly a kind of ball responds to a person, in raw counts.
 struct BallResponse {
   int push_of_twist;            // counts of a full push divided by those of a full twist
   int least_push, least_twist;  // below these, the person is asked to push or twist harder
 };
-// A Spaceball's pushes count five times as much as its twists, as its default full scales have it
-// (README.md, "Quirks").
+// A Spaceball's pushes give five times as many counts as its twists; the default full scales have
+// the same ratio (README.md, "Quirks").
 inline constexpr BallResponse kSpaceballResponse = {5, 400, 80};
 // Space mice send at most 350 counts of each axis; see SpacenavSettings::full_scale.
 inline constexpr BallResponse kSpaceMouseResponse = {1, 120, 120};

@@ -72,8 +72,8 @@ const char* nameOf(Model model) noexcept;
 // Meaning of the first error in an 'E' packet of a 4000. Source: FLX.
 const char* meaningOf(std::string_view error_packet) noexcept;
 
-// Bit i = button i + 1. 1003, 2003: eight buttons and pick as the ninth. 3003: left, right, rezero.
-// 4000: twelve.
+// Bit i = button i + 1. 1003, 2003: eight buttons, and the pick button as the ninth. 3003: left,
+// right, rezero. 4000: twelve.
 std::uint32_t buttonsOf(const Keys& keys, Model model) noexcept;
 
 // Inverse of the parser, for the emulator: the bytes that a device of that model sends.

@@ -10,13 +10,13 @@ namespace merlin {
 
 class SettingsVisitor;
 
-inline constexpr int kSpaceballBaud = 9600;  // speed of its line, as it is delivered
+inline constexpr int kSpaceballBaud = 9600;  // factory setting of its line
 
 struct SpaceballSettings {
   // Raw counts of a full push, and of a full twist.
   int full_scale_translation = 8000;
   int full_scale_rotation = 1600;
-  // Raw counts of an axis up to which it counts as at rest.
+  // An axis with at most this many raw counts is taken as at rest.
   int dead_zone = 16;
   // Settings inside the ball.
   int null_region = 20;  // weaker pushes and twists are reported as zero; 0 to 63, the ball's units

@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 constexpr Duration kHelloTime = milliseconds(300);  // as libspnav waits
 constexpr Duration kNameTime = milliseconds(1000);
 constexpr std::size_t kLongestName = 256;
-constexpr std::uint32_t kButtons = 12;  // as BallSample has them
+constexpr std::uint32_t kButtons = 12;  // those of BallSample
 constexpr const char* kNoMouse = "spacenavd has no space mouse";
 
 }  // namespace
@@ -31,8 +31,8 @@ Result<std::string> SpacenavDevice::open(ByteStream& stream) {
   return name;
 }
 
-// Version 0 takes the word for a sensitivity that is not a number, so it is set to 1 afterwards, as
-// libspnav does.
+// A spacenavd of version 0 interprets the word as a sensitivity, which is then NaN; so the
+// sensitivity is set to 1 afterwards, as libspnav does.
 Result<Ok> SpacenavDevice::greet(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
   if (auto sent = dialogue.send(encodeWord(kHello)); !sent) return sent;
@@ -40,14 +40,14 @@ Result<Ok> SpacenavDevice::greet(ByteStream& stream) {
   if (!answer && answer.error().code != Errc::kTimeout) return answer.error();
   has_names_ = answer && *answer == encodeWord(kHello);
   if (has_names_) return Ok{};
-  if (answer) {  // the beginning of an event
+  if (answer) {  // version 0: this is the beginning of an event
     frame_start_ = clock_.now();
     for (const char c : *answer) (void)parser_.feed(static_cast<std::byte>(c));
   }
   return dialogue.send(encodeWord(std::bit_cast<std::uint32_t>(1.0F)));
 }
 
-// Events may come between the pieces of the answer.
+// Events may arrive between the pieces of the answer.
 Result<std::string> SpacenavDevice::askName(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
   if (const auto sent = dialogue.send(encode({kDeviceName})); !sent) return sent.error();
@@ -88,7 +88,7 @@ Result<Ok> SpacenavDevice::poll(ByteStream& stream) {
 void SpacenavDevice::handle(const Frame& frame, Timestamp first_byte) noexcept {
   switch (frame[0]) {
     case kMotion:
-      mouse_lost_ = false;  // the one that went was not the last: spacenavd reads several
+      mouse_lost_ = false;  // spacenavd reads several mice: the removed one was not the last
       move(frame);
       break;
     case kPress: mouse_lost_ = false; [[fallthrough]];
@@ -99,7 +99,7 @@ void SpacenavDevice::handle(const Frame& frame, Timestamp first_byte) noexcept {
       buttons = frame[0] == kPress ? buttons | 1U << number : buttons & ~(1U << number);
       break;
     }
-    case kDevice: {  // what was pushed or pressed is over
+    case kDevice: {  // pushes and pressed buttons have ended
       constexpr std::int32_t kAdded = 0;
       mouse_lost_ = frame[1] != kAdded;
       ball_.restart();

@@ -13,9 +13,9 @@
 
 namespace merlin::spacenav {
 
-// open() takes at most 1.3 s; a spacenavd of version 0 of the protocol, which gives no name, is
-// taken as well. A space mouse at rest is silent, so silence is no fault: the connection ends when
-// spacenavd does.
+// open() takes at most 1.3 s; it also accepts a spacenavd with version 0 of the protocol, which
+// gives no device name. A space mouse at rest is silent, so silence is no fault: poll() fails only
+// when spacenavd ends.
 class SpacenavDevice final : public Device {
  public:
   SpacenavDevice(const SpacenavSettings& settings, const Clock& clock, SampleSink& sink)

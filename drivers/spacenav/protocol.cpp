@@ -28,7 +28,7 @@ std::optional<Frame> Parser::feed(std::byte byte) noexcept {
     ++bad_bytes_;
     if (!lost_) ++bad_packets_;
     lost_ = true;
-    // Only the first word is looked at, so no more than four bytes are there.
+    // The check rejects a frame at its first word, so the buffer has at most four bytes here.
     std::copy(bytes_.begin() + 1, bytes_.begin() + static_cast<std::ptrdiff_t>(length_),
               bytes_.begin());
     --length_;

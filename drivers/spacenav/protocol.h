@@ -1,5 +1,5 @@
-// What spacenavd, the daemon for space mice, sends to its clients, and what a client asks of it:
-// bytes to frames and back. Pure.
+// Wire format between spacenavd, the daemon for space mice, and its clients: bytes to frames and
+// back. Pure.
 //
 // A frame is 32 bytes: i32[8] in the machine's byte order. From spacenavd: 0 motion x y z rx ry rz
 // ms; 1 press, 2 release: the button; 3 device: 0 added or 1 removed; 4 to 6 configuration, raw
@@ -28,8 +28,8 @@ inline constexpr std::int32_t kFailed = -1;  // last word of the answer to a req
 
 class Parser {
  public:
-  // Takes one byte; returns a frame when `byte` completes one. Never blocks, never allocates. What
-  // cannot begin a frame is dropped byte by byte and counted.
+  // Takes one byte; returns a frame when `byte` completes one. Never blocks, never allocates. Bytes
+  // that cannot begin a frame are dropped one by one and counted.
   std::optional<Frame> feed(std::byte byte) noexcept;
 
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
@@ -40,7 +40,7 @@ class Parser {
  private:
   std::array<std::byte, sizeof(Frame)> bytes_{};
   std::size_t length_ = 0;
-  bool lost_ = false;  // since the last frame, bytes were dropped
+  bool lost_ = false;  // bytes were dropped since the last frame
   std::uint64_t bad_packets_ = 0, bad_bytes_ = 0;
 };
 
@@ -53,7 +53,7 @@ struct NamePiece {
   std::string text;      // at most 24 characters
   bool complete = true;  // no further piece follows
 };
-// Nothing if the frame is no answer to kDeviceName, or says that there is no device.
+// Nothing if the frame is not an answer to kDeviceName, or reports that there is no device.
 std::optional<NamePiece> namePiece(const Frame& frame);
 
 }  // namespace merlin::spacenav

@@ -37,9 +37,9 @@ Result<std::string> TouchDevice::open(ByteStream& stream) {
   frames_.begin();
   surface_.fill(frames_);
   if (surface_.kind() == Surface::Kind::kMouse)
-    frames_.publishAnyway(clock_.now());  // its wheel is counted from here
+    frames_.publishAnyway(clock_.now());  // clients count the wheel from here on
   else
-    frames_.publish(clock_.now());  // fingers that touch already
+    frames_.publish(clock_.now());  // in case fingers touch already
   return fmt::format("{}, {}", name, kindOf(surface_));
 }
 

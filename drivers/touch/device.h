@@ -14,11 +14,11 @@
 
 namespace merlin::touch {
 
-// open() reads the description, within 1 s; kMalformed also for a device that is neither a touch
-// surface nor a mouse. poll() publishes a sample for each report of the device in which a finger
-// comes, moves or goes. A device that nobody touches is silent, so silence is no fault: the
-// connection ends when the device is unplugged. The fingers of before are gone with the next
-// open().
+// open() reads the device's description, which takes at most 1 s; it also fails with kMalformed if
+// the device is neither a touch surface nor a mouse. poll() publishes a sample for each report of
+// the device in which a finger comes, moves or goes. A device that nobody touches is silent, so
+// silence is no fault: the connection ends when the device is unplugged. The next open() removes
+// the fingers of the previous connection.
 class TouchDevice final : public Device {
  public:
   TouchDevice(const TouchSettings& settings, const Clock& clock, SampleSink& sink)

@@ -11,11 +11,11 @@ class SettingsVisitor;
 
 struct TouchSettings {
   TouchOrientation orientation;
-  double aspect = 0;        // width by height as a person sees it; 0: as the device says
-  int mouse_counts = 2000;  // of a mouse's motion along the surface's height
+  double aspect = 0;        // width / height as a person sees it; 0: as the device reports
+  int mouse_counts = 2000;  // a mouse's counts over the surface's height
 };
 
-// Finds a port at which no input device can be. Pointer: "/port".
+// Finds a port of the wrong kind. Pointer: "/port".
 SettingFaults validate(const TouchSettings& settings, const LineSettings& line);
 
 // Calls `visitor` for every setting, in the order of written files.

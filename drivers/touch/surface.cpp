@@ -9,10 +9,10 @@
 namespace merlin::touch {
 namespace {
 
-constexpr std::int32_t kMostNotches = 100;  // of a wheel, in one report
+constexpr std::int32_t kMostNotches = 100;  // maximum of a wheel in one report
 
 constexpr std::size_t kLongestName = 200;
-constexpr float kNarrowest = 0.02F, kWidest = 50;  // aspects of a surface
+constexpr float kNarrowest = 0.02F, kWidest = 50;  // limits of the aspect ratio
 
 }  // namespace
 
@@ -66,14 +66,15 @@ Surface::Kind Surface::choose(const TouchSettings& settings) noexcept {
   }
   aspect_ = aspectOf(settings);
   count_y_ = 1 / static_cast<float>(settings.mouse_counts);
-  // A mouse's counts are the person's, before the axes are swapped.
+  // The setting applies to the surface as the person sees it, but counts are added before the axes
+  // are swapped.
   count_x_ = settings.orientation.swap_axes ? count_y_ * aspect_ : count_y_ / aspect_;
   setDown(has_touch_ ? pressed_touch_ : pressed_left_);
   return kind_;
 }
 
-// The resolution counts if both axes have one; equal ranges say nothing, since many frames scale
-// both axes to the same.
+// Uses the resolutions if both axes have one. Equal ranges are not evidence of a square, since many
+// frames scale both axes to the same range.
 float Surface::aspectOf(const TouchSettings& settings) const noexcept {
   if (settings.aspect > 0)
     return std::clamp(static_cast<float>(settings.aspect), kNarrowest, kWidest);
@@ -111,7 +112,7 @@ void Surface::moveSlot(const EvdevRecord& r) noexcept {
     case ABS_MT_POSITION_Y: slot.y = r.value; break;
     case ABS_MT_TOOL_TYPE: slot.palm = r.value == MT_TOOL_PALM; break;
     case ABS_MT_TRACKING_ID:
-      // Another number is another finger, also if the first one's end was not told.
+      // A new number is a new finger, even if the end of the former one was not reported.
       if (r.value >= 0 && r.value != slot.tracking) {
         slot.id = ++last_id_;
         slot.palm = false;
@@ -143,7 +144,8 @@ void Surface::press(const EvdevRecord& r) noexcept {
   if (kind_ != Kind::kNone) setDown(has_touch_ ? pressed_touch_ : pressed_left_);
 }
 
-// A drag with the mouse begins in the middle, so that it has room to every side.
+// A drag with the mouse begins in the middle of the surface, so that it has room in every
+// direction.
 void Surface::setDown(bool down) noexcept {
   if (down && !down_) {
     id_ = ++last_id_;

@@ -1,5 +1,5 @@
-// Surface: the fingers on an input device of the kernel: on the slots of a multi-touch device, on a
-// device with one position, or the one that a pressed mouse moves. Pure.
+// Surface: the fingers on an input device of the kernel. It is a multi-touch device with slots, a
+// device with a single position, or a mouse, whose pressed button counts as a finger. Pure.
 //
 // Source: Linux Documentation/input/multi-touch-protocol.rst (protocol B), event-codes.rst.
 #pragma once
@@ -21,11 +21,11 @@ class Surface {
 
   // Takes one record of the description, or of the state that follows it.
   void describe(const EvdevRecord& record);
-  // Chooses what kind of device it is, once the description is complete; kNone: it has neither
-  // slots with positions, nor a position with a button for the touch, nor motion with a button.
+  // Determines the kind of device; to be called once the description is complete. kNone: the device
+  // has neither slots with positions, nor a position with a touch button, nor motion with a button.
   Kind choose(const TouchSettings& settings) noexcept;
 
-  // Takes one record of the events. Allocates nothing.
+  // Takes one record of an event. Allocates nothing.
   void take(const EvdevRecord& record) noexcept;
   // Adds the fingers that touch now, and a mouse's buttons and the notches of its wheel since the
   // last call, to a frame that has begun.
@@ -35,13 +35,13 @@ class Surface {
   Kind kind() const noexcept { return kind_; }
   std::size_t slots() const noexcept {
     return slots_used_;
-  }  // that the device has and are followed
-  // The surface's width by its height, as a person sees it.
+  }  // number of the device's slots that are followed
+  // The surface's width divided by its height, as a person sees it.
   float aspect() const noexcept { return aspect_; }
-  // Whether it tells of fingers by the kernel's protocol A, which has no slots.
+  // Whether the device reports fingers by the kernel's protocol A, which has no slots.
   bool hasOldProtocol() const noexcept { return !slot_range_ && mt_x_.there; }
 
-  static constexpr std::size_t kSlots = 32;  // the most that are followed
+  static constexpr std::size_t kSlots = 32;  // further slots are ignored
 
  private:
   struct Axis {
@@ -70,17 +70,17 @@ class Surface {
   std::uint32_t last_id_ = 0;
 
   Axis mt_x_, mt_y_, x_, y_;
-  std::optional<std::int32_t> slot_range_;  // the highest number of a slot
+  std::optional<std::int32_t> slot_range_;  // highest slot number
   std::array<Slot, kSlots> slots_{};
   std::size_t slots_used_ = 0;
-  std::int32_t slot_ = 0;  // that the next records are about
+  std::int32_t slot_ = 0;  // to which the next records belong
 
-  bool moves_x_ = false, moves_y_ = false;     // relative axes that are there
-  bool has_touch_ = false, has_left_ = false;  // keys that are there
+  bool moves_x_ = false, moves_y_ = false;     // the device has the relative axis
+  bool has_touch_ = false, has_left_ = false;  // the device has the button
   bool pressed_touch_ = false, pressed_left_ = false, down_ = false;
-  std::uint32_t id_ = 0;             // of the one finger, while down_
+  std::uint32_t id_ = 0;             // of the only finger, while down_
   float count_x_ = 0, count_y_ = 0;  // a mouse's count as a share of the sides
-  std::array<float, 2> place_{};     // of a mouse's finger
+  std::array<float, 2> place_{};     // place of a mouse's finger
   std::uint16_t buttons_ = 0;        // as in TouchSample, without the left one
   int notches_ = 0;                  // since the last fill()
 };

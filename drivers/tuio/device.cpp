@@ -55,7 +55,7 @@ void TuioDevice::take(const Datagram& datagram, Timestamp first_byte) noexcept {
     fault_ = "";
     return publish(first_byte);
   }
-  if (heard_ && good && !*sources_.fault()) return;  // of another profile
+  if (heard_ && good && !*sources_.fault()) return;  // only messages of other profiles
   fault_ = !good ? kNoOsc : *sources_.fault() ? sources_.fault() : kNoFrame;
   faulted_ = first_byte;
 }

@@ -15,10 +15,10 @@
 
 namespace merlin::tuio {
 
-// open() waits for nothing: a tracker need not send while nobody touches its surface, so silence is
-// no fault. poll() publishes a sample for each datagram that changes which fingers touch, or where.
-// A source that is silent for 2 s counts as having no fingers on it; if all sources are silent,
-// complaint() says so.
+// open() does not wait for data: a tracker need not send while nobody touches its surface, so
+// silence is no fault. poll() publishes a sample for each datagram that changes which fingers
+// touch, or where. A source that is silent for 2 s counts as having no fingers on it; if all
+// sources are silent, complaint() says so.
 class TuioDevice final : public Device {
  public:
   TuioDevice(const TuioSettings& settings, const Clock& clock, SampleSink& sink);
@@ -38,10 +38,10 @@ class TuioDevice final : public Device {
   OscReader osc_;
   Sources sources_;
   Timestamp datagram_start_{};
-  std::uint64_t bad_datagrams_ = 0;  // that are no OSC
-  bool heard_ = false;               // a complete frame since open()
-  const char* fault_ = "";           // of the newest datagram, if it was no frame
-  Timestamp faulted_{};              // when that came
+  std::uint64_t bad_datagrams_ = 0;  // that are not OSC
+  bool heard_ = false;               // a complete frame came since open()
+  const char* fault_ = "";           // of the newest datagram, if it was not a frame
+  Timestamp faulted_{};              // arrival of that datagram
   const char* complaint_ = "";
 };
 

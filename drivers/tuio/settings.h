@@ -1,4 +1,4 @@
-// Settings of a touch surface that a TUIO tracker tells of over the network.
+// Settings of a touch surface that a TUIO tracker reports over the network.
 #pragma once
 
 #include "daemon/base/setting_fault.h"
@@ -11,10 +11,10 @@ class SettingsVisitor;
 
 struct TuioSettings {
   TouchOrientation orientation;
-  double aspect = 16.0 / 9;  // the surface's width by its height as a person sees it
+  double aspect = 16.0 / 9;  // the surface's width / height as a person sees it
 };
 
-// Finds a port at which no datagram can arrive. Pointer: "/port".
+// Finds a port of the wrong kind. Pointer: "/port".
 SettingFaults validate(const TuioSettings& settings, const LineSettings& line);
 
 // Calls `visitor` for every setting, in the order of written files.

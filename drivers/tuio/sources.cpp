@@ -10,10 +10,11 @@ constexpr std::string_view kAddresses[] = {"/tuio/2Dcur", "/tuio/2Dobj"};
 // Values that follow "set": session, x, y, X, Y, m; session, class, x, y, a, X, Y, A, m, r.
 constexpr std::size_t kSetValues[] = {6, 10};
 constexpr std::size_t kPositionAt[] = {1, 2};
-// A frame that is older than the newest by less than this came late; by more: the tracker was
-// started again.
+// A frame whose number is less than this much below the newest came late; if it is further below,
+// the tracker was restarted.
 constexpr std::int64_t kLatest = 100;
-// Of a side: a tracker may be off at its margins, but one that sends pixels is not understood.
+// Tolerance for coordinates outside 0..1, because a tracker may be inaccurate at its margins.
+// Larger values, such as pixels, are rejected.
 constexpr double kOutside = 0.25;
 
 constexpr const char* kNotFormed = "a TUIO message is not formed as TUIO 1.1 has it";
@@ -112,7 +113,7 @@ void Sources::takeSet(std::span<const OscArgument> values, ProfileIndex profile,
   set.list[set.count++] = contact;
 }
 
-// The source whose messages are taken, one of a new number if need be; null: there are too many.
+// Returns the source of the present datagram, and adds it if it is new; null if there are too many.
 Sources::Source* Sources::current() noexcept {
   Source* free = nullptr;
   for (Source& source : sources_) {
@@ -126,7 +127,7 @@ Sources::Source* Sources::current() noexcept {
   return free;
 }
 
-// The number -1 is of a frame that repeats what was said, and counts always.
+// A frame with the number -1 repeats the present state, and is never late.
 void Sources::takeFrame(std::span<const OscArgument> values, ProfileIndex profile,
                         Pending& frame) noexcept {
   if (values.empty() || values[0].kind != OscArgument::kInteger) return drop(frame, kNotFormed);
@@ -148,8 +149,8 @@ void Sources::takeFrame(std::span<const OscArgument> values, ProfileIndex profil
   fault_ = "";
 }
 
-// What is alive stays where it was unless this frame says where it is now. What is alive and was
-// never said to be anywhere, because its datagram was lost, is left out.
+// A contact that is alive keeps its place unless this frame sets a new one. It is left out if no
+// place was ever received, because the datagram was lost.
 void Sources::commit(ProfileIndex profile, const Pending& frame, Profile& into) noexcept {
   Contacts next;
   for (const std::int32_t session : std::span(frame.alive).first(frame.alive_count)) {

@@ -1,10 +1,10 @@
-// Sources: what the trackers that speak TUIO 1.1 have on their surfaces now, from the messages of
-// their datagrams. Pure.
+// Sources: the contacts that are now on the surfaces of trackers which speak TUIO 1.1, taken from
+// the messages of their datagrams. Pure.
 //
 // Each datagram is one or more frames of a profile: "source" (optional), "alive" with the session
-// numbers of all that is there, a "set" for each that moved, "fseq" with the frame's number. Of the
-// profiles, /tuio/2Dcur (fingers) and /tuio/2Dobj (marked objects) are read; an object counts as a
-// finger, and its angle is left out.
+// numbers of all contacts, a "set" for each contact that moved, "fseq" with the frame's number. Of
+// the profiles, /tuio/2Dcur (fingers) and /tuio/2Dobj (marked objects) are read; an object counts
+// as a finger, and its angle is left out.
 //
 // Source: M. Kaltenbrunner et al., TUIO 1.1 Protocol Specification, tuio.org.
 #pragma once
@@ -23,31 +23,32 @@ namespace merlin::tuio {
 class Sources final : public OscSink {
  public:
   static constexpr std::size_t kMostSources = 4;
-  static constexpr std::size_t kMostContacts = 64;  // of a profile of a source
-  // A source that sends nothing for this long has nothing on its surface any more.
+  static constexpr std::size_t kMostContacts = 64;  // per profile and source
+  // A source that sends nothing for this long is taken to have no contacts any more.
   static constexpr Duration kSilent = std::chrono::seconds(2);
-  // Objects' numbers begin here, those of fingers at 1.
+  // Ids of objects begin here, ids of fingers at 1.
   static constexpr std::uint32_t kFirstObject = 0x80000000;
 
-  // Begins a datagram of this sender. Then come its messages by take().
+  // Begins a datagram of this sender; take() must then be called for each of its messages.
   void begin(std::uint32_t sender, Timestamp now) noexcept;
-  // A message that is none of TUIO's, or of another profile, is passed over. One that is malformed
-  // is dropped and counted, and so is the rest of its frame.
+  // Ignores a message that does not belong to TUIO or to the two profiles. A malformed message is
+  // dropped and counted, and the rest of its frame is dropped as well.
   void take(const OscMessage& message) noexcept override;
-  // Whether a frame of the datagram was complete.
+  // Whether the datagram has completed a frame.
   bool complete() const noexcept { return complete_; }
 
-  // Forgets the sources that are silent; returns whether there was one.
+  // Removes the sources that are silent; returns whether there was one.
   bool forgetSilent(Timestamp now) noexcept;
-  void clear() noexcept;  // all sources
+  void clear() noexcept;  // removes all sources
 
-  // Adds everything that touches to a frame that has begun, in the order of sources, fingers first.
+  // Adds all contacts to a frame that has begun, in the order of sources, fingers first.
   void fill(TouchFrames& frames) const noexcept;
 
-  std::size_t number() const noexcept;  // of sources
+  std::size_t number() const noexcept;  // number of sources
   std::uint64_t badMessages() const noexcept { return bad_messages_; }
   std::uint64_t lateFrames() const noexcept { return late_frames_; }  // came after a later one
-  // Why the newest message was dropped; empty: none was since the last complete frame.
+  // Why the newest dropped message was dropped; empty: no message was dropped since the last
+  // complete frame.
   const char* fault() const noexcept { return fault_; }
 
  private:
@@ -63,7 +64,7 @@ class Sources final : public OscSink {
   };
   struct Profile {
     Contacts now;
-    std::int32_t frame = -1;  // number of the newest; -1: none so far
+    std::int32_t frame = -1;  // number of the newest frame; -1: none so far
   };
   enum ProfileIndex : std::size_t { kFingerProfile, kObjectProfile, kProfiles };
   struct Source {
@@ -90,7 +91,7 @@ class Sources final : public OscSink {
 
   std::array<Source, kMostSources> sources_{};
   std::array<Pending, kProfiles> pending_{};
-  std::uint32_t key_ = 0;  // of the source whose messages are taken
+  std::uint32_t key_ = 0;  // source of the present datagram
   Timestamp now_{};
   bool complete_ = false;
   std::array<std::uint32_t, kProfiles> next_id_{1, kFirstObject};

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr Duration kWriteTime = std::chrono::milliseconds(250);  // 77 bytes, into an empty buffer
 
-// Our cookie, and the sender that every client of VRPN has.
+// Our cookie, and the description of the sender that every VRPN client has.
 std::string greeting() {
   std::string bytes = vrpnCookie();
   VrpnHeader header;

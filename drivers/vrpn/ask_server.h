@@ -1,4 +1,4 @@
-// The dialogue with a VRPN server of which nothing is known: which devices does it have?
+// Asks a VRPN server, of which nothing is known, which devices it has.
 #pragma once
 
 #include "daemon/base/clock.h"
@@ -7,11 +7,11 @@
 
 namespace merlin::vrpn {
 
-// Greets the server and fills `catalog`, which is new, with what it sends until `until`. A server
-// describes its devices at once, but what they measure is seen only when they send something, so
-// there is no end before that moment, unless the server has sent 1 MiB. The connection can serve
-// for nothing else. Errors: kTimeout (no greeting by then), those of Catalog::take() and of the
-// stream; the catalog has what came before.
+// Greets the server and fills `catalog`, which must be empty, with what the server sends until
+// `until`. A server describes its devices at once, but what a device measures is known only when it
+// sends something, so the call always lasts until then, unless the server has sent 1 MiB. The
+// connection cannot be used for anything else afterwards. Errors: kTimeout (no greeting by then),
+// those of Catalog::take() and of the stream; the catalog keeps what arrived before the error.
 Result<Ok> askServer(ByteStream& stream, const Clock& clock, Timestamp until, Catalog& catalog);
 
 }  // namespace merlin::vrpn

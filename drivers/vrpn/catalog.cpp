@@ -8,8 +8,8 @@
 namespace merlin::vrpn {
 namespace {
 
-constexpr std::size_t kMostTypes = 64;  // numbers of types; a server has one for each name
-constexpr std::string_view kForwarder = "vrpn_Forwarder_Brain";  // of VRPN's own vrpn_server
+constexpr std::size_t kMostTypes = 64;  // types; a server assigns a number to each name
+constexpr std::string_view kForwarder = "vrpn_Forwarder_Brain";  // in VRPN's own vrpn_server
 
 struct KnownType {
   std::string_view name;
@@ -61,7 +61,7 @@ void Catalog::handle(const Message& message) {
     devices_[sender->second].sent.*type->second = true;
 }
 
-// A number that gets another name is that of another device.
+// If the server gives a known number a new name, the number then denotes another device.
 void Catalog::describeSender(std::int32_t number, std::string_view name) {
   senders_.erase(number);
   if (name == kVrpnControl || name == kForwarder) return;
@@ -74,7 +74,7 @@ void Catalog::describeSender(std::int32_t number, std::string_view name) {
   senders_[number] = static_cast<std::size_t>(device - devices_.data());
 }
 
-// The device of this name, which is added if there is room; otherwise null.
+// Returns the device of this name, and adds it if it is new; null if there is no room.
 CatalogDevice* Catalog::named(std::string_view name) {
   const auto known = std::ranges::find(devices_, name, &CatalogDevice::name);
   if (known != devices_.end()) return &*known;

@@ -1,5 +1,5 @@
-// Catalog: the devices that a VRPN server describes to whoever connects, and what they measure as
-// far as their messages tell. Pure.
+// Catalog: the devices that a VRPN server describes to a client, and what they measure, as far as
+// their messages show it. Pure.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@
 
 namespace merlin::vrpn {
 
-// What MERLIN reads of VRPN.
+// The kinds of VRPN messages that MERLIN reads.
 struct Measures {
   bool poses = false, buttons = false, channels = false;
 
   bool any() const noexcept { return poses || buttons || channels; }
 };
 
-// Nothing of VRPN's says what a device is: it sends messages of several types. What rests may send
-// none, and only a device's first message of a type shows that it has it.
+// VRPN does not say what kind a device is: a device may send messages of several types. `sent`
+// contains only the types of which a message has arrived, and a device at rest may send none.
 struct CatalogDevice {
-  std::string name;  // 1 to 99 bytes of text (isText()), no '@': a configuration can have it
+  std::string name;  // valid in a configuration: 1 to 99 bytes of text (isText()), no '@'
   Measures sent;
 };
 
@@ -33,21 +33,22 @@ class Catalog {
  public:
   static constexpr std::size_t kMostDevices = 64;
 
-  // Takes the next bytes from the server, its greeting first. Errors: kMalformed (no server of VRPN
-  // 7, or a message with an invalid length), kClosed (it ends the connection); nothing can be taken
-  // afterwards, and what was understood before stays.
+  // Takes the next bytes from the server, its greeting first. Errors: kMalformed (not a server of
+  // VRPN 7, or a message with an invalid length), kClosed (the server ends the connection). After
+  // an error take() must not be called again; earlier devices remain.
   Result<Ok> take(std::string_view bytes);
 
   bool greeted() const noexcept { return greeting_.size() == kVrpnCookieLength; }
-  // "07.38"; empty before the greeting. The server's bytes, which can be any.
+  // "07.38"; empty before the greeting. The bytes are the server's and are not checked.
   std::string_view version() const;
-  // In the order in which they were described; without those of VRPN's own.
+  // Devices in the order in which they were described, without VRPN's internal senders.
   const std::vector<CatalogDevice>& devices() const noexcept { return devices_; }
-  // Descriptions of other devices: of names that no configuration can have, or too many.
+  // Number of devices that were left out because their name is not valid in a configuration or
+  // because there were too many.
   std::size_t leftOut() const noexcept { return left_out_; }
-  // The types that the server has described: what any of its devices may measure.
+  // The types that the server has described; any of its devices may send them.
   const Measures& described() const noexcept { return described_; }
-  // If it is a server of MERLIN, of which instance; otherwise empty.
+  // The instance of MERLIN whose server this is; empty if it is not a server of MERLIN.
   const std::string& instance() const noexcept { return instance_; }
 
  private:
@@ -59,8 +60,8 @@ class Catalog {
   std::string greeting_;
   Parser parser_;
   std::vector<CatalogDevice> devices_;
-  std::map<std::int32_t, std::size_t> senders_;     // the server's number: index in devices_
-  std::map<std::int32_t, bool Measures::*> types_;  // the server's number: what it is of
+  std::map<std::int32_t, std::size_t> senders_;     // server's number to index in devices_
+  std::map<std::int32_t, bool Measures::*> types_;  // server's number to its kind
   Measures described_;
   std::string instance_;
   std::size_t left_out_ = 0;

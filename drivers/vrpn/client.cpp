@@ -15,11 +15,11 @@ using std::chrono::seconds;
 
 constexpr Duration kCookieTime = seconds(2);
 constexpr Duration kOpenTime = seconds(2);
-constexpr Duration kPingInterval = seconds(1);  // as VRPN's clients ping
+constexpr Duration kPingInterval = seconds(1);  // as in VRPN's clients
 constexpr Duration kLongestSilence = seconds(3);
 constexpr std::size_t kMostOthers = 8;  // names of other devices that a message lists
 
-// Our numbers for senders, and for the types that each client has; the driver's own types follow.
+// Our numbers for senders and for the types that every client has; the driver's own types follow.
 enum Sender : std::int32_t { kControl, kDevice };
 enum Type : std::int32_t { kPing, kPong, kFirstOwn };
 
@@ -150,7 +150,7 @@ void Client::handle(const Message& message) {
   if (!listener_.take(index, message.payload, message_start_)) ++bad_packets_;
 }
 
-// A number that gets another name is not that of our device any more.
+// If the server gives our device's number a new name, it no longer denotes our device.
 void Client::describeSender(const Message& message) {
   const std::int32_t number = message.header.sender;
   const auto name = readVrpnName(message.payload);

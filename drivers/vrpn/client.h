@@ -1,5 +1,5 @@
-// Client: the dialogue with a VRPN server, of which a driver reads one device: greeting, names,
-// pings. What the device's messages mean is for the driver.
+// Client: the dialogue with a VRPN server (greeting, names, pings) for a driver that reads one of
+// its devices. The driver interprets the device's messages.
 #pragma once
 
 #include <array>
@@ -17,39 +17,41 @@
 
 namespace merlin::vrpn {
 
-// Takes the messages of the device.
+// Receives the messages of the device.
 class Listener {
  public:
   virtual ~Listener() = default;
 
-  // A message of the type whose index in Client's list this is; its first byte came at
-  // `first_byte`. Returns whether it is one that such a device can send; if not, it counts as a bad
-  // packet. Allocates nothing.
+  // Takes a message; `type` is the index of its type in Client's list, `first_byte` the arrival of
+  // its first byte. Returns false if the payload is invalid, which counts as a bad packet.
+  // Allocates nothing.
   virtual bool take(std::size_t type, std::string_view payload, Timestamp first_byte) noexcept = 0;
 };
 
-// As thread-bound as the driver, of which it is a part.
+// Thread-bound: part of a driver, and used on its thread.
 class Client {
  public:
   static constexpr std::size_t kMostTypes = 4;
   static constexpr Duration kPollTime = std::chrono::milliseconds(250);  // as Device::poll() allows
 
   // `device`: its name at the server. `types`: names of the messages that are read, at most
-  // kMostTypes; they have to outlive the client, as do `clock` and `listener`.
+  // kMostTypes; they must outlive the client, and so must `clock` and `listener`.
   Client(std::string device, std::span<const char* const> types, const Clock& clock,
          Listener& listener);
 
-  // Greets the server and reads until `lacks()` returns an empty text; returns the server's
-  // version. Takes at most 4 s. Errors: kMalformed (no server of VRPN 7, or it has no device of
-  // this name), kTimeout (with the text that `lacks()` still returns), and those of the stream.
+  // Greets the server and reads until `lacks()`, which names what is still missing, returns an
+  // empty text; returns the server's version. Takes at most 4 s. Errors: kMalformed (not a server
+  // of VRPN 7, or it has no device of this name), kTimeout (with the text that `lacks()` still
+  // returns), and those of the stream.
   Result<std::string> open(ByteStream& stream, const std::function<const char*()>& lacks);
 
-  // Gives the listener what arrives within `wait`, and pings the server each second. Errors:
-  // kTimeout (not a byte for 3 s), kClosed (the server has ended the connection), kMalformed, and
-  // those of the stream. Allocates nothing, unless it fails.
+  // Passes the messages that arrive within `wait` to the listener, and pings the server each
+  // second. Errors: kTimeout (no byte for 3 s), kClosed (the server has ended the connection),
+  // kMalformed, and those of the stream. Allocates nothing, unless it fails.
   Result<Ok> poll(ByteStream& stream, Duration wait = kPollTime);
 
-  // Whether the server has described the device, and any of the types.
+  // knowsDevice(): whether the server has described the device. The other call: whether it has
+  // described any of the types.
   bool knowsDevice() const noexcept { return device_.has_value(); }
   bool knowsAType() const noexcept;
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
@@ -65,18 +67,19 @@ class Client {
   void describeSender(const Message& message);
   void describeType(const Message& message) noexcept;
 
-  std::string name_;  // of the device
+  std::string name_;  // name of the device
   std::span<const char* const> types_;
   const Clock& clock_;
   Listener& listener_;
   Parser parser_;
-  // The server's numbers, as it described them last; by index in types_.
+  // The server's numbers of the device and of the types (by index in types_), as it described them
+  // last.
   std::optional<std::int32_t> device_;
   std::array<std::optional<std::int32_t>, kMostTypes> type_;
-  std::vector<std::string> others_;  // devices of other names that were described during open()
+  std::vector<std::string> others_;  // other devices that were described during open()
   bool opening_ = false;
   std::uint64_t bad_packets_ = 0;
-  std::uint32_t sequence_ = 0;  // of the messages to the server
+  std::uint32_t sequence_ = 0;  // number of the next message to the server
   std::string ping_;
   Timestamp message_start_{}, heard_{}, pinged_{};
 };

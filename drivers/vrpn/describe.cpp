@@ -32,8 +32,9 @@ void describe(VrpnPadSettings& s, SettingsVisitor& v) {
          "Joystick0. If it is wrong, the state of the device names those that the server has.");
   v.texts("axes", s.axes, kAxes.c_str());
   v.texts("buttons", s.buttons,
-          "Buttons of the server that are the buttons 1, 2 and so on of NAME.button.N in bindings: "
-          "the server's numbers, as texts, which begin with \"0\". Empty: 0 to 11.");
+          "Buttons of the server that count as the buttons 1, 2 and so on of this device, which "
+          "bindings call NAME.button.1, NAME.button.2 and so on. They are given by the server's "
+          "numbers, as texts; the server's first button is \"0\". Empty: the buttons 0 to 11.");
   v.number("rest", s.rest, {-1e6, 1e6}, "Value of a channel at rest, in the server's unit.");
   v.number("full", s.full, {-1e6, 1e6},
            "Value of a channel at full deflection in its positive direction, in the server's unit. "

@@ -9,7 +9,7 @@
 namespace merlin::vrpn {
 namespace {
 
-constexpr Duration kPoseTime = std::chrono::seconds(2);  // without a pose that is no complaint
+constexpr Duration kPoseTime = std::chrono::seconds(2);  // without a pose before a complaint
 constexpr const char* kTypes[] = {kVrpnPoseType};
 
 constexpr const char* kNoneCame = "the server has the device, but no pose of it comes";
@@ -19,7 +19,7 @@ constexpr const char* kTooFar = "poses come from beyond 25 m: is \"scale\" right
 constexpr const char* kNoNumbers = "poses come with values that are not numbers";
 constexpr const char* kNoRotation = "the orientations that come are not unit quaternions";
 
-// Why no tracker can have measured this.
+// Explains why the sample is implausible.
 const char* faultOf(const TrackerSample& sample) noexcept {
   const auto& p = sample.position_m;
   const auto& q = sample.orientation_wxyz;
@@ -73,7 +73,7 @@ bool VrpnDevice::take(std::size_t, std::string_view payload, Timestamp first_byt
   return pose && pose->sensor >= 0 && publish(*pose, first_byte);
 }
 
-// Returns whether a tracker can have measured it; a sensor that is no station is no fault.
+// Returns false if the pose is implausible; a sensor that is not used as a station is no fault.
 bool VrpnDevice::publish(const VrpnPose& pose, Timestamp first_byte) noexcept {
   const auto& stations = settings_.stations;
   const auto station = std::find(stations.begin(), stations.end(), pose.sensor);

@@ -1,5 +1,4 @@
-// Driver of a tracker that a VRPN server serves: a client of the server, which is the port
-// tcp://HOST:3883.
+// Driver of a tracker on a VRPN server, as a client of that server. Its port is tcp://HOST:3883.
 #pragma once
 
 #include <array>
@@ -16,10 +15,10 @@
 namespace merlin::vrpn {
 
 // open() takes at most 4 s; it ends with the first pose. Errors also: those of Client, kTimeout if
-// the device has sent no pose. A server that answers and sends no pose is no fault: cameras may
-// have lost the target; complaint() says so after 2 s, and at once if the server has the device no
-// more. Publishes one sample per pose of a sensor
-// that is a station; each station has its own counter.
+// the device has sent no pose. If the server answers but sends no pose, poll() does not fail,
+// because the cameras may have lost the target; complaint() reports it after 2 s, and at once if
+// the server no longer has the device. Publishes one sample per pose of a sensor that is a station;
+// each station has its own counter.
 class VrpnDevice final : public Device, private Listener {
  public:
   VrpnDevice(const VrpnSettings& settings, const Clock& clock, SampleSink& sink);
@@ -37,7 +36,7 @@ class VrpnDevice final : public Device, private Listener {
   const Clock& clock_;
   SampleSink& sink_;
   Client client_;
-  std::array<TrackerSample, kStations> sample_{};  // the newest of each station
+  std::array<TrackerSample, kStations> sample_{};  // newest sample of each station
   std::uint64_t samples_ = 0;
   Timestamp posed_{};
   const char* silence_ = "";  // why no sample was published since the last one

@@ -1,4 +1,4 @@
-// The identities of devices of VRPN servers, as their drivers tell them. Pure.
+// The identities of devices of VRPN servers, in the form in which their drivers report them. Pure.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ std::string padIdentity(std::string_view device, std::string_view version);
 
 struct Identified {
   std::string driver;  // "vrpn" or "vrpn_pad"
-  std::string device;  // its name at the server, without its end if the identity was cut
+  std::string device;  // its name at the server; truncated if the identity was
 };
-// What has this identity; nothing if it is no device of a VRPN server.
+// Parses an identity; nothing if it is not that of a device of a VRPN server.
 std::optional<Identified> readIdentity(std::string_view identity);
 
 }  // namespace merlin::vrpn

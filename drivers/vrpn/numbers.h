@@ -1,4 +1,4 @@
-// The channels of an analog, and numbers of buttons, as the configuration has them. Pure.
+// Parses the numbers of channels and buttons in the configuration. Pure.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,8 @@
 
 namespace merlin::vrpn {
 
-// Parses the number of a button or a channel that is less than `end`; nothing if it is none.
+// Parses the number of a button or a channel, which must be less than `end`; nothing if it is
+// invalid.
 std::optional<int> parseNumber(std::string_view text, std::size_t end);
 
 // The number of a channel, for an AxisSource.

@@ -37,7 +37,7 @@ Result<Ok> VrpnPad::poll(ByteStream& stream) {
   if (!polled) return polled;
   const bool known = client_.knowsDevice();
   complaint_ = !known ? kLeft : client_.knowsAType() ? "" : kNoPad;
-  if (!known) {  // what was pushed or pressed is over
+  if (!known) {  // pushes and pressed buttons have ended
     input_.rest();
     ball_.restart();
     ball_.settle(clock_.now());

@@ -1,5 +1,5 @@
-// Driver of buttons and analogs that a VRPN server serves: a button box, a joystick, the buttons of
-// a wand. They are read as a ball. The server is the port tcp://HOST:3883.
+// Driver of buttons and analog channels on a VRPN server (a button box, a joystick, the buttons of
+// a wand), which serve as a ball. Its port is tcp://HOST:3883.
 #pragma once
 
 #include <memory>
@@ -17,9 +17,9 @@
 namespace merlin::vrpn {
 
 // open() takes at most 4 s; it ends when the server has described the device. Errors also: those of
-// Client. What rests is silent, so silence is no fault while the server answers; complaint() says
-// if the server serves neither buttons nor analogs, or has the device no more. Publishes one sample
-// for each message, and a push that is held again every 50 ms.
+// Client. A device at rest is silent, so silence is no fault while the server answers. complaint()
+// reports a server that has neither buttons nor analogs, or no longer has the device. Publishes one
+// sample for each message, and repeats a push that is held every 50 ms.
 class VrpnPad final : public Device, private Listener {
  public:
   VrpnPad(const VrpnPadSettings& settings, const Clock& clock, SampleSink& sink);

@@ -1,4 +1,5 @@
-// PadInput: the state of a VRPN device's buttons and channels, and what it means as a ball. Pure.
+// PadInput: the state of a VRPN device's buttons and channels, and its conversion to a ball's.
+// Pure.
 #pragma once
 
 #include <array>
@@ -15,15 +16,15 @@ namespace merlin::vrpn {
 // Allocates nothing after construction.
 class PadInput {
  public:
-  // REQUIRES: settings in which validate() finds nothing.
+  // REQUIRES: validate() finds no fault in the settings.
   explicit PadInput(const VrpnPadSettings& settings);
 
   void take(const VrpnButton& button) noexcept { down_[button.button] = button.down; }
   void take(const VrpnButtons& buttons) noexcept { down_ = buttons.down; }
   void take(const VrpnChannels& channels) noexcept { channels_ = channels; }
-  void rest() noexcept;  // nothing is pressed or pushed
+  void rest() noexcept;  // releases all buttons and pushes
 
-  // Where each channel that the device has sent stands. Allocates; for calibration.
+  // Deflection of each channel that the device has sent. Allocates; for calibration.
   std::vector<AxisReading> readings() const;
 
   // Writes the present state into `sample`: axes, buttons and raw values (fillAxes() of

@@ -1,4 +1,4 @@
-// Settings of the buttons and analogs of a VRPN server, which serve as a ball.
+// Settings of buttons and analog channels of a VRPN server that serve as a ball.
 #pragma once
 
 #include <string>
@@ -13,14 +13,14 @@ class SettingsVisitor;
 
 struct VrpnPadSettings {
   std::string device = "Joystick0";  // its name at the server, without "@HOST"
-  // For x, y, z and the rotations about them: the channel that moves it, in a form of
-  // kChannelForms. Empty: the channels 0 to 5.
+  // For x, y, z and the rotations about them: the channel that controls each, in one of the forms
+  // of kChannelForms. Empty: the channels 0 to 5.
   std::vector<std::string> axes;
   // The server's numbers of the buttons that are NAME.button.1, 2 and so on in bindings. Empty: 0
   // to 11.
   std::vector<std::string> buttons;
   double rest = 0, full = 1;  // values of a channel at rest and at full deflection to the right
-  double dead_zone = 0.08;    // share of the full deflection up to which an axis counts as at rest
+  double dead_zone = 0.08;    // up to this share of full deflection an axis counts as at rest
   double curve = 2;           // exponent of the response: 1 is linear, more is finer near rest
 };
 
@@ -28,9 +28,9 @@ inline constexpr const char* kChannelForms =
     "the server's number of a channel, 0 to 127, with - before it if it is reversed; two numbers "
     "with - between them, for a pair of triggers; and none";
 
-// Finds a name that no device can have, axes and buttons that cannot be, channels whose rest is
-// their full deflection, and a port at which no server can be. Pointers, relative to the device:
-// "/port", "/vrpn_pad/device", "/vrpn_pad/axes/INDEX" ...
+// Finds an invalid name, invalid axes and buttons, equal values of `rest` and `full`, and a port of
+// the wrong kind. Pointers, relative to the device: "/port", "/vrpn_pad/device",
+// "/vrpn_pad/axes/INDEX" ...
 SettingFaults validate(const VrpnPadSettings& settings, const LineSettings& line);
 
 // Calls `visitor` for every setting, in the order of written files.

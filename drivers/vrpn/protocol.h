@@ -1,5 +1,5 @@
-// What a VRPN server sends: bytes to messages. Pure. The wire format, and the way back, are
-// drivers/port/vrpn_line.
+// Parses what a VRPN server sends: bytes to messages. Pure. drivers/port/vrpn_line describes the
+// wire format and has the inverse.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ struct Message {
   std::string_view payload;  // cut after Parser::kMostPayload; valid until the next byte is fed
 };
 
-// Whether the first kVrpnCookieLength bytes are those of a server of VRPN 7. Errors: kMalformed,
-// with the bytes.
+// Checks that the first kVrpnCookieLength bytes are the cookie of a VRPN 7 server. Errors:
+// kMalformed, quoting the bytes.
 Result<Ok> checkGreeting(std::string_view cookie);
 
-// Reads what follows the cookie.
+// Parses the bytes that follow the cookie.
 class Parser {
  public:
-  // That of the most channels. All buttons have 1028 bytes, a description of a sender or type at
-  // most 104, a pose 64.
+  // The payload with the maximum number of channels. That of all buttons has 1028 bytes, a
+  // description of a sender or type at most 104, a pose 64.
   static constexpr std::size_t kMostPayload = 8 + 8 * kVrpnChannels;
   // The longest message, with its header, that a server can send: VRPN's own buffer has 64000.
   static constexpr std::size_t kLongest = 65536;
@@ -33,21 +33,22 @@ class Parser {
   // Takes one byte; returns a message when `byte` completes one. Never blocks, never allocates.
   std::optional<Message> feed(std::byte byte) noexcept;
 
-  // An invalid length was read. Where the next message begins is not known: feed() returns nothing
-  // any more, and the connection has to be closed.
+  // True after an invalid length. The beginning of the next message is then unknown: feed() returns
+  // nothing any more, and the connection must be closed.
   bool broken() const noexcept { return broken_; }
   bool inside() const noexcept { return length_ > 0; }  // in the middle of a message
   void reset() noexcept;                                // for a new connection
 
  private:
-  std::array<char, kVrpnHeaderLength + kMostPayload> bytes_{};  // the first of the message
-  std::size_t length_ = 0;                                      // how many have come
-  VrpnStart start_;                                             // once the header has come
+  std::array<char, kVrpnHeaderLength + kMostPayload> bytes_{};  // beginning of the message
+  std::size_t length_ = 0;                                      // bytes received of the message
+  VrpnStart start_;                                             // valid once the header is complete
   bool broken_ = false;
 };
 
-// Gives the parser a byte; returns the message that it completes, if it does. Allocates only for an
-// error. Errors: kMalformed (the parser is broken), kClosed (the server ends the connection).
+// Passes a byte to the parser; returns the message that it completes, or nothing. Allocates only
+// for an error. Errors: kMalformed (the parser is broken), kClosed (the server ends the
+// connection).
 Result<std::optional<Message>> takeByte(Parser& parser, std::byte byte);
 
 }  // namespace merlin::vrpn

@@ -5,7 +5,7 @@
 namespace merlin::vrpn {
 namespace {
 
-constexpr std::size_t kLongestName = 99;  // of VRPN
+constexpr std::size_t kLongestName = 99;  // VRPN's limit
 
 bool canBeServer(PortKind kind) {
   return kind == PortKind::kTcp || kind == PortKind::kPty || kind == PortKind::kReplay;

@@ -1,4 +1,4 @@
-// What the settings of every device of a VRPN server have in common: its port and its name there.
+// Checks of the settings that all devices of VRPN servers have in common: port and name.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace merlin::vrpn {
 
-// Finds a port at which no server can be, if the line has this driver. Pointer: "/port".
+// Finds a port of the wrong kind, if `driver` is the line's driver. Pointer: "/port".
 void checkPort(const LineSettings& line, const char* driver, SettingFaults& faults);
 
-// Finds a name that no device of a server can have. `pointer`: of the name.
+// Finds a name that no device of a server can have. `pointer`: JSON pointer of the name.
 void checkName(const std::string& name, const char* pointer, SettingFaults& faults);
 
 }  // namespace merlin::vrpn

@@ -1,4 +1,4 @@
-// Settings of a tracker of a VRPN server.
+// Settings of a tracker on a VRPN server.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ class SettingsVisitor;
 
 struct VrpnSettings {
   std::string device = "Tracker0";  // its name at the server, without "@HOST"
-  // For each station the server's sensor that it is; kNoSensor: the station is not used.
+  // For each station, the number of the server's sensor; kNoSensor: the station is not used.
   std::array<int, kStations> stations = {0, 1, 2, 3};
   double scale = 1;  // metres in the server's unit of length; VRPN asks for metres
   TrackerPlacement placement{};
@@ -23,8 +23,8 @@ struct VrpnSettings {
   static constexpr int kNoSensor = -1;
 };
 
-// Finds a name that no device can have, and stations that share a sensor or have none; with this
-// driver also a port at which no server can be. Pointers, relative to the tracker: "/port",
+// Finds an invalid name, stations that share a sensor, and a list without any sensor; if the line
+// has this driver, also a port of the wrong kind. Pointers, relative to the tracker: "/port",
 // "/vrpn/device", "/vrpn/stations", "/vrpn/axes".
 SettingFaults validate(const VrpnSettings& settings, const LineSettings& line);
 

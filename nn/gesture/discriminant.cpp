@@ -10,7 +10,7 @@ namespace {
 
 constexpr auto kN = static_cast<Eigen::Index>(kTerms);
 constexpr int kMostSteps = 25, kMostHalvings = 20;
-constexpr double kConverged = 1e-6;  // of the objective, as a share
+constexpr double kConverged = 1e-6;  // relative change of the objective
 
 using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
@@ -18,7 +18,7 @@ using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
 // log(1 + exp(x)) without overflow.
 double softPlus(double x) { return x > 0 ? x + std::log1p(std::exp(-x)) : std::log1p(std::exp(x)); }
 
-// A row of terms for each example.
+// Returns a matrix with one row of terms for each example.
 Table termsOf(std::span<const DiscriminantExample> examples) {
   Table terms(static_cast<Eigen::Index>(examples.size()), kN);
   for (std::size_t n = 0; n < examples.size(); ++n) {

@@ -11,11 +11,12 @@
 
 namespace merlin::nn {
 
-// Weights of 1, of each whitened feature z_i, and of each product z_i z_j, j <= i, row by row.
+// Weights of the constant 1, of each whitened feature z_i, and of each product z_i z_j, j <= i, row
+// by row.
 inline constexpr std::size_t kTerms = 1 + kFeatures + kFeatures * (kFeatures + 1) / 2;
 using Discriminant = std::array<float, kTerms>;
 
-// Logarithm of how much likelier it is that the stroke is meant. `whitened`: its features in
+// Returns the log-odds that the stroke was meant as the gesture. `whitened`: its features in
 // deviations from the gesture's mean. Allocation-free; about 0.05 us.
 float oddsOf(const Discriminant& discriminant, const StrokeFeatures& whitened) noexcept;
 
@@ -25,8 +26,9 @@ struct DiscriminantExample {
   bool meant = false;
 };
 
-// The weights of the greatest likelihood, less `decay` / 2 times their square sum; found by
-// Newton's steps. Cost: up to 25 steps, each linear in the examples and cubic in kTerms.
+// Returns the weights that maximise the log-likelihood minus `decay` / 2 times the sum of their
+// squares, by Newton's method. Cost: up to 25 steps, each linear in the examples and cubic in
+// kTerms.
 Discriminant fitDiscriminant(std::span<const DiscriminantExample> examples, double decay);
 
 }  // namespace merlin::nn

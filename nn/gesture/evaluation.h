@@ -13,9 +13,9 @@ namespace merlin::nn {
 struct GestureScore {
   std::size_t takes = 0;
   std::size_t right = 0;     // exactly one gesture was reported, the right one
-  std::size_t missed = 0;    // none was
-  std::size_t wrong = 0;     // one was, another one
-  std::size_t repeated = 0;  // several were
+  std::size_t missed = 0;    // no gesture was reported
+  std::size_t wrong = 0;     // exactly one was reported, but another one
+  std::size_t repeated = 0;  // several gestures were reported
   double rate() const {
     return takes > 0 ? static_cast<double>(right) / static_cast<double>(takes) : 0;
   }
@@ -27,7 +27,7 @@ struct GestureEvaluation {
   // How often the first gesture that was reported in a take of [meant] was [reported]; "" for none.
   std::map<std::string, std::map<std::string, std::size_t>> confusion;
   std::size_t invented = 0;                       // reported where nobody meant any
-  std::map<std::string, std::size_t> inventions;  // the same by what was reported
+  std::map<std::string, std::size_t> inventions;  // the same, by reported gesture
   double ordinary_s = 0;                          // time in which nobody meant any
   double inventedPerTenMinutes() const {
     return ordinary_s > 0 ? 600 * static_cast<double>(invented) / ordinary_s : 0;

@@ -1,4 +1,4 @@
-// Features of a stroke: what a recogniser looks at. Pure.
+// Features of a stroke: the input of a recogniser. Pure.
 //
 // In the manner of D. Rubine, "Specifying gestures by example", SIGGRAPH 1991, for a path in space
 // with the roll of the hand as a fourth coordinate; README.md says what differs.
@@ -24,11 +24,11 @@ inline constexpr const char* kFeatureNames[] = {
     "area",         // area that the path encloses in that plane, share of a circle's of its length
     "bend",         // greatest distance from the line from first to last point, share of the length
     "log_length",   // natural logarithm of the path's length [m], way and roll together
-    "log_seconds",  // of its duration [s]
-    "log_speed",    // of its greatest speed [m/s]
+    "log_seconds",  // natural logarithm of its duration [s]
+    "log_speed",    // natural logarithm of its greatest speed [m/s]
     "evenness",     // mean speed, share of the greatest
     "calm",         // speed in the 0.2 s before, share of the greatest
-    "haste",        // log_speed against that of this person's usual strokes of the length
+    "haste",        // log_speed minus that of this person's usual strokes of the length
 };
 inline constexpr std::size_t kFeatures = std::size(kFeatureNames);
 using StrokeFeatures = std::array<float, kFeatures>;

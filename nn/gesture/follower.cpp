@@ -3,12 +3,12 @@
 namespace merlin::nn {
 namespace {
 
-constexpr std::size_t kWays = 4;  // the first features are the way in x, y, z and roll
-constexpr float kBack = -0.35F;   // product of two ways of which one leads back
+constexpr std::size_t kWays = 4;  // the first features are the displacement in x, y, z and roll
+constexpr float kBack = -0.35F;   // dot product below which a stroke reverses the last one
 
 }  // namespace
 
-// Whether the stroke leads back where the last gesture came from.
+// Whether the stroke is the return movement after the last gesture.
 bool GestureFollower::leadsBack(const StrokeFeatures& stroke,
                                 std::int64_t began_ns) const noexcept {
   if (!any_ || static_cast<double>(began_ns - last_ended_ns_) > settings_.back_s * 1e9)

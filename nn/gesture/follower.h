@@ -1,4 +1,4 @@
-// GestureFollower: poses of the hand in, gestures out, while they are made. Pure.
+// GestureFollower: recognises gestures from poses of the hand while they are made. Pure.
 #pragma once
 
 #include <array>
@@ -14,12 +14,13 @@ namespace merlin::nn {
 struct Gesture {
   std::size_t index;                // of the model's gestures
   std::string_view name;            // valid as long as the follower
-  float certainty;                  // 0..1: 1 is a stroke like the mean of the training's
+  float certainty;                  // 0..1; 1: the stroke equals the mean of the training's
   std::int64_t began_ns, ended_ns;  // times of the poses with which the stroke began and ended
 };
 
 struct FollowerSettings {
-  // After a gesture, a stroke that leads back is the way back, if it begins within this time.
+  // A stroke that leads back after a gesture counts as the return of the hand, and not as a
+  // gesture, if it begins within this time.
   double back_s = 0.8;
   StrokeSettings stroke;
 };

@@ -6,13 +6,13 @@
 namespace merlin::nn {
 namespace {
 
-// Greatest speed of an unhurried reach by its length, both as logarithms: a straight line that fits
-// the synthetic people of drivers/hand.
+// Logarithm of the greatest speed of an unhurried reach as a linear function of the logarithm of
+// its length, fitted to the synthetic people of drivers/hand.
 constexpr float kSpeedAt1m = 0.60F, kSlope = 0.60F;
-constexpr float kLongMemory = 15;     // strokes
-constexpr float kMost = 0.4F;         // of one stroke's difference that counts
-constexpr float kFarthest = 0.35F;    // from the average person
-constexpr float kShortest_m = -1.9F;  // logarithm of 0.15 m
+constexpr float kLongMemory = 15;     // number of strokes that the mean covers
+constexpr float kMost = 0.4F;         // limit of one stroke's difference
+constexpr float kFarthest = 0.35F;    // limit of the difference from the average person
+constexpr float kShortest_m = -1.9F;  // logarithm of the shortest stroke used, 0.15 m
 constexpr float kMostRoll = 0.5F;
 
 float ratio(float log_length, float log_speed) noexcept {

@@ -13,13 +13,13 @@ class UsualPace {
   float hasteOf(float log_length, float log_speed) const noexcept;
 
   // Takes a stroke that is no gesture. `roll_share`: share of the hand's roll in its way, -1..1.
-  // The first few count more, later about the last fifteen; short strokes and turns of the hand say
-  // nothing.
+  // The pace is the mean of all strokes at first, later of about the last fifteen. Short strokes
+  // and turns of the hand are ignored.
   void learn(float log_length, float log_speed, float roll_share) noexcept;
 
  private:
   float usual_ = 0;           // mean logarithm of the ratio to the average person's speed
-  float strokes_ = kAverage;  // that it is the mean of; the average person counts as some
+  float strokes_ = kAverage;  // strokes in this mean; the average person counts too
   static constexpr float kAverage = 3;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kSessionGap_ns = 500'000'000;
 
-// Index of the take that shares at least half of the stroke's time.
+// Returns the index of the take that overlaps at least half of the stroke's time.
 std::optional<std::size_t> takeOf(const std::vector<Take>& takes, std::int64_t first_ns,
                                   std::int64_t last_ns) {
   for (std::size_t n = 0; n < takes.size(); ++n) {
@@ -27,12 +27,12 @@ bool isJustAfter(const std::vector<Take>& takes, std::int64_t first_ns, double a
   });
 }
 
-// Length times speed: both features are logarithms.
+// Logarithm of length times speed, since both features are logarithms.
 float greatness(const StrokeFeatures& stroke) { return stroke[kLogLength] + stroke[kLogSpeed]; }
 
-// Of way and turn together, as PathPoint::speed_m_s.
+// Translation and rotation of the hand combined, as in PathPoint::speed_m_s.
 struct Movement {
-  float reach_m = 0;  // from where the hand was first
+  float reach_m = 0;  // distance from the hand's first pose
   float greatest_m_s = 0;
 };
 

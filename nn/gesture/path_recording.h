@@ -19,14 +19,14 @@ struct LabelledPose {
   HandPose pose;
 };
 
-// Poses in the order of time. Where the time goes back, or stands still for more than half a
-// second, another session begins.
+// Poses in the order of time. A new session begins where the time goes back, or where two poses are
+// more than half a second apart.
 struct PathRecording {
   std::vector<std::string> labels;  // names of gestures, and kNoGesture
   std::vector<LabelledPose> poses;
   bool synthetic = false;
 
-  // Index of the label, which is added if it is not there.
+  // Returns the index of the label, which is added if it is missing.
   std::uint32_t labelled(std::string_view name);
 };
 
@@ -40,14 +40,15 @@ struct Take {
 };
 std::vector<Take> takesOf(std::span<const LabelledPose> session, const PathRecording& recording);
 
-// Of each take the greatest stroke, by length and speed; and all strokes outside of the takes, as
-// kNoGesture, unless they begin less than `after_take_s` after one: the way back is not ordinary
-// motion. `lost`: set to the number of takes in which there is no stroke.
+// Returns the greatest stroke (by length times speed) of each take, and all strokes outside of the
+// takes, as kNoGesture. Strokes that begin less than `after_take_s` after a take are left out,
+// since the way back is not ordinary motion. `lost`: set to the number of takes in which there is
+// no stroke.
 std::vector<LabelledStroke> strokesOf(const PathRecording& recording, double after_take_s,
                                       std::size_t& lost);
 
-// Whether the one take of a gesture in `take` has a stroke, without which training leaves it out.
-// Errors: kInvalidArgument: how little the hand moved in it, and what to do.
+// Checks that `take`, a recording of one take of a gesture, contains a stroke; training leaves out
+// takes without one. Errors: kInvalidArgument: how little the hand moved in it, and what to do.
 Result<Ok> checkTake(const PathRecording& take);
 
 }  // namespace merlin::nn

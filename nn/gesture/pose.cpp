@@ -31,7 +31,7 @@ HandPose WallAxes::turned(std::int64_t at_ns, const float (&position_m)[3],
     const auto axis = static_cast<std::size_t>(std::abs(axes_[i]) - 1);
     const float sign = axes_[i] < 0 ? -1.0F : 1.0F;
     pose.position_m[i] = sign * position_m[axis];
-    // The axis of a turn is a vector too.
+    // The rotation axis is transformed like a vector.
     pose.orientation_wxyz[i + 1] = sign * orientation_wxyz[axis + 1];
   }
   return pose;

@@ -9,7 +9,7 @@
 namespace merlin::nn {
 
 // Coordinates of the wall: x right, y up, z from the wall to the person. The orientation is the
-// unit quaternion q_wall_hand; the unit quaternion 1 is a hand that points straight at the wall,
+// unit quaternion q_wall_hand; the identity quaternion is a hand that points straight at the wall,
 // along -z.
 struct HandPose {
   std::int64_t at_ns = 0;  // any clock that does not jump
@@ -28,7 +28,7 @@ class WallAxes {
   // down.
   WallAxes() noexcept = default;
 
-  // `at_ns` of the result is that given. Allocation-free, a few ns.
+  // The result's `at_ns` is the argument. Allocation-free, a few ns.
   HandPose turned(std::int64_t at_ns, const float (&position_m)[3],
                   const float (&orientation_wxyz)[4]) const noexcept;
 

@@ -14,7 +14,8 @@ float norm(const StrokeFeatures& v) noexcept {
   return std::sqrt(square);
 }
 
-// Logarithm of the volume of one deviation: W is a triangle, so it is -log of its diagonal.
+// Logarithm of the volume of the unit deviation ellipsoid: W is triangular, so it is the sum of
+// -log of W's diagonal.
 float logVolume(const Triangle& whitening) {
   double sum = 0;
   std::size_t at = 0;

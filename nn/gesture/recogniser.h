@@ -20,7 +20,7 @@ namespace merlin::nn {
 
 inline constexpr std::size_t kMostGestures = 32;
 inline constexpr std::size_t kLongestGestureName = 31;
-// Label of strokes of which nobody meant any gesture; no gesture's name.
+// Label of strokes that were not meant as a gesture; no gesture may have this name.
 inline constexpr std::string_view kNoGesture = "none";
 
 // Whether `name` is valid: 1 to 31 letters, digits, - or _, and not kNoGesture.
@@ -39,9 +39,9 @@ struct StrokeDistribution {
 struct TrainedGesture {
   std::string name;
   StrokeDistribution strokes;
-  float limit = 0;  // greatest distance of a stroke that counts, above 0
-  // Against strokes of ordinary motion that look like it; absent: hardly any were seen. A stroke
-  // counts if its odds are at least `least_odds`.
+  float limit = 0;  // greatest distance at which a stroke is accepted, above 0
+  // Tells the gesture from ordinary motion that looks like it; absent if the training had hardly
+  // any such strokes. A stroke is accepted only if its log-odds are at least `least_odds`.
   std::optional<Discriminant> discriminant;
   float least_odds = 0;
 };
@@ -56,8 +56,8 @@ struct GestureModel {
 
 struct StrokeRecognition {
   std::size_t nearest = 0;  // index of the gesture under which the stroke is most likely
-  float distance = 0;       // from that one's mean, in deviations
-  float odds = 0;           // of the gesture's discriminant; infinite if it has none
+  float distance = 0;       // from this gesture's mean, in deviations
+  float odds = 0;           // log-odds by the gesture's discriminant; infinite if none
   bool accepted = false;    // whether distance and odds are within the gesture's limits
   float certainty = 0;      // 1 at the mean, 0 at the limit of the distance and beyond
 };

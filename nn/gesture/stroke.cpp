@@ -7,9 +7,9 @@ namespace merlin::nn {
 namespace {
 
 constexpr std::int64_t kNearest_ns = 7'000'000, kLongestGap_ns = 250'000'000;
-constexpr float kSmooth_s = 0.025F;  // of the velocity
-constexpr float kSlow_s = 0.2F;      // of the speed before a stroke
-constexpr float kStillShare = 0.4F;  // of the speed from which the hand moves: slower, it is still
+constexpr float kSmooth_s = 0.025F;  // time constant of the velocity
+constexpr float kSlow_s = 0.2F;      // time constant of the speed before a stroke
+constexpr float kStillShare = 0.4F;  // below this share of the starting speed the hand is still
 
 bool isFinite(const HandPose& pose) noexcept {
   float sum = 0;  // not finite if any value is not
@@ -18,7 +18,7 @@ bool isFinite(const HandPose& pose) noexcept {
   return sum == 0;
 }
 
-// Turn from one orientation to the next about the hand's own -z axis, clockwise for the person.
+// Rotation from one orientation to the next about the hand's own -z axis, clockwise for the person.
 float rollBetween(const std::array<float, 4>& from, const std::array<float, 4>& to) noexcept {
   // conj(from) * to: its scalar, and its part about z
   const float w = from[0] * to[0] + from[1] * to[1] + from[2] * to[2] + from[3] * to[3];
@@ -51,7 +51,7 @@ void StrokeFinder::restart(const HandPose& pose) noexcept {
   count_ = 1;
 }
 
-// Follows position, roll and their speed.
+// Updates position, roll and their speeds.
 void StrokeFinder::advance(const HandPose& pose, float dt_s) noexcept {
   const float roll = rollBetween(last_.orientation_wxyz, pose.orientation_wxyz);
   const float share = dt_s / (kSmooth_s + dt_s);
@@ -93,7 +93,7 @@ std::span<const PathPoint> StrokeFinder::step() noexcept {
       return {};
     case State::kFalling: break;
   }
-  if (speed < least_) {  // the next stroke begins where it was slowest
+  if (speed < least_) {  // the next stroke begins at the slowest point
     least_ = speed;
     points_[0] = newest_;
     count_ = 1;
@@ -113,7 +113,7 @@ void StrokeFinder::begin() noexcept {
   greatest_ = newest_.speed_m_s;
 }
 
-// The slow beginning is no part of the stroke.
+// Removes the slow beginning from the stroke.
 std::span<const PathPoint> StrokeFinder::finish() noexcept {
   state_ = State::kFalling;
   ended_ = true;

@@ -24,9 +24,9 @@ struct PathPoint {
 
 struct StrokeSettings {
   double begins_m_s = 0.25;  // speed from which the hand counts as moving
-  double cut_share = 0.30;   // of the stroke's greatest speed: slower than that, it has ended
-  double rise_share = 0.15;  // of that too: how far the speed has to rise again for the next stroke
-  double longest_s = 4.0;    // a stroke that takes longer is none
+  double cut_share = 0.30;   // share of the stroke's greatest speed below which it has ended
+  double rise_share = 0.15;  // share of it by which the speed has to rise for the next stroke
+  double longest_s = 4.0;    // a stroke that takes longer is ignored
 };
 
 // Thread-bound. Allocation-free; update() costs the same for each pose.
@@ -35,8 +35,8 @@ class StrokeFinder {
   explicit StrokeFinder(const StrokeSettings& settings = {}) noexcept : settings_(settings) {}
 
   // Takes the next pose. Returns the stroke that ended with it: valid until the next call; empty
-  // for none. A pose that is not finite, or not later than the last, is passed over; poses nearer
-  // in time than 7 ms too. After a quarter of a second without a pose everything begins anew.
+  // for none. A pose that is not finite, or not at least 7 ms later than the last one, is ignored.
+  // After more than a quarter of a second without a pose, the finder starts anew.
   std::span<const PathPoint> update(const HandPose& pose) noexcept;
 
   // Speed before the present or the last stroke began, averaged over about 0.2 s.
@@ -62,7 +62,7 @@ class StrokeFinder {
   std::array<float, 4> velocity_{};  // of x, y, z and lever * roll, smoothed [m/s]
   float slow_m_s_ = 0;               // speed, averaged over about 0.2 s
   float before_m_s_ = 0;
-  float greatest_ = 0, least_ = 0;  // speed of the stroke; since it ended
+  float greatest_ = 0, least_ = 0;  // greatest speed of the stroke; least speed since then
   std::size_t count_ = 0;
   std::array<PathPoint, kMost> points_{};
 };

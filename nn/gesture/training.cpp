@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLeastStrokes = 3, kFolds = 5;
 constexpr float kLeastLimit = 1;
-constexpr float kNoLimit = -1e5F;  // of odds
+constexpr float kNoLimit = -1e5F;  // odds below all others
 constexpr auto kN = static_cast<Eigen::Index>(kFeatures);
 using Vector = Eigen::Matrix<double, kN, 1>;
 using Matrix = Eigen::Matrix<double, kN, kN>;
@@ -24,7 +24,7 @@ Vector vectorOf(const StrokeFeatures& features) {
   return Eigen::Map<const Eigen::Matrix<float, kN, 1>>(features.data()).cast<double>();
 }
 
-// Strokes by gesture, in the order of their names; those of none apart.
+// Strokes by gesture, in the order of the names; strokes without a gesture are separate.
 struct Examples {
   std::map<std::string, std::vector<StrokeFeatures>> of;
   std::vector<StrokeFeatures> none;
@@ -36,10 +36,10 @@ struct Sums {
   double count = 0;
 };
 
-// Neighbours in a recording are of the same person, and so in the same fold.
+// Neighbours in a recording come from the same person, so they are put into the same fold.
 std::size_t foldOf(std::size_t n, std::size_t count) { return n * kFolds / count; }
 
-// Sums over all strokes but those of the fold; kFolds: over all.
+// Sums over all strokes except those of the fold; kFolds: over all strokes.
 Sums sumsOf(const std::vector<StrokeFeatures>& strokes, std::size_t fold) {
   Sums sums;
   const auto each = [&](auto use) {
@@ -73,7 +73,7 @@ StrokeDistribution distributionOf(const Sums& own, const Matrix& pooled,
   return distribution;
 }
 
-// Gestures without discriminants and limits, from all strokes but those of the fold.
+// Fits gestures, without discriminants and limits, to all strokes except those of the fold.
 GestureModel distributions(const Examples& examples, std::size_t fold,
                            const GestureTrainingSettings& settings) {
   std::vector<Sums> sums;
@@ -122,7 +122,7 @@ void setLimits(GestureModel& model, const Examples& examples,
   }
 }
 
-// For each gesture its own strokes and its lookalikes.
+// Returns the examples of each gesture: its own strokes and its lookalikes.
 std::vector<std::vector<DiscriminantExample>> lookalikesOf(
     const GestureModel& model, const Examples& examples, const GestureTrainingSettings& settings) {
   std::vector<std::vector<DiscriminantExample>> sets(model.gestures.size());
@@ -143,7 +143,8 @@ std::vector<std::vector<DiscriminantExample>> lookalikesOf(
   return sets;
 }
 
-// The odds that lose least: own strokes below them, and `worth` for each lookalike above them.
+// Returns the threshold of the odds with the least loss: 1 for each own stroke below it, and
+// `worth` for each lookalike above it.
 float leastOdds(std::vector<float> own, std::vector<float> others, double worth) {
   std::sort(own.begin(), own.end());
   std::sort(others.begin(), others.end());
@@ -155,13 +156,14 @@ float leastOdds(std::vector<float> own, std::vector<float> others, double worth)
     const double lost = static_cast<double>(n) + worth * static_cast<double>(others.size() - below);
     if (lost >= least) continue;
     least = lost;
-    // In the middle between the lookalikes that it rejects and the strokes that it accepts.
+    // In the middle between the best rejected lookalike and the worst accepted stroke.
     best = below > 0 ? (own[n] + others[below - 1]) / 2 : own[n];
   }
   return best;
 }
 
-// Odds of each example, of a discriminant that was made without it.
+// Sets the discriminant, and its threshold by cross-validation: the odds of each example come from
+// a discriminant that was fitted without it.
 void setDiscriminant(TrainedGesture& gesture, std::span<const DiscriminantExample> examples,
                      const GestureTrainingSettings& settings) {
   const auto own = static_cast<std::size_t>(std::count_if(

@@ -52,7 +52,7 @@ std::optional<std::size_t> labelColumn(const std::vector<std::string>& names) {
     const auto at = std::find(names.begin(), names.end(), label);
     if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
   }
-  for (std::size_t c = 0; c < names.size(); ++c) {  // "gesture-label", "class-name"
+  for (std::size_t c = 0; c < names.size(); ++c) {  // or a part of the name, as in "class-name"
     for (const char* label : {"label", "class", "posture", "gesture"}) {
       if (names[c].find(label) != std::string::npos) return c;
     }
@@ -60,7 +60,8 @@ std::optional<std::size_t> labelColumn(const std::vector<std::string>& names) {
   return std::nullopt;
 }
 
-// Of the columns that have no name of ours and no choice: the sensors, by their number and order.
+// Finds the sensors' columns and their slots: by the names if each column has a slot's name,
+// otherwise by their number and order.
 std::optional<std::string> findSensors(const std::vector<std::string>& names,
                                        const std::vector<std::string>& plain, CsvHeader& header) {
   std::vector<std::size_t> sensors;
@@ -98,7 +99,7 @@ std::optional<std::string> findSensors(const std::vector<std::string>& names,
   return std::nullopt;
 }
 
-// A name comes before a number: a header may consist of numbers.
+// Tries the text as a name before it tries it as a number, because names may be numbers.
 std::optional<std::size_t> columnOf(const std::vector<std::string>& plain,
                                     const std::string& column) {
   const auto at = std::ranges::find(plain, plainName(column));

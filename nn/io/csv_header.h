@@ -12,7 +12,7 @@
 
 namespace merlin::nn {
 
-// Says what a column has, where the header does not say it.
+// The user's choice of what a column contains, if the header does not say it.
 struct ChosenColumn {
   std::string what;    // "posture", or a sensor by its joint or slot: "thumb-roll", "s0"
   std::string column;  // the column's name in the header, or its number from 1
@@ -27,9 +27,9 @@ struct CsvHeader {
 // Finds columns by their names. The label is "posture", "label", "class" or another of kLabelNames,
 // or has one of these in its name; sensors are "s0".."s22" or the names of kInputNames. If the
 // sensors have other names, their number (18, 22 or 23) and order decide, as in the glove's mask.
-// `chosen` comes before all of this: with a sensor among them, columns that were not chosen are
-// left out. Returns what is wrong with the header or the choice, "...; allowed: ..."; nothing if
-// all is valid.
+// `chosen` takes precedence over all of this; if it contains a sensor, columns that were not chosen
+// are left out. Returns what is wrong with the header or the choice, "...; allowed: ..."; nothing
+// if all is valid.
 std::optional<std::string> readHeader(const std::vector<std::string>& names, CsvHeader& header,
                                       std::span<const ChosenColumn> chosen = {});
 

@@ -69,7 +69,7 @@ std::string postureName(std::string_view text) {
   while (!name.empty() && outer(name.back())) name.pop_back();
   std::replace(name.begin(), name.end(), ' ', '-');
   if (name.ends_with(".0"))
-    name.resize(name.size() - 2);  // a class number that was saved as a float
+    name.resize(name.size() - 2);  // "3.0": a class number that was saved as a float
   return isPostureName(name) ? name : std::string();
 }
 
@@ -190,7 +190,7 @@ class Parser {
   char separator_ = ',';
   std::vector<std::string> names_;
   CsvHeader header_;
-  std::map<std::string, std::string> labels_;  // posture to its spelling in the file
+  std::map<std::string, std::string> labels_;  // from a posture to its spelling in the file
   bool far_ = false;
   Recording recording_;
 };

@@ -23,7 +23,7 @@ struct Recording {
 };
 
 // Reads a whole file or nothing. `unit` is the unit of its numbers; if absent, radians are assumed
-// unless a number is beyond +-6.3. `columns`: what is in which column, where the header does not
+// unless a number is beyond +-6.3. `columns`: what certain columns contain, if the header does not
 // say it. Every error names the file and the line, what was found and what is allowed. Errors:
 // kNotFound, kIo, kMalformed.
 Result<Recording> loadRecording(const std::string& path, std::optional<InputUnit> unit = {},

@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr std::uint64_t kGestureVersion = 1;
 constexpr std::uint64_t kMostGestureVersions = 1000;
 constexpr double kMostNumber = 1e6;
-constexpr double kLeastDiagonal = 1e-6;  // a feature that says nothing has a large deviation
+constexpr double kLeastDiagonal = 1e-6;  // useless features have large deviations
 constexpr std::size_t kLongestOrigin = 200;
 constexpr auto kMostStrokes = std::numeric_limits<std::uint64_t>::max();
 

@@ -12,7 +12,7 @@ namespace merlin::nn {
 
 struct GestureProvenance {
   std::string how;             // for a person
-  std::uint64_t takes = 0;     // strokes that were meant
+  std::uint64_t takes = 0;     // strokes that were meant as gestures
   std::uint64_t ordinary = 0;  // strokes of ordinary motion
   bool synthetic = false;      // any of them is generated
 };

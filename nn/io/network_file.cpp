@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr std::uint64_t kVersion = 2;
 constexpr std::uint64_t kMostVersions = 1000;
-constexpr double kMostWeight = 1e6;    // Phi is flat far below this
+constexpr double kMostWeight = 1e6;    // Phi saturates far below this
 constexpr double kLeastSpread = 1e-6;  // least spread of hands, share of a range
 constexpr std::size_t kLongestHow = 200;
 constexpr auto kMostCount = std::numeric_limits<std::uint64_t>::max();
@@ -122,7 +122,7 @@ NetworkFile readDocument(JsonView root) {
   NetworkFile file;
   JsonView version = root.at("version");
   if (version.count(0, kMostVersions) !=
-      kVersion) {  // checked first, since anything may differ in another version
+      kVersion) {  // first, since anything may differ in another version
     version.addFault(fmt::format("{}, the version that this release of MERLIN reads", kVersion), {},
                      Errc::kUnsupported);
   }

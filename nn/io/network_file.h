@@ -15,10 +15,11 @@ namespace merlin::nn {
 struct NetworkFile {
   PostureNetwork network;
   Provenance trained;
-  std::optional<PostureStatistics> statistics;  // statistics for adapting; absent in version 1
+  std::optional<PostureStatistics> statistics;  // for adapting and for drift; absent in version 1
 };
 
-// What recognises the file's postures. Without statistics in the file, no drift is followed.
+// Returns what is needed to recognise the file's postures. Without statistics in the file, no drift
+// is followed.
 TrainedPostures trainedPostures(const NetworkFile& file);
 
 // Reads a whole file or nothing. The error is the first fault: it names the file, the place (a JSON

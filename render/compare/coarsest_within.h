@@ -17,7 +17,7 @@ struct LevelWithError {
 };
 
 // Finds a level whose distance is at most `percent` of the diagonal and whose number of triangles
-// is nearly the lowest such one: bisects the logarithm of that number until the interval is 2 %
+// is nearly the lowest possible: bisects the logarithm of that number until the interval is 2 %
 // wide. `progress`: called on this thread with the share of the work (0..1) and the number of
 // levels compared. Errors: those of compare(). Cost: about ten comparisons. REQUIRES: percent > 0,
 // more than one level.

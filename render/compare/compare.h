@@ -22,8 +22,8 @@ struct CompareSettings {
   std::uint64_t seed = 1;         // of the random positions of the samples
   // Width of the maximum's interval, in percent of the diagonal of a's bounding box; > 0.
   double width_percent = 0.01;
-  std::size_t max_evaluations = 50'000'000;  // limit of points tested for it, per direction
-  std::vector<std::string> features{};       // which to compare; empty: all that both have
+  std::size_t max_evaluations = 50'000'000;  // limit of points tested for `max`, per direction
+  std::vector<std::string> features{};       // names; empty: all features that both meshes have
   unsigned threads = 0;                      // 0: one per hardware thread; the result is the same
 };
 
@@ -47,7 +47,7 @@ struct Comparison {
   Deviation forward;    // from a to b
   Deviation backward;   // from b to a
 
-  // Returns, for each value, the larger one of both directions; the evaluations are added.
+  // Returns for each value the larger one of the two directions, and the sum of their evaluations.
   Deviation symmetric() const;
 };
 

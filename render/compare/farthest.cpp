@@ -46,7 +46,7 @@ void bound(const TriangleTree& to, Part& part) {
 // Both halves of a part, cut at the middle of its longest edge.
 struct Halves {
   std::array<Part, 2> parts;
-  double distance = 0;  // of the point where it was cut
+  double distance = 0;  // distance of the point at which it was cut
 };
 
 Halves halve(const TriangleTree& to, const Part& part) {
@@ -113,7 +113,8 @@ bool FarthestSearch::inBlocks(std::size_t count, double from,
   });
 }
 
-// In the order of the tree's leaves, so that each result is a good hint for the next search.
+// Tests the vertices in the order of the tree's leaves, so that each result is a good hint for the
+// next search.
 bool FarthestSearch::testVertices() {
   nearest_.assign(from_.mesh.vertexCount(), TriangleTree::kNone);
   std::vector<std::uint32_t> order;

@@ -1,7 +1,7 @@
-// Ray: where a ray first meets a triangle.
+// Ray: finds where a ray meets a triangle.
 //
-// Watertight: a ray that meets the edge that two triangles share meets at least one of them, since
-// both see the same edge with the same rounding. [WOOP13]. Reentrant.
+// Watertight: a ray that meets the common edge of two triangles meets at least one of them, since
+// the edge is computed with the same rounding for both ([WOOP13]). Reentrant.
 #pragma once
 
 #include <array>
@@ -22,18 +22,19 @@ class Ray {
   // REQUIRES: finite numbers, and a direction, of any length, that is not zero.
   Ray(const Vector& origin, const Vector& direction) noexcept;
 
-  // Where the ray meets the triangle, from either side; nothing if it passes beside it, or in its
-  // plane, or if the triangle lies behind the origin or has no area.
+  // Finds where the ray meets the triangle, from either side. Returns nothing if the ray misses it
+  // or lies in its plane, or if the triangle is behind the origin or has no area.
   std::optional<RayHit> hit(const std::array<Vector, 3>& corners) const noexcept;
 
-  // Where the ray enters the box, as a distance; infinite if it misses it. Rounded so that the box
-  // of a triangle that hit() meets is never missed. REQUIRES: low <= high.
+  // Returns the distance at which the ray enters the box; infinite if it misses the box. Rounded
+  // such that the box of a triangle for which hit() finds a point is never missed. REQUIRES: low <=
+  // high.
   double entry(const std::array<float, 3>& low, const std::array<float, 3>& high) const noexcept;
 
  private:
   Vector origin_, inverse_;    // inverse: 1 / direction, finite
-  std::array<int, 3> axes_{};  // the last one is that along which the ray is longest
-  double shear_x_, shear_y_;   // take the direction to that axis
+  std::array<int, 3> axes_{};  // the last one is the axis along which the ray is longest
+  double shear_x_, shear_y_;   // shear that maps the direction to that axis
   double scale_;
 };
 

@@ -49,9 +49,9 @@ class TriangleTree {
   // returned.
   Nearest nearest(const Vector& p, std::uint32_t hint = kNone) const noexcept;
 
-  // Finds where the ray first meets the surface, from either side; kNone if it does not. Where it
-  // meets several triangles at one distance (on their common edge), the one whose place in the tree
-  // is visited first, which depends on nothing else.
+  // Finds where the ray first meets the surface, from either side; kNone if it does not. If it
+  // meets several triangles at the same distance (on their common edge), returns the one that is
+  // visited first, which depends only on the tree and the ray.
   Crossing firstAlong(const Ray& ray) const noexcept;
 
  private:

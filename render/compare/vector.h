@@ -8,8 +8,8 @@ namespace merlin::render::compare {
 
 using Vector = Eigen::Vector3d;
 
-// Adds from x to z. Eigen's own dot() adds in an order of its own, which would change results in
-// the last bit.
+// Adds the products in the order x, y, z. Eigen's dot() adds in an order of its own, which would
+// change the last bit of results.
 inline double dot(const Vector& a, const Vector& b) noexcept {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
 }

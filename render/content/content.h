@@ -30,7 +30,7 @@ class DetailAxis {
   virtual std::size_t steps() const noexcept = 0;  // at least 1
   // Cost of a step, in units; falls from step 0 on. REQUIRES: step < steps().
   virtual std::size_t costOf(std::size_t step) const noexcept = 0;
-  // The finest step that costs at most `budget`; the coarsest where none does.
+  // The finest step that costs at most `budget`, or the coarsest if none does.
   virtual std::size_t stepWithin(std::size_t budget) const noexcept = 0;
   // The lowest cost at which the content is still recognisable.
   virtual std::size_t leastUseful() const noexcept = 0;
@@ -57,8 +57,8 @@ struct ContentView {
 // What the last choice left out because it is still being loaded.
 enum class Pending {
   kNothing,  // nothing: the choice shows all that its step has
-  kLoading,  // parts, which are shown coarser
-  kArrived,  // parts, some of which have come since: another choice shows them
+  kLoading,  // parts, which are shown coarser meanwhile
+  kArrived,  // parts, some of which have arrived since: another choose() shows them
 };
 
 // How far one view of a frame has been drawn. The content defines what the numbers count; both are
@@ -73,7 +73,7 @@ class ContentRenderer {
  public:
   virtual ~ContentRenderer() = default;
 
-  // Once a frame, before its views are drawn: uploads what Content::choose() chose.
+  // Called once a frame, before its views are drawn: uploads what Content::choose() chose.
   // REQUIRES: drawing of the previous frame has finished.
   virtual void beginFrame() = 0;
 
@@ -95,8 +95,8 @@ class Content {
   virtual ContentBounds bounds() const noexcept = 0;
   virtual Navigation navigation() const noexcept = 0;
 
-  // Called before choose(): whether the frame is one of a scene in motion, whose time is short.
-  // What takes up new data in bulk then does so in small portions.
+  // Called before choose(): whether the scene moves, so that time for the frame is short. A content
+  // that takes in large amounts of new data then does so in small portions.
   virtual void setMoving(bool moving) noexcept { static_cast<void>(moving); }
 
   // Chooses what the next frame draws at `step` for these views. The choice does not change until

@@ -37,7 +37,7 @@ Eigen::Matrix4f boxOf(const lod::Dendrogram& model, const Eigen::Matrix4f& metre
   return m;
 }
 
-// An empty image where the model has no texture.
+// Returns the model's texture; an empty image if it has none.
 Result<image::ImageFile> textureOf(const lod::Dendrogram& model) {
   const auto bytes = model.arrays().texture;
   if (bytes.empty()) return image::ImageFile{};

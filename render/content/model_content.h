@@ -75,7 +75,7 @@ class ModelContent final : public Content {
   Eigen::Matrix4f T_content_box_;
   lod::Clusters clusters_;
   lod::ViewCut view_cut_;
-  // End of each cluster in the full resolution, in triangles.
+  // Index after each cluster's last triangle, in the full resolution.
   std::vector<std::uint32_t> full_ends_;
   // Data that each renderer uploads when it is attached; freed by attached().
   struct Upload {

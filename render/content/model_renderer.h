@@ -75,7 +75,7 @@ class ModelRenderer {
  private:
   struct Vertex;
 
-  // The range of texture coordinates: u, v.
+  // The range of the texture coordinates u and v.
   struct Range {
     float low[2] = {0, 0}, size[2] = {1, 1};
   };

@@ -64,7 +64,8 @@ RunKind kindOf(const CorrectionMap& map, std::size_t first, bool all) {
   return !shown ? RunKind::kNothing : changed ? RunKind::kLight : RunKind::kGeometry;
 }
 
-// The settings for a picture that the projector stretches so many times.
+// Returns the settings for one part of the signal, whose picture the projector stretches by the
+// number of parts in each direction.
 CorrectionSettings squeezed(CorrectionSettings s, SignalParts parts) {
   for (std::size_t corner = 0; corner < 4; ++corner) {
     s.corners[2 * corner] /= parts.columns;
@@ -89,7 +90,7 @@ CorrectionMap emptyMap(int width, int height) {
   return map;
 }
 
-// The same map for each part of the signal.
+// Repeats the map for each part of the signal.
 CorrectionMap repeated(const CorrectionMap& part, SignalParts parts, bool all) {
   CorrectionMap map = emptyMap(part.width * parts.columns, part.height * parts.rows);
   map.light = part.light;

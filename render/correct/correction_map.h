@@ -88,10 +88,10 @@ Shares sharesOf(const CorrectionSettings& settings, int width, int height,
                 std::span<const Place> places, const MeasuredCorrection* measured);
 
 // Computes the map of an output of the picture's size, width x height pixels. `measured`: the data
-// from the file settings.mpcdi; null without such a file. With several `parts` each has the whole
-// correction: the settings' pixels are those of a signal with one picture. REQUIRES: validate()
-// found no fault; the parts fill the signal. Takes about 0.5 s for 1280 x 960 pixels on one CPU
-// core with a mesh, and 0.05 s without.
+// from the file settings.mpcdi; null without such a file. With several `parts`, the whole
+// correction is applied to each of them; the settings' pixels are those of a signal with one
+// picture. REQUIRES: validate() found no fault; the parts fill the signal. Takes about 0.5 s for
+// 1280 x 960 pixels on one CPU core with a mesh, and 0.05 s without.
 CorrectionMap makeCorrectionMap(const CorrectionSettings& settings, int width, int height,
                                 const MeasuredCorrection* measured, Threads threads,
                                 SignalParts parts = {});

@@ -1,4 +1,4 @@
-// Port (an interface): evaluates the formula of correction_map.h in another place than the CPU.
+// Port (an interface): evaluates the formula of correction_map.h elsewhere than on the CPU.
 // Implemented by ShaderPass (render/correct/gpu).
 #pragma once
 
@@ -15,9 +15,9 @@ class CorrectionPass {
  public:
   virtual ~CorrectionPass() = default;
 
-  // Computes the whole signal, as CorrectRows does for rows. What it keeps of a map it keeps while
-  // somebody else holds the map. Returns false if it is not in use or cannot do it; `signal` is
-  // undefined then, and the CPU has to compute it.
+  // Computes the whole signal, as CorrectRows does for rows. Keeps data of a map as long as
+  // somebody else holds the map. Returns false if the pass is off or cannot compute this signal;
+  // `signal` is undefined then, and the CPU has to compute it.
   virtual bool run(const std::shared_ptr<const CorrectionMap>& map,
                    std::span<const std::uint8_t> picture, std::span<std::uint8_t> signal) = 0;
 };

@@ -5,8 +5,8 @@
 
 namespace merlin::render::correct {
 
-// A point outside the grid is extrapolated from the border point a and its inner neighbour b as 2 a
-// - b, so its weight is distributed to these two.
+// A point outside the grid is extrapolated as 2 a - b from the border point a and its inner
+// neighbour b, so its weight is distributed to these two.
 GridSurface::Weights GridSurface::weights(double place, int count) const noexcept {
   const int cell = static_cast<int>(std::clamp(std::floor(place), 0.0, count - 2.0));
   double t = place - cell;

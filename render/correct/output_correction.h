@@ -27,7 +27,7 @@ class OutputCorrection final : public frame::Correction {
   const CorrectionMap& map() const noexcept { return *map_; }
 
  private:
-  std::shared_ptr<const CorrectionMap> map_;  // `pass_` looks whether it is still used
+  std::shared_ptr<const CorrectionMap> map_;  // shared, so that `pass_` sees when it is unused
   Threads threads_;
   CorrectionPass* pass_;
   CorrectRows correct_ = rowCorrector();

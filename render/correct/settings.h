@@ -86,8 +86,8 @@ void moveCorner(CorrectionSettings& settings, std::size_t corner, double right_p
 // the mesh has that point.
 void moveMeshPoint(MeshSettings& mesh, int column, int row, const MeshPoint& by);
 
-// Pictures of equal size in one signal, each of which the projector stretches over the whole
-// screen: those of both eyes.
+// A signal with several pictures of equal size (those of both eyes), each of which the projector
+// stretches over the whole screen.
 struct SignalParts {
   int columns = 1, rows = 1;
   bool operator==(const SignalParts&) const = default;

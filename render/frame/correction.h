@@ -15,7 +15,7 @@ class Correction {
   // until the next call.
   virtual out::Signal apply(const out::Signal& canvas) = 0;
 
-  // Whether apply() would make another signal of the same canvas than it did last.
+  // Whether apply() would return a different signal for the same canvas than it did last.
   virtual bool hasChanged() const { return false; }
 };
 

@@ -24,8 +24,8 @@ class Curtain final : public Overlay {
 
  private:
   static constexpr std::uint32_t kFull = 256;
-  std::uint32_t factor_ = kFull, drawn_ = kFull;  // of pixel values, in 1/256
-  std::vector<std::uint8_t> covered_;             // the canvas without it
+  std::uint32_t factor_ = kFull, drawn_ = kFull;  // factor on pixel values, in 1/256
+  std::vector<std::uint8_t> covered_;             // pixels of the canvas before draw()
 };
 
 }  // namespace merlin::render::frame

@@ -5,8 +5,8 @@
 namespace merlin::render::frame {
 namespace {
 
-// llvmpipe draws vertices in the calling thread, so a second context pays on a second core; a GPU
-// would only change from one to the other.
+// llvmpipe draws vertices in the calling thread, so a second context makes use of a second core; a
+// GPU would only switch between the two.
 bool takesTwo(const gl::GlSettings& settings, bool software) {
   if (settings.contexts > 0) return settings.contexts > 1;
   return software && std::thread::hardware_concurrency() > 1;

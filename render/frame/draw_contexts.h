@@ -12,14 +12,15 @@
 namespace merlin::render::frame {
 
 // A context on the thread that called make() and, optionally, a second one on its own thread (null
-// without). Thread-bound; shared by the renderers of all contents: the last one destroys it.
+// if there is none). Thread-bound; shared by the renderers of all contents: the last one destroys
+// it.
 struct DrawContexts {
   std::unique_ptr<gl::GlContext> own;
   std::unique_ptr<DrawThread> other;
-  bool asynchronous = false;  // how pixels are read back (gl::ReadBackMode)
+  bool asynchronous = false;  // pixel read-back is asynchronous: see gl::ReadBackMode
 
   // Creates the contexts; `own` is current on the calling thread. Errors: those of makeGlContext();
-  // kUnsupported (not as many contexts as set).
+  // kUnsupported (fewer contexts can be created than are configured).
   static Result<std::shared_ptr<DrawContexts>> make(const gl::GlSettings& settings);
 
   std::string renderer() const;  // for a person

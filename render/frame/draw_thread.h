@@ -16,7 +16,8 @@ namespace merlin::render::frame {
 // Owned and called by one thread. The work runs with this thread's context current.
 class DrawThread {
  public:
-  // Its context is first.makeFurther(), whose errors it returns.
+  // Starts the thread and creates its context by first.makeFurther(). Errors: those of
+  // makeFurther().
   static Result<std::unique_ptr<DrawThread>> make(const gl::GlContext& first);
   ~DrawThread();
   DrawThread(const DrawThread&) = delete;
@@ -40,7 +41,7 @@ class DrawThread {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  const std::function<void()>* work_ = nullptr;  // in progress; guarded, like `ends_`
+  const std::function<void()>* work_ = nullptr;  // in progress; guarded by mutex_, like `ends_`
   bool ends_ = false;
   std::unique_ptr<gl::GlContext> context_;  // created and destroyed on `thread_`
   std::jthread thread_;

@@ -50,7 +50,7 @@ class FramePainter {
   // Whether any tile of the wall may show any part of the content.
   virtual bool sees(const Eigen::Isometry3f& T_eye_content) const = 0;
 
-  // What the frame that was begun last leaves out because it is still being loaded.
+  // Whether the frame begun last lacks parts of the content that are still being loaded.
   virtual content::Pending pending() const noexcept { return content::Pending::kNothing; }
 
   // Steps of the last draw() or refine(), in order.

@@ -105,8 +105,8 @@ void FrameRenderer::takeSteps() {
   }
 }
 
-// Sorts by the last frame's times: if a thread took the slowest tile last, the other thread would
-// wait for it. The operator's tiles stay last.
+// Sorts the tiles by their times in the last frame, longest first: if a thread took the slowest
+// tile last, the other thread would wait for it. The operator's tiles stay last.
 void FrameRenderer::sortLongestFirst() {
   std::vector<Duration> took(all_.size());
   for (const FrameStep& step : steps_) {

@@ -18,7 +18,7 @@ namespace merlin::render::frame {
 // The direction from which the model is seen, and how it is drawn.
 struct ModelView {
   int width = 640, height = 480;  // of the image [px]
-  double yaw_deg = 30;            // rotation of the model about the vertical axis,
+  double yaw_deg = 30;            // rotation of the model about the vertical axis
   double pitch_deg = 0;           // rotation about the horizontal axis, before the yaw
   gl::GlBackend backend = gl::GlBackend::kEgl;
   content::ModelSettings model{};

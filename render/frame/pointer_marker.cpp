@@ -6,13 +6,15 @@
 namespace merlin::render::frame {
 namespace {
 
-// Visible from across a hall, both on a bright model and on a dark background.
+// Sizes with which a disc is visible from across a hall, on a bright model and on a dark
+// background.
 constexpr int kRadius_px = 9, kRim_px = 3;
 constexpr std::uint8_t kDiscs[PointerMarker::kMost][3] = {
     {255, 120, 0}, {0, 150, 255}, {60, 200, 60}, {200, 80, 255}};
 constexpr std::uint8_t kRim[3] = {20, 20, 20};
 
-// The point's pixel, counted from the tile's upper left corner; it may lie beyond the tile's edges.
+// Returns the point's pixel, counted from the tile's upper left corner; it may lie beyond the
+// tile's edges.
 std::optional<Eigen::Vector2i> pixelIn(const tiles::Tile& tile, const Eigen::Vector3f& at_eye_m) {
   const Eigen::Vector4f clip = tile.projection * tile.view * at_eye_m.homogeneous();
   if (clip.w() <= 0) return std::nullopt;  // behind the eye
@@ -45,7 +47,7 @@ std::optional<Eigen::Vector2i> PointerMarker::pixelOf(const Eigen::Vector3f& at_
 
 void PointerMarker::draw(std::span<std::uint8_t> canvas) {
   drawn_ = pixels();
-  for (std::size_t i = kMost; i-- > 0;) {  // who acts last, above the others
+  for (std::size_t i = kMost; i-- > 0;) {  // the hand that acts on the wall last, on top
     if (!drawn_[i]) continue;
     for (const tiles::Tile& tile : plan_.tiles) {
       if (!tile.isFitted()) drawIn(tile, *at_eye_m_[i], kDiscs[i], canvas);
@@ -73,7 +75,7 @@ void PointerMarker::drawIn(const tiles::Tile& tile, const Eigen::Vector3f& at_ey
 }
 
 void PointerMarker::erase(std::span<std::uint8_t> canvas) {
-  // Backwards: where discs overlap, the first one covered the picture.
+  // In reverse order: where discs overlap, only the first one drawn has saved the picture's pixels.
   for (auto c = covered_.rbegin(); c != covered_.rend(); ++c)
     std::copy_n(c->rgb, 3, &canvas[c->at]);
   covered_.clear();

@@ -24,11 +24,11 @@ class PointerMarker final : public Overlay {
   // pixel's centre is at x + 0.5, y + 0.5. Nothing if no wall tile shows the point.
   std::optional<Eigen::Vector2i> pixelOf(const Eigen::Vector3f& at_eye_m) const;
 
-  // Where hands point, in eye coordinates [m]: first the one that acts on the wall, in orange, then
-  // others, in blue, green and violet.
+  // Where hands point, in eye coordinates [m]. The first point is that of the hand that acts on the
+  // wall, and its disc is orange; the other discs are blue, green and violet.
   static constexpr std::size_t kMost = 4;
   using Points = std::array<std::optional<Eigen::Vector3f>, kMost>;
-  // Sets the points at which discs are drawn from now on; none, as initially: no disc.
+  // Sets the points at which discs are drawn from now on. Initially there is none.
   void pointAt(const Points& at_eye_m) { at_eye_m_ = at_eye_m; }
 
   bool hasChanged() const override;

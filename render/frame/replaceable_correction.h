@@ -1,5 +1,5 @@
-// ReplaceableCorrection: an output's correction that another one takes the place of while the wall
-// runs. Until there is one, and again after nullptr, the signal is the canvas itself.
+// ReplaceableCorrection: an output's correction that can be replaced while the wall runs. While
+// there is none (null), the signal is the canvas itself.
 #pragma once
 
 #include <atomic>
@@ -17,8 +17,8 @@ class ReplaceableCorrection final : public Correction {
   explicit ReplaceableCorrection(std::unique_ptr<Correction> first = nullptr)
       : current_(std::move(first)) {}
 
-  // apply() uses `next` from its next call on. What it replaces is destroyed here or by the next
-  // replace(), never on the wall's thread. Returns at once.
+  // apply() uses `next` from its next call on. The correction that it replaces is destroyed in this
+  // call or in the next replace(), never on the wall's thread. Returns at once.
   void replace(std::unique_ptr<Correction> next) {
     std::unique_ptr<Correction> old, skipped;
     const std::lock_guard lock(mutex_);
@@ -29,8 +29,9 @@ class ReplaceableCorrection final : public Correction {
 
   bool hasChanged() const override { return waiting_ || (current_ && current_->hasChanged()); }
 
-  // Without a correction this costs nothing. Never waits: where replace() is at work the next
-  // frame has the new one.
+  // Without a correction this costs nothing. Never waits: if replace() is running at the same time,
+  // the next
+  // frame uses the new correction.
   out::Signal apply(const out::Signal& canvas) override {
     if (waiting_) take();
     return current_ ? current_->apply(canvas) : canvas;
@@ -44,7 +45,7 @@ class ReplaceableCorrection final : public Correction {
     waiting_ = false;
   }
 
-  std::mutex mutex_;  // of next_ and retired_
+  std::mutex mutex_;  // guards next_ and retired_
   std::unique_ptr<Correction> current_, next_, retired_;
   std::atomic<bool> waiting_{false};
 };

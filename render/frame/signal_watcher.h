@@ -1,4 +1,4 @@
-// Port: somebody who wants to see what an output is sent, such as `merlin snapshot --output`.
+// Port (an interface): receives signals that outputs are sent, e.g. for `merlin snapshot --output`.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ class SignalWatcher {
 
   // Whether see() is to be called with the next signal of output `i`.
   virtual bool wants(std::size_t i) const = 0;
-  // Copies what it keeps.
+  // Receives that signal, whose pixels are valid only during the call.
   virtual void see(std::size_t i, const out::Signal& signal, const out::FrameInfo& info) = 0;
 };
 

@@ -1,5 +1,5 @@
 // TileArrangement: the picture of an output that shows some of the wall's tiles, each at its place,
-// mirrored and turned as its projector or display is mounted; in stereo, two of them as an
+// mirrored and rotated as its projector or display is mounted; in stereo, two of them as an
 // anaglyph.
 #pragma once
 
@@ -11,7 +11,8 @@
 
 namespace merlin::render::frame {
 
-// How a placed tile lies on its output: the steps there [px] to the tile's next column and row.
+// How a placed tile is oriented on its output: the steps in the output's picture [px] that lead
+// from a pixel of the tile to its next column and to its next row.
 struct TileAxes {
   struct Step {
     int x = 0, y = 0;
@@ -33,10 +34,10 @@ class TileArrangement final : public Correction {
   // `first`: index in the output's picture of the tile's upper left pixel; `column`, `row`: index
   // steps from there to the tile's next column and row [pixels].
   struct Placed {
-    int x = 0, y = 0, width = 0, height = 0;  // in the canvas
+    int x = 0, y = 0, width = 0, height = 0;  // the tile's rectangle in the canvas [px]
     std::ptrdiff_t first = 0, column = 0, row = 0;
-    // Of an anaglyph: from a pixel of the left eye's picture to the same one of the right eye's, in
-    // the canvas. 0: one picture alone.
+    // For an anaglyph: offset in the canvas [px] from a pixel of the left eye's picture to the same
+    // pixel of the right eye's. Both 0: no anaglyph.
     int right_x = 0, right_y = 0;
   };
   const std::uint8_t* rowOf(const Placed& placed, int y, const out::Signal& canvas);

@@ -96,7 +96,8 @@ void TilePainter::startReading(std::size_t tile, int divisor) {
   gl_.Flush();
 }
 
-// llvmpipe draws a slice when it is flushed, faster than a whole tile at once.
+// Flushes after each slice, so that llvmpipe draws it then: this is faster than drawing a whole
+// tile at once.
 void TilePainter::drawTile(std::size_t tile) {
   content::DrawProgress progress;
   if (isAsynchronous()) timers_[tile].begin();
@@ -107,7 +108,7 @@ void TilePainter::drawTile(std::size_t tile) {
   if (isAsynchronous())
     timers_[tile].end();
   else if (!software_)
-    gl_.Finish();  // so that the time to draw is not that to read back
+    gl_.Finish();  // so that the time for drawing is not counted as read-back
 }
 
 void TilePainter::draw(std::size_t tile, int divisor, std::span<std::uint8_t> canvas,
@@ -137,8 +138,8 @@ void TilePainter::awaitDrawn(DrawTimes& times) {
   times.drawing += clock_.now() - began;
 }
 
-// The tiles' pixels are copied while the GPU draws the tiles after them, so the time is divided by
-// what the GPU says that it took to draw.
+// The tiles' pixels are copied while the GPU draws the tiles after them, so the elapsed time is
+// split with the drawing time that the GPU reports.
 void TilePainter::finish(std::span<std::uint8_t> canvas, DrawTimes& times) {
   if (unread_.empty()) return;
   const Timestamp began = clock_.now();

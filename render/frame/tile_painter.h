@@ -29,15 +29,16 @@ class TilePainter {
                                                    const tiles::TilePlan& plan, const Clock& clock,
                                                    bool asynchronous);
 
-  // Called once per frame, after the content has chosen its detail. Abandons a refined tile.
+  // Called once per frame, after the content has chosen its detail. Abandons a tile that is being
+  // refined.
   void begin();
 
   // Draws the tile at 1/divisor of its width and height and copies it, upscaled, to its position in
   // `canvas`; asynchronously, finish() does the latter. Adds its times to `times`.
   void draw(std::size_t tile, int divisor, std::span<std::uint8_t> canvas, DrawTimes& times);
 
-  // Waits until the tiles drawn so far are drawn on the GPU, and adds the time to `times`. Does
-  // nothing unless asynchronous.
+  // Waits until the GPU has finished drawing the tiles given to it so far, and adds the time to
+  // `times`. Does nothing unless asynchronous.
   void awaitDrawn(DrawTimes& times);
   // Waits for the pixels of all tiles drawn since the last finish() and copies them to their
   // positions in `canvas`. Does nothing unless asynchronous.
@@ -54,12 +55,12 @@ class TilePainter {
   void clearSteps() noexcept { steps_.clear(); }
 
  private:
-  // A tile that is drawn, or will be on the GPU, and is not in the canvas yet.
+  // A tile whose drawing was given to the GPU and whose pixels are not in the canvas yet.
   struct Unread {
     std::size_t tile;
     int divisor;
-    Duration given{};      // time to give it to the GPU
-    bool awaited = false;  // drawn, and counted as that
+    Duration given{};      // time that giving it to the GPU took
+    bool awaited = false;  // awaitDrawn() has waited for it
   };
 
   TilePainter(const gl::GlContext& context, const tiles::TilePlan& plan, const Clock& clock)
@@ -77,7 +78,7 @@ class TilePainter {
   const Clock& clock_;
   std::unique_ptr<content::ContentRenderer> renderer_;
   std::vector<gl::RenderTarget> targets_;  // by tile
-  std::vector<gl::ReadBack> read_backs_;   // by tile; empty unless asynchronous, as the timers
+  std::vector<gl::ReadBack> read_backs_;   // by tile; empty unless asynchronous, like the timers
   std::vector<gl::DrawTimer> timers_;
   std::vector<Unread> unread_;
   std::vector<std::uint8_t> small_;  // a tile before it is upscaled

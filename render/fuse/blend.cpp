@@ -27,14 +27,14 @@ std::vector<Share> sharesOf(std::span<const View> views, double truncation, cons
   for (const View& view : views) {
     const Sight sight = view.at(at);
     if (sight.kind != Sight::Kind::kNear) continue;
-    // View::at() weighs what lies behind a surface in this way already.
+    // In front of a surface, the weight falls as View::at() lets it fall behind the surface.
     const double front = sight.distance > 0 ? 1 - sight.distance / truncation : 1;
     shares.push_back({&view, sight, sight.weight * front});
   }
   return shares;
 }
 
-// Component `k` of the plane where the ray meets the surface.
+// Returns component `k` of the plane where the ray meets the surface.
 double valueAt(const range::Plane& plane, const Sight& sight, std::size_t k, bool whole) {
   const auto at = [&](std::size_t i) {
     return double{plane.values[sight.pixels[i] * plane.dimension + k]};
@@ -71,8 +71,8 @@ bool setValues(const std::vector<Share>& shares, const Blended& blended, float* 
   return true;
 }
 
-// One step: vertices without a value that have neighbours with one get their mean (of labels: the
-// value of the first). Returns how many did.
+// One step: a vertex without a value gets the mean of its neighbours' values (for labels, the value
+// of the first), if any of them has one. Returns how many vertices got a value.
 std::size_t spreadOnce(const mesh::Mesh& mesh, bool whole, mesh::Feature& feature,
                        std::vector<std::uint8_t>& has) {
   const std::size_t n = feature.dimension;

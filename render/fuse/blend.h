@@ -1,4 +1,4 @@
-// Blend: the features of the fused surface, from the scans' planes. Private to render/fuse.
+// Blend: computes the features of the fused surface from the scans' planes. Private to render/fuse.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace merlin::render::fuse {
 
-// A plane that one or more of the scans have.
+// A feature of the fused surface: a plane that at least one scan has.
 struct Blended {
   std::string name;
   std::size_t dimension = 1;
-  bool whole = false;  // "label", "part": the value with the greatest weight, not a mean
+  bool whole = false;  // for "label", "part": the value with the greatest weight, no mean
 };
 
-// The planes of all scans, in the order in which they appear; of two with one name and different
-// dimensions the first.
+// Returns the planes of all scans, in the order in which they first appear. If planes with the same
+// name have different dimensions, the first one counts.
 std::vector<Blended> blendedOf(std::span<const View> views);
 
 struct Blending {
@@ -29,9 +29,10 @@ struct Blending {
   std::size_t without = 0;  // vertices that kept 0 in some feature, as no neighbour has a value
 };
 
-// Adds the features to the mesh: at each vertex the mean of the scans that see it within
-// `truncation` [units], by their weight, which falls to 0 there. A vertex that none sees gets the
-// mean of its neighbours that have a value, step by step. O(vertices x scans + triangles x steps).
+// Adds the features to the mesh. A vertex gets the mean over the scans whose surface is within
+// `truncation` [units] of it, weighted by Sight::weight, which falls to 0 at the truncation.
+// Vertices that no scan sees get the mean of their neighbours that have a value, repeated in steps
+// until no more vertices get one. O(vertices x scans + triangles x steps).
 Blending blend(std::span<const View> views, double truncation, unsigned threads, mesh::Mesh& mesh);
 
 }  // namespace merlin::render::fuse

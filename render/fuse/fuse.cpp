@@ -13,7 +13,7 @@
 namespace merlin::render::fuse {
 namespace {
 
-constexpr double kSteps = 10;              // between pixels, that an edge of a scan may span
+constexpr double kSteps = 10;              // steps between pixels that an edge of a scan may span
 constexpr std::size_t kPixelBytes = 15;    // of a View
 constexpr std::size_t kMeshedBytes = 120;  // of a pixel meanwhile
 
@@ -97,7 +97,7 @@ Result<Grid> gridOf(std::span<const View> views, const FuseSettings& settings) {
                   settings.voxel, longest / settings.voxel, kMost, 1.01 * longest / kMost)};
 }
 
-// The vertices in the order of their keys, each once.
+// Returns the vertices' keys in ascending order, each once.
 std::vector<std::uint64_t> keysOf(const std::vector<Piece>& pieces) {
   std::size_t count = 0;
   for (const Piece& piece : pieces) count += piece.keys.size();
@@ -132,7 +132,8 @@ mesh::Mesh meshOf(const std::vector<Piece>& pieces, const Grid& grid) {
   return mesh;
 }
 
-// Weighted by the triangles' areas: marching tetrahedra makes thin ones, whose normals are rough.
+// Adds normals, weighted by the triangles' areas: marching tetrahedra makes thin triangles, whose
+// normals are rough.
 void addNormals(mesh::Mesh& mesh) {
   std::vector<double> sums(mesh.positions.size(), 0);
   const auto at = [&](std::size_t v) {

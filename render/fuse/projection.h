@@ -1,4 +1,4 @@
-// Projection: the inverse of a scanner's geometry, from a point to the place in the range image.
+// Projection: the inverse of a scanner's geometry; finds a point's position in the range image.
 // Private to render/fuse.
 #pragma once
 
@@ -23,7 +23,7 @@ inline Point minus(const Point& a, const Point& b) noexcept {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-// A place in the image in pixels, from the middle of the first one.
+// A position in the image, in pixels from the middle of the first pixel.
 struct Place {
   double column = 0, row = 0;
 };
@@ -33,8 +33,9 @@ class Projection {
   // REQUIRES: faultOf(image) and inverseFaultOf(image) are empty.
   explicit Projection(const range::RangeImage& image);
 
-  // Where the ray through the point (scanner's coordinates) lies in the image; nothing if it lies
-  // in no cell of 2 x 2 pixels. The column of a full turn is below the width.
+  // Returns the position in the image of the ray through the point (in the scanner's coordinates);
+  // nothing if it is in no cell of 2 x 2 pixels. In a full turn the column may be between the last
+  // pixel and the width.
   std::optional<Place> at(const Point& point) const;
 
  private:
@@ -48,8 +49,8 @@ class Projection {
   std::vector<range::Beam> beams_{};     // kSpinning
 };
 
-// Why points cannot be projected into an image that has no other fault; empty if they can: the
-// scanner is orthogonal, pinhole, or spinning with rows from the top to the bottom. O(rows).
+// Returns why points cannot be projected into an image that has no other fault. Empty if they can,
+// i.e. if the scanner is orthogonal, pinhole, or spinning with rows from top to bottom. O(rows).
 std::string inverseFaultOf(const range::RangeImage& image);
 
 }  // namespace merlin::render::fuse

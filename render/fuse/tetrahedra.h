@@ -1,4 +1,4 @@
-// Tetrahedra: the iso-surface of a block of values by marching tetrahedra. Private to render/fuse.
+// Computes the iso-surface of a block of values by marching tetrahedra. Private to render/fuse.
 #pragma once
 
 #include <array>
@@ -19,25 +19,26 @@ using Values = std::array<float, kValues>;
 
 // The surface in one block.
 struct Piece {
-  std::vector<std::uint64_t> keys{};       // of its vertices, increasing: one key per lattice edge
-  std::vector<float> places{};             // of its vertices: share of the way along that edge
-  std::vector<std::uint32_t> triangles{};  // x 3: index of a vertex of the piece
+  std::vector<std::uint64_t> keys{};       // by vertex, increasing: key of its lattice edge
+  std::vector<float> places{};             // by vertex: position along that edge, 0..1
+  std::vector<std::uint32_t> triangles{};  // triangles x 3: index of a vertex of the piece
 };
 
-// A vertex lies on an edge of the lattice from `corner` to the corner that `step` leads to (each
-// 0 or 1, not all 0).
+// An edge of the lattice, on which a vertex lies: from `corner` to corner + step. Each component of
+// `step` is 0 or 1, and not all are 0.
 struct Edge {
   Lattice corner{}, step{};
 };
 Edge edgeOf(std::uint64_t key) noexcept;
 
-// The surface where the values change sign, in the tetrahedra of which no corner is unknown. Each
-// cell is divided into six tetrahedra along its main diagonal ([KUHN60]), so neighbours agree on
-// each face: the surface has no edge with three triangles, and is closed where nothing is unknown.
-// Triangles are counter-clockwise from outside. `block`: in units of blocks. O(kValues).
+// Returns the surface where the values change sign, in those tetrahedra whose corners are all
+// known. Each cell is divided into six tetrahedra along its main diagonal ([KUHN60]), so that
+// neighbouring cells agree on their common face: the surface has no edge with three triangles, and
+// is closed where nothing is unknown. Triangles are counter-clockwise from outside. `block`:
+// position of the block, in units of blocks. O(kValues).
 Piece surfaceIn(const Values& values, const Lattice& block);
 
-// Sides of the block that the surface crosses; bits 2 axis + (0 low, 1 high).
+// Returns the sides of the block that the surface crosses, as bits 2 axis + (0: low, 1: high side).
 std::uint8_t crossedSides(const Values& values) noexcept;
 
 }  // namespace merlin::render::fuse

@@ -14,7 +14,7 @@ constexpr double kLeastConfidence = 1e-3;
 // How far behind a surface along the ray, in truncations, an inclined surface still counts: beyond
 // that it need not be plane any more.
 constexpr double kDeepest = 3;
-// Weight of space that is free by its neighbours' rays.
+// Weight of space that is free only according to neighbouring rays.
 constexpr double kBesides = 0.25;
 
 double length(const Point& p) { return std::sqrt(dot(p, p)); }
@@ -130,11 +130,12 @@ Sight View::at(const Point& point) const {
   return besides(corners, in_cell, p);
 }
 
-// The distance from the plane of the triangle that the ray through `p` meets; a negative weight if
-// it meets none.
+// Returns the distance from the plane of the triangle that the ray through `p` meets; a negative
+// weight if it meets none.
 Sight View::onTriangles(const std::array<std::uint32_t, 4>& corners, std::uint8_t lacking,
                         const Point& p) const {
-  // Cells of a spinning scanner have curved sides, its triangles have not.
+  // Cells of a spinning scanner have curved sides, but its triangles have not: so a ray slightly
+  // beside a triangle still meets it.
   constexpr double kOutside = -0.02;
   Sight sight;
   double best = kOutside;
@@ -178,8 +179,8 @@ Sight View::fromPlane(const std::array<Point, 3>& corner, const Point& p, Sight 
   return sight;
 }
 
-// In a cell without a surface there: free is what is nearer than all of its returns, and a ray
-// whose nearest pixel met nothing.
+// For a ray that meets no surface in its cell: `p` is free if it is nearer than all returns of the
+// cell, or if the ray's nearest pixel met nothing.
 Sight View::besides(const std::array<std::uint32_t, 4>& corners, const Place& in_cell,
                     const Point& p) const {
   Sight free;

@@ -16,17 +16,19 @@ namespace merlin::render::fuse {
 // What a scan says about a point.
 struct Sight {
   enum class Kind : std::uint8_t {
-    kNothing,  // outside the image, behind a surface, or beside an edge of one
+    kNothing,  // outside the image, behind a surface, or beside a surface's edge
     kFree,     // the scanner saw through it
     kNear      // within the truncation of a surface
   };
   Kind kind = Kind::kNothing;
   // kNear: the distance from the surface, positive on the scanner's side [units].
   double distance = 0;
-  // Of this measurement: confidence x the squared cosine of the angle of incidence; behind the
-  // surface it falls to 0 at the truncation. Of kFree: 1 through a surface, less at its edges.
+  // kNear: confidence x the squared cosine of the angle of incidence; behind the surface it falls
+  // to 0 at the truncation. kFree: 1 if the ray meets a surface farther away, less at a surface's
+  // edges.
   double weight = 0;
-  // kNear: the surface's three pixels, and their shares of the place that the ray meets.
+  // kNear: the pixels of the triangle that the ray meets, and the barycentric coordinates of the
+  // point where it does.
   std::array<std::uint32_t, 3> pixels{};
   std::array<double, 3> shares{};
 };
@@ -37,10 +39,10 @@ struct ViewSettings {
   bool background_is_empty = false;  // a ray without a return met nothing
 };
 
-// Thread-safe once it is made. Keeps a reference to the image.
+// Thread-safe after construction. Keeps a reference to the image.
 class View {
  public:
-  // O(pixels), 14 bytes a pixel and meanwhile 100. REQUIRES: faultOf(image) and
+  // O(pixels); 14 bytes per pixel, and 100 during construction. REQUIRES: faultOf(image) and
   // inverseFaultOf(image) are empty.
   View(const range::RangeImage& image, const ViewSettings& settings, const range::Work& work);
 

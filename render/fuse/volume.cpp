@@ -21,8 +21,8 @@ Lattice blockOf(std::uint64_t key) {
   return block;
 }
 
-// Of a block with 64 cells of surface, until the mesh with its normals is there; and of each float
-// of a feature.
+// Memory [bytes] of a block with 64 cells of surface, until the mesh with its normals is there; and
+// in addition for each float of a feature.
 constexpr std::size_t kBlockBytes = 20 << 10, kValueBytes = 1 << 10;
 
 }  // namespace
@@ -39,7 +39,8 @@ float Volume::valueAt(const Lattice& corner) const {
     near += sight.weight;
     sum += sight.weight * sight.distance;
   }
-  // Scans that saw through what others put inside outvote them: spikes, and what moved.
+  // Scans that saw `p` as free outvote those that put it inside: this removes spikes, and what
+  // moved.
   const bool outvoted = sum < 0 && free > near;
   if (near > 0 && !outvoted)
     return static_cast<float>(sum / near / (settings_.truncation * grid_.voxel));

@@ -1,4 +1,4 @@
-// Volume: the blocks of voxels that the surface crosses, found by following it. Private to
+// Volume: the blocks of voxels that the surface crosses, found by following the surface. Private to
 // render/fuse.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace merlin::render::fuse {
 
 // A lattice over the world.
 struct Grid {
-  Point low{}, high{};  // of the space that may have a surface
+  Point low{}, high{};  // box that may contain the surface
   double voxel = 1;
 
   Point at(const Lattice& corner) const noexcept {
@@ -34,18 +34,19 @@ struct Grid {
   }
 };
 
-// Thread-bound; one run each. Borrows views and settings.
+// Thread-bound; run() may be called once. Keeps references to views, settings and grid.
 class Volume {
  public:
   Volume(std::span<const View> views, const FuseSettings& settings, const Grid& grid,
          std::size_t values)
       : views_(views), settings_(settings), grid_(grid), values_(values) {}
 
-  // Finds the blocks from those that have a point of a scan's surface, by following the surface
-  // through their sides. Errors: kInvalidArgument if the limit of the memory does not suffice.
+  // Finds the blocks: starts with those that contain a point of a scan's surface, and follows the
+  // surface through their sides. Errors: kInvalidArgument if the memory limit does not suffice.
   Result<Ok> run(const range::Work& work);
 
-  // The value at a corner, in truncations: 1 is free, negative inside, NaN unknown. Pure.
+  // Returns the signed distance at a corner, in truncations: 1 in free space, negative inside, NaN
+  // if unknown. Pure.
   float valueAt(const Lattice& corner) const;
 
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }  // in a fixed order
@@ -61,7 +62,7 @@ class Volume {
   std::span<const View> views_;
   const FuseSettings& settings_;
   const Grid& grid_;
-  std::size_t values_;  // floats of features a vertex
+  std::size_t values_;  // floats of features per vertex
   std::unordered_set<std::uint64_t> seen_{};
   std::vector<std::uint64_t> queue_{};  // blocks in the order in which they are filled
   std::vector<Piece> pieces_{};

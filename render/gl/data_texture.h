@@ -28,7 +28,7 @@ class DataTexture {
   // Replaces all texels by width * height ones, row by row without padding.
   void write(const void* texels) const;
 
-  // To the texture unit of this number; unit 0 is the active one afterwards.
+  // Binds to the texture unit of this number; unit 0 is the active one afterwards.
   void bind(int unit) const;
 
  private:

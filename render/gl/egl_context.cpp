@@ -94,7 +94,7 @@ class EglContext final : public GlContext {
     return Ok{};
   }
 
-  // Not every driver tells of a reset of the GPU.
+  // `tells_of_reset`: asks to be told of a reset of the GPU, which not every driver supports.
   bool createContext(bool tells_of_reset) {
     std::vector<EGLint> attributes = {
         EGL_CONTEXT_MAJOR_VERSION,       3,

@@ -22,7 +22,7 @@ std::vector<EglDevice> eglDevices();
 
 // These create a context that is current on the calling thread. Errors: kUnsupported.
 Result<std::unique_ptr<GlContext>> makeEglContext(const EglDevice& device);
-// On the display that belongs to no device: on it Mesa chooses a GPU, or its software renderer.
+// Uses the EGL display that belongs to no device: Mesa then chooses a GPU or its software renderer.
 Result<std::unique_ptr<GlContext>> makeSurfacelessContext();
 
 }  // namespace merlin::render::gl

@@ -1,4 +1,4 @@
-// The OpenGL entry points that MERLIN calls, resolved at run time from the context that made them.
+// The OpenGL entry points that MERLIN calls, resolved at run time for each context.
 //
 // libOSMesa exports the same GL symbols as the library that EGL uses, and a process may load both.
 // So MERLIN links neither, and each context has its own table of functions. OpenGL 3.3 core.
@@ -100,7 +100,7 @@ struct GlApi {
 #define MERLIN_GL_MEMBER(type, name) type name = nullptr;
   MERLIN_GL_FUNCTIONS(MERLIN_GL_MEMBER)
 #undef MERLIN_GL_MEMBER
-  // Null unless the context tells of a reset of its GPU.
+  // Null unless the context reports resets of its GPU.
   PFNGLGETGRAPHICSRESETSTATUSPROC GetGraphicsResetStatus = nullptr;
 };
 

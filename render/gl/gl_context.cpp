@@ -13,7 +13,7 @@ namespace {
 
 using Made = Result<std::unique_ptr<GlContext>>;
 
-// Where Mesa chooses a GPU although none is wanted, its software device is asked for.
+// If Mesa chooses a GPU although none is wanted, uses its software device.
 Made makeSoftwareContext() {
   Made made = makeSurfacelessContext();
   if (!made || (*made)->info().software) return made;
@@ -25,7 +25,7 @@ Made makeSoftwareContext() {
                "render.gpu: EGL has no software renderer; package libgl1-mesa-dri provides one"};
 }
 
-// A driver may be there and draw with the CPU all the same, as a virtual machine's does.
+// Skips devices whose driver draws with the CPU all the same, as a virtual machine's does.
 Made makeAnyContext() {
   for (const EglDevice& device : eglDevices()) {
     if (device.software) continue;

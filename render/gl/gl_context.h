@@ -25,14 +25,15 @@ class GlContext {
   std::string renderer() const { return info_.library + ", " + info_.name; }
 
   // Whether the GPU was reset, by a driver that gave up on it: the context and all that it holds
-  // are lost, and frames stay black. False where the driver does not tell.
+  // are lost, and frames stay black. False if the driver does not report resets.
   bool wasReset() const {
     return api_.GetGraphicsResetStatus && api_.GetGraphicsResetStatus() != 0;
   }
 
   // Creates another context by the same renderer, current on the calling thread, which must be
-  // another one than this context's. Mesa's software renderers of one EGL display draw one after
-  // the other, so theirs gets a display of its own where there is one. Errors: kUnsupported.
+  // another one than this context's. Mesa's software renderer draws the contexts of one EGL display
+  // one after the other, so its further context gets another display if one is available. Errors:
+  // kUnsupported.
   virtual Result<std::unique_ptr<GlContext>> makeFurther() const = 0;
 
  protected:
@@ -42,19 +43,19 @@ class GlContext {
 
 // `gpu`: as GlSettings::gpu; kAnyGpu takes the first GPU on which a context can be created, else
 // the software renderer. Errors: kUnsupported, with what is missing (the library, the context or an
-// OpenGL function); kInvalidArgument (`gpu` is none of this machine's, or OSMesa was asked for
-// one).
+// OpenGL function); kInvalidArgument (`gpu` names no GPU of this machine, or OSMesa was asked for a
+// GPU).
 Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend,
                                                  const std::string& gpu = kAnyGpu);
 
-// Whether makeGlContext() would find this GPU. Cheap for kAnyGpu and kNoGpu; otherwise that of
-// listGpus(). Errors: those of makeGlContext() that are kInvalidArgument.
+// Whether makeGlContext() would find this GPU. Cheap for kAnyGpu and kNoGpu; otherwise it takes as
+// long as listGpus(). Errors: kInvalidArgument, as makeGlContext().
 Result<Ok> checkGpu(GlBackend backend, const std::string& gpu);
 
 // Prepares the process for Mesa's software renderer: sets the number of its raster threads (0: it
 // rasterises on the calling thread), and makes the heap keep memory that one frame frees for the
-// next frame. `only`: Mesa's drivers of GPUs are not to be used. Call once, before the first
-// context is created and before any thread starts.
+// next frame. `only`: Mesa's GPU drivers are not used. Call once, before the first context is
+// created and before any thread starts.
 void prepareSoftwareGl(int raster_threads, bool only = false);
 
 }  // namespace merlin::render::gl

@@ -24,8 +24,8 @@ struct Gpu {
 std::vector<Gpu> listGpus();
 
 // Returns the index in `gpus` of the one that `wanted` names: its index, DRM node, PCI address, or
-// a part of its name (in any case). Errors: kInvalidArgument (none, or several of them), with a
-// list of all. Pure.
+// a part of its name (upper or lower case). Errors: kInvalidArgument (no GPU matches, or several
+// do), with a list of all. Pure.
 Result<std::size_t> chooseGpu(std::span<const Gpu> gpus, const std::string& wanted);
 
 // A line for each GPU: "0: NVIDIA H100 (NVIDIA Corporation, 4.6.0 NVIDIA 535.54, ...)". Pure.

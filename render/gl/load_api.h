@@ -29,7 +29,7 @@ Result<GlApi> loadApi(Resolve resolve) {
   return Error{Errc::kUnsupported, fmt::format("this OpenGL lacks the function {}", missing)};
 }
 
-// Who draws in the current context.
+// Returns the renderer of the current context.
 inline RendererInfo rendererOf(const GlApi& gl, const char* library) {
   const auto text = [&](GLenum name) {
     const auto* const string = reinterpret_cast<const char*>(gl.GetString(name));

@@ -20,7 +20,7 @@ class ReadBack {
   ~ReadBack();
 
   // Begins to copy the upper left width x height pixels of `target`, as they are after all drawing
-  // so far. What start() began before and was not finished is dropped. REQUIRES: they lie within
+  // so far. Drops a copy that was started before and not finished. REQUIRES: the pixels lie within
   // the target.
   void start(const RenderTarget& target, int width, int height);
 

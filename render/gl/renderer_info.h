@@ -1,4 +1,4 @@
-// RendererInfo: who draws in a context.
+// RendererInfo: which library, driver and device draw in a context.
 #pragma once
 
 #include <string>

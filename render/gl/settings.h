@@ -26,7 +26,7 @@ struct GlSettings {
   // renderer on more than one core, else one.
   int contexts = 0;
   int raster_threads = 0;  // of Mesa's software renderer; 0: it rasterises on the calling thread
-  // Who draws: kAnyGpu, kNoGpu (software), or a GPU as chooseGpu() finds it.
+  // What draws: kAnyGpu, kNoGpu (software), or a GPU as chooseGpu() finds it.
   std::string gpu = kAnyGpu;
   ReadBackMode read_back = ReadBackMode::kAuto;
 };

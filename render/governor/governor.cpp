@@ -28,7 +28,8 @@ constexpr double kSlow = 0.05, kSlowUp = 0.15, kDearer = 0.05, kCheaper = 0.10;
 constexpr double kNoiseStep = 1.02, kQuiet = 0.03, kMostUnrest = 3;
 // A rising load is extrapolated by the slope of this many frames.
 constexpr double kAhead = 3;
-// When a single late frame sets c: the factor for its noise, and the most that c may grow.
+// When a single late frame sets c: the factor for its noise, and the largest factor by which c may
+// grow.
 constexpr double kOneFrame = 1.06, kMostJump = 6;
 // If c of the next frame is below this multiple of c before the late frame, that one was an
 // outlier.
@@ -65,7 +66,7 @@ std::optional<double> slopeOf(std::span<const FrameCost> frames) {
   return slopes.empty() ? std::nullopt : std::optional(median(std::move(slopes)));
 }
 
-// Before anything is computed from them.
+// Asserts that the settings are valid, before anything is computed from them.
 const GovernorSettings& checked(const GovernorSettings& settings) noexcept {
   assert(settings.rate_hz > 0);
   assert(settings.min_triangles > 0 && settings.min_triangles <= settings.first_triangles);

@@ -11,9 +11,9 @@
 // the period). m is learnt: a late frame adds g (1 - q) to m, a frame in time subtracts g q, so
 // that in the long run a share q of the frames is late. A single late frame may be an outlier and
 // does not change the cost model. Two in a row change it at once, to the higher of its own cost and
-// that of the frame, and the budget can only fall. A frame that missed two deadlines acts alone;
-// its effect is undone if the next frame shows that it was an outlier. The budget grows slowly, and
-// only if the gain exceeds a dead band. README.md has figures and sources.
+// that of the frame, and the budget can only fall. A single frame that missed two deadlines
+// changes it at once, too; this is undone if the next frame shows that it was an outlier. The
+// budget grows slowly, and only if the gain exceeds a dead band. README.md has figures and sources.
 #pragma once
 
 #include <algorithm>
@@ -48,8 +48,9 @@ class Governor {
   // once however many tiles show it.
   std::size_t budget() const noexcept;
 
-  // The budget of a frame that has only `available` left until its deadline, since the one before
-  // it ran over: the number that the cost model expects to fit; 0 if not even least() fit.
+  // The budget of a frame that has only `available` left until its deadline, because the previous
+  // frame overran: the number of triangles that the cost model expects to fit; 0 if not even
+  // least() fit.
   std::size_t budgetFor(Duration available) const noexcept;
 
   // Triangles of a frame that takes `work` according to the cost model, without head room and
@@ -80,13 +81,14 @@ class Governor {
   // REQUIRES: rate_hz > 0.
   void setRate(double rate_hz) noexcept;
 
-  // Of a content whose detail has another unit than triangles: the lowest cost at which it is still
-  // recognisable, which takes the place of min_triangles where that is higher; nullopt: the content
-  // has triangles. REQUIRES: least_useful > 0.
+  // To be called for a content whose detail is not measured in triangles, with the lowest cost at
+  // which it is still recognisable: least() becomes the lower one of this and min_triangles.
+  // nullopt: the content has triangles. REQUIRES: least_useful > 0.
   void setLeastUseful(std::optional<std::size_t> least_useful) noexcept;
 
-  // Replaces limits and share of late frames; the rate is setRate()'s. The model is kept, and the
-  // budget stays as far as the limits allow. REQUIRES: validate() finds nothing.
+  // Replaces the limits and the share of late frames, but not the rate, which setRate() changes.
+  // The model is kept, and the budget stays as far as the limits allow. REQUIRES: validate() finds
+  // nothing.
   void setLimits(const GovernorSettings& settings) noexcept;
 
   // The time that the model expects `triangles` to take, in seconds.

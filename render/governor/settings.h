@@ -9,8 +9,8 @@ namespace merlin::render::governor {
 
 struct GovernorSettings {
   double rate_hz = 30;  // frames per second while anything moves
-  // Lower limit of the budget, even if frames are late; of a content with another unit of detail at
-  // most the cost at which it is still recognisable.
+  // Lower limit of the budget, even if frames are late. For a content whose detail is not measured
+  // in triangles, the limit is lowered to the cost at which the content is still recognisable.
   std::size_t min_triangles = 500;
   std::size_t max_triangles = 4'000'000;  // upper limit of the budget while anything moves
   std::size_t first_triangles = 10'000;   // budget before the first measurement

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
 
-// An image of this size; with `head`, only the header is wanted, and no memory for pixels is taken.
+// Returns an image of this size; with `head`, without memory for pixels, as only the header is
+// wanted.
 Result<ImageFile> sized(std::uint64_t width, std::uint64_t height, bool head) {
   if (width == 0 || height == 0 || width > kMostPixels / height) {
     return Error{Errc::kUnsupported,
@@ -80,7 +81,7 @@ struct Between {
 
 // A coordinate of a repeating image loses its whole part first, so that the pixel's index is exact.
 Between between(double place, int n, Wrap wrap) noexcept {
-  constexpr double kFarthest = 1e9;  // of what is not repeated
+  constexpr double kFarthest = 1e9;  // limit of a coordinate that does not repeat
   const double period = wrap == Wrap::kMirror ? 2 : 1;
   const double unit = wrap == Wrap::kClamp ? std::clamp(place, -kFarthest, kFarthest)
                                            : place - period * std::floor(place / period);

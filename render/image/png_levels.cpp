@@ -13,7 +13,7 @@ namespace {
 
 constexpr png_uint_32 kMostSide = 1 << 16;
 constexpr std::size_t kMostMessage = 128;
-constexpr png_alloc_size_t kMostChunk = 1 << 20;  // of a chunk that is no pixels [bytes]
+constexpr png_alloc_size_t kMostChunk = 1 << 20;  // of a chunk without pixels [bytes]
 
 // What libpng's functions reach while it reads. No C++ object with a destructor lives across its
 // longjmp, so this has none.
@@ -39,7 +39,7 @@ void take(png_structp png, png_bytep to, png_size_t count) {
 }
 void keepQuiet(png_structp, png_const_charp) {}
 
-// The head; the transformations that make three channels of 16 bits are set.
+// Reads the head, and sets the transformations to three channels of 16 bits.
 bool readHead(Reading& r) {
   r.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r, fail, keepQuiet);
   r.info = r.png ? png_create_info_struct(r.png) : nullptr;

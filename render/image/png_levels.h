@@ -1,5 +1,5 @@
-// PNG files whose pixels are figures and no picture: 16 bits a channel, as they stand in the file,
-// without any gamma. libpng.
+// PNG files whose pixels are numbers and not a picture: 16 bits a channel, as stored in the file,
+// without any gamma. Uses libpng.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,9 @@ struct Levels {
   std::vector<std::uint16_t> values;  // 0..65535, rows from top to bottom
 };
 
-// Decodes a file's bytes to three channels, from any kind of PNG; 8 bits become 16, 255 as 65535,
-// and alpha is left out. Errors: kMalformed, kUnsupported (more than `most_pixels`).
+// Decodes a file's bytes to three channels, from any kind of PNG; 8-bit values are scaled to 16
+// bits (255 becomes 65535), and alpha is left out. Errors: kMalformed, kUnsupported (more than
+// `most_pixels`).
 Result<Levels> decodeLevels(std::span<const std::byte> png, std::size_t most_pixels);
 
 // Encodes one channel with 16 bits. The same values give the same bytes. Errors: kIo (no memory).

@@ -12,7 +12,7 @@
 namespace merlin::render::image {
 namespace {
 
-// A texture is encoded while somebody waits, and may have 64 million pixels.
+// Textures are compressed fast: they may have 64 million pixels, and somebody waits for them.
 constexpr int kCompression = 6, kFastCompression = 3;
 
 struct PngRows {

@@ -25,7 +25,7 @@ inline constexpr int kTileSide = 256;
 inline constexpr std::int64_t kMostCoarsest = 16;  // tiles of the coarsest level
 inline constexpr std::size_t kTileBytes = std::size_t{4} * kTileSide * kTileSide;
 
-// What `merlin image import --panorama` writes as the description of the file.
+// What `merlin image import` writes as the file's description, without and with --panorama.
 inline constexpr const char* kPictureMark = "MERLIN picture";
 inline constexpr const char* kPanoramaMark = "MERLIN panorama";
 
@@ -60,7 +60,7 @@ class PyramidFile {
   std::span<const PyramidLevel> levels() const noexcept { return levels_; }
   bool isPanorama() const noexcept { return panorama_; }  // marked by kPanoramaMark
   const std::string& name() const noexcept { return name_; }
-  const FileStamp& stamp() const noexcept { return stamp_; }  // of a file, when it was opened
+  const FileStamp& stamp() const noexcept { return stamp_; }  // of the file when it was opened
 
   static constexpr std::int64_t kMostSide = 0x7FFF'FFFF;  // [px]
 

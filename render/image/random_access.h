@@ -26,12 +26,12 @@ class RandomAccess {
 };
 
 // A file that stays open: it can be read after its name is gone. Reads by pread(), never by mmap(),
-// so that a file that is cut meanwhile is an error and not the end of the process.
+// so that a file that is truncated meanwhile causes an error and does not end the process.
 class FileAccess final : public RandomAccess {
  public:
   // Never blocks on a pipe or a device. Errors: kNotFound, kIo, kMalformed (not a regular file).
   static Result<std::unique_ptr<FileAccess>> open(const std::string& path);
-  // The same of a file that is open. `path`: for messages.
+  // The same for a file that is already open. `path`: for messages.
   static Result<std::unique_ptr<FileAccess>> of(UniqueFd file, const std::string& path);
 
   std::uint64_t size() const noexcept override { return stamp_.size; }

@@ -181,7 +181,7 @@ class Reader {
     return Ok{};
   }
 
-  // One number for each sample, which must be equal.
+  // Takes a field with one number for each sample; these must be equal.
   Result<Ok> same(const Entry& entry, std::uint64_t& to) {
     std::vector<std::uint64_t> all;
     if (const auto got = numbers(entry, kMostSamples, all); !got) return got;
@@ -200,7 +200,7 @@ class Reader {
     return file_.read(entry.values.offset, to);
   }
 
-  // A longer description is not needed: it is left out.
+  // Takes a description; one that is longer than kMostText is not needed and is left out.
   Result<Ok> text(const Entry& entry) {
     std::vector<std::uint8_t> bytes;
     if (entry.values.count > kMostText) return Ok{};

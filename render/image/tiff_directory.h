@@ -44,7 +44,7 @@ Result<std::uint64_t> firstDirectory(const RandomAccess& file);
 Result<TiffDirectory> readDirectory(const RandomAccess& file, std::uint64_t offset);
 
 // Value `index` of a table. REQUIRES: index < table.count, a table of readDirectory(). Errors:
-// kMalformed (the file was cut since), kIo.
+// kMalformed (the file was truncated since), kIo.
 Result<std::uint64_t> readValue(const RandomAccess& file, const TiffTable& table,
                                 std::uint64_t index);
 

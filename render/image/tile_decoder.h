@@ -15,10 +15,10 @@ enum class TileCoding { kJpeg, kDeflate };
 struct TileForm {
   TileCoding coding = TileCoding::kJpeg;
   int side = 256;            // width and height of a tile [px]
-  int samples = 3;           // 8-bit, of a pixel: 1 grey, 3 RGB, 4 RGB and opacity
+  int samples = 3;           // 8-bit samples of a pixel: 1 grey, 3 RGB, 4 RGBA
   bool differences = false;  // deflate: each sample is stored as its difference from the
                              // one to its left ("predictor 2")
-  std::vector<std::uint8_t> jpeg_tables;  // of all tiles; may be empty
+  std::vector<std::uint8_t> jpeg_tables;  // shared by all tiles; may be empty
 
   std::size_t pixelBytes() const noexcept {
     return static_cast<std::size_t>(side) * static_cast<std::size_t>(side);

@@ -17,9 +17,9 @@ double encoded(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-// What each of the 256 values becomes.
+// Returns the new value for each of the 256 values.
 std::array<std::uint8_t, 256> tableOf(float factor, Light light) {
-  const double times = factor > 0 ? std::min(double{factor}, 1.0) : 0.0;  // 0 of what is no number
+  const double times = factor > 0 ? std::min(double{factor}, 1.0) : 0.0;  // 0 for NaN
   std::array<std::uint8_t, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double stored = static_cast<double>(i) / 255;

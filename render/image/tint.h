@@ -1,4 +1,4 @@
-// Pictures times a colour, as materials ask for it.
+// Multiplies images by a colour, as materials of models require it.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace merlin::render::image {
 
-// In which numbers colours are multiplied: as they are stored, or proportional to light (sRGB
-// decoded, and encoded again).
+// Which values are multiplied: those that are stored, or proportional to light (sRGB decoded, and
+// encoded again).
 enum class Light : std::uint8_t { kStored, kLinear };
 
-// The picture with each channel times its factor, 0..1 (others are held there), and with a PNG file
-// of its own. Errors: those of encodePng().
+// Returns the picture with each channel multiplied by its factor (clamped to 0..1), and with a new
+// PNG file of it. Errors: those of encodePng().
 Result<ImageFile> tinted(const ImageFile& picture, const std::array<float, 3>& factor, Light light);
 
 }  // namespace merlin::render::image

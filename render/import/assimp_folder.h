@@ -1,4 +1,4 @@
-// The files that assimp may read: the model, and those beside it.
+// Gives assimp access to the model and its companion files, and to no other file.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace merlin::render::import {
 
-// The model under a name whose ending says its format, and files beside the model; read-only.
-// `file` must outlive it.
+// Read-only. Shows the model under a name whose ending matches its format, and the companion files
+// in the model's folder or below (companion_path.h). `file` must outlive it.
 class ModelFolder final : public Assimp::IOSystem {
  public:
   explicit ModelFolder(const ModelFile& file);

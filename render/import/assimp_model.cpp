@@ -28,7 +28,7 @@
 namespace merlin::render::import {
 namespace {
 
-// assimp owns it. It reads the first half of the way.
+// Reports assimp's reading as the first half of the progress. assimp owns the object.
 class Progress final : public Assimp::ProgressHandler {
  public:
   explicit Progress(const OnTriangles& on_triangles) : on_triangles_(on_triangles) {}
@@ -58,13 +58,13 @@ struct Material {
   aiColor4D factor{1, 1, 1, 1};  // of the vertices' colours
   mesh::SurfaceTexture texture;
   unsigned texcoords = 0;  // which of the mesh's texture coordinates
-  // What is done to them: each times `scale`, and then `offset` is added.
+  // Transform of these coordinates: each is multiplied by `scale`, and then `offset` is added.
   std::array<float, 2> scale = {1, 1}, offset{};
 };
 
 class SceneReader {
  public:
-  // `values`: of the vertices of the only mesh; empty: there are none.
+  // `values`: features of the vertices of the only mesh; empty if there are none.
   SceneReader(const aiScene& scene, const ModelFile& file, const OnTriangles& on_triangles,
               std::vector<mesh::Feature> values)
       : scene_(scene),
@@ -132,8 +132,8 @@ class SceneReader {
     return textures_.ofPixels(path.C_Str(), std::move(pixels));
   }
 
-  // Of a glTF material by KHR_materials_pbrSpecularGlossiness, the diffuse colour and texture are
-  // its own, and the base colour is what the file gives to others, or white.
+  // True for a glTF material with KHR_materials_pbrSpecularGlossiness. Its own colour and texture
+  // are the diffuse ones; its base colour is meant for readers without the extension, or is white.
   static bool isSpecularGlossiness(const aiMaterial& material) {
     ai_real glossiness = 0;
     return material.Get(AI_MATKEY_GLOSSINESS_FACTOR, glossiness) == aiReturn_SUCCESS;
@@ -171,8 +171,8 @@ class SceneReader {
     return m;
   }
 
-  // A glTF material's colour is multiplied with its texture. Other formats mean different things by
-  // having both.
+  // A glTF material's colour is multiplied with its texture. In other formats, it varies what
+  // having both means.
   void tint(const aiMaterial& material, Material& m) {
     aiColor4D c;
     if (!m.texture.picture || !baseColour(material, c)) return;
@@ -182,8 +182,9 @@ class SceneReader {
       m.texture.picture = textures_.tinted(*m.texture.picture, factor);
   }
 
-  // Of glTF, assimp says with v upwards what is to be done. Its own step (TransformUVCoords) does
-  // something else, about the picture's middle, and of other formats its meaning is not known.
+  // For glTF, assimp gives the transform for coordinates with v upwards. assimp's own step
+  // (TransformUVCoords) does something else, about the picture's middle. For other formats the
+  // meaning is unknown, so their transforms are only counted.
   void takeTransform(const aiMaterial& material, aiTextureType type, Material& m) {
     aiUVTransform t;
     const bool there =
@@ -198,8 +199,8 @@ class SceneReader {
     m.offset = {t.mTranslation.x, t.mTranslation.y};
   }
 
-  // The nodes with the transforms that take their coordinates to the model's, relative to an origin
-  // near the first node with a mesh: a model of a map is moved to its place by a node.
+  // Collects the nodes with the transforms that take their coordinates to the model's. These are
+  // relative to an origin near the first node with a mesh, since a node may move a map far away.
   void findNodes() {
     findNodesFrom(scene_.mRootNode->mTransformation);
     const auto first =
@@ -231,7 +232,8 @@ class SceneReader {
     }
   }
 
-  // Positions of a mesh in the model: its bones', or its node's where no bone holds a vertex.
+  // Returns the positions of a mesh's vertices in the model: moved by their bones, or by the mesh's
+  // node if a vertex has no bone.
   std::vector<aiVector3D> positionsOf(const aiMesh& mesh, const aiMatrix4x4& to_model) const {
     std::vector<aiVector3D> at(mesh.mNumVertices);
     std::vector<float> held(mesh.mNumVertices);
@@ -256,8 +258,8 @@ class SceneReader {
     return at;
   }
 
-  // The colours of a mesh's vertices; null if it has none. Of an AMF file without colours, assimp
-  // makes each vertex black and transparent.
+  // Returns the colours of a mesh's vertices; null if it has none. assimp gives an AMF file without
+  // colours black, transparent vertices, which count as none.
   const aiColor4D* coloursOf(const aiMesh& mesh) const {
     const aiColor4D* const colours = mesh.mColors[0];
     if (!colours || !amf_) return colours;
@@ -266,7 +268,7 @@ class SceneReader {
     return any ? colours : nullptr;
   }
 
-  // Only glTF says what a texture and colours together mean.
+  // Only glTF defines what a texture and vertex colours together mean.
   bool hasColouredPicture(const aiMesh& mesh, const Material& material) const {
     const aiColor4D* const colours = mesh.mColors[0];
     return linear_ && colours && material.texture.picture &&
@@ -330,7 +332,7 @@ class SceneReader {
   std::map<std::string, aiMatrix4x4> by_name_;
   mesh::Origin origin_{};
   ModelBuilder builder_;
-  std::vector<std::uint32_t> rows_;  // of the builder's values, for each vertex; or empty
+  std::vector<std::uint32_t> rows_;  // by vertex: its row in the builder's values; or empty
   std::size_t others_ = 0, meshes_ = 0, transforms_ = 0, coloured_pictures_ = 0;
   bool morphs_ = false;
 };
@@ -340,12 +342,12 @@ bool isGltf(const ModelFile& file) { return file.format == "gltf" || file.format
 Result<GltfPromise> checkFirst(const ModelFile& file) {
   if (!isGltf(file)) return GltfPromise{};
   const auto bytes = MappedFile::open(file.path);
-  if (!bytes) return GltfPromise{};  // assimp says so
+  if (!bytes) return GltfPromise{};  // assimp will report it
   return checkGltf(bytes->text());
 }
 
-// What is left of the primitives once each mesh has taken the one with as many triangles; `lossy`:
-// the meshes for which there was none. Both in the order of their triangles.
+// Matches each mesh with a primitive that has as many triangles. Returns the primitives that are
+// left; `lossy`: the meshes without a match. Both are sorted by number of triangles.
 std::vector<GltfPrimitive> unmatched(std::vector<GltfPrimitive> promised,
                                      std::vector<const aiMesh*> meshes,
                                      std::vector<const aiMesh*>& lossy) {
@@ -389,8 +391,8 @@ Result<Ok> checkTriangles(std::vector<GltfPrimitive> promised, const aiScene& sc
   return Ok{};
 }
 
-// The file's own values of the vertices, if the scene's only mesh has the vertices that they are
-// of, in the file's order. Those are no longer among the promise's `own_attributes`.
+// Returns the file's own values of the vertices if the scene has a single mesh, with the same
+// vertices in the same order; otherwise nothing. Removes them from the promise's `own_attributes`.
 std::vector<mesh::Feature> takeOwnValues(GltfPromise& promised, const aiScene& scene) {
   GltfValues& own = promised.own;
   if (own.features.empty() || scene.mNumMeshes != 1) return {};
@@ -408,7 +410,8 @@ std::vector<mesh::Feature> takeOwnValues(GltfPromise& promised, const aiScene& s
   return std::move(own.features);
 }
 
-// The unit of an AMF or 3MF file, as it names it; empty of other formats, and where AMF has none.
+// Returns the unit that an AMF or 3MF file names; empty for other formats and for AMF files that
+// name none.
 std::string namedUnit(const ModelFile& file) {
   constexpr std::size_t kEnough = 4096;
   if (file.format == "amf") {
@@ -417,10 +420,10 @@ std::string namedUnit(const ModelFile& file) {
   }
   if (file.format != "3mf") return {};
   const std::string named = unitOf(beginningOf3mf(file.path, kEnough), "model");
-  return named.empty() ? "millimeter" : named;  // what 3MF says of a model that names none
+  return named.empty() ? "millimeter" : named;  // 3MF's default
 }
 
-// Empty if there are none.
+// Returns a note about the attributes that are left out; empty if there are none.
 std::string noteOf(const std::set<std::string>& own_attributes) {
   constexpr std::size_t kNamed = 8;
   if (own_attributes.empty()) return {};
@@ -438,7 +441,7 @@ std::string noteOf(const std::set<std::string>& own_attributes) {
       names);
 }
 
-// Where coordinates are not made metres, what a person can do about it.
+// Returns a note for coordinates that are not converted to metres: what a person can do about it.
 std::string noteOf(const std::string& unit) {
   const double metres = metresPer(unit);
   const std::string way = metres == 0 || metres == 1
@@ -453,7 +456,7 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
   auto promised = checkFirst(file);
   if (!promised) return promised.error();
   Assimp::Importer importer;
-  auto* const folder = new ModelFolder(file);  // the importer's from here on
+  auto* const folder = new ModelFolder(file);  // the importer will own it
   importer.SetIOHandler(folder);
   importer.SetProgressHandler(new Progress(on_triangles));
   const aiScene* const scene =

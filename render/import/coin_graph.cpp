@@ -11,10 +11,10 @@
 namespace merlin::render::import {
 namespace {
 
-constexpr double kMostShapes = 1e7;  // with each as often as it is used
+constexpr double kMostShapes = 1e7;  // each counted as often as it is used
 
-// Walks a graph whose nodes may have several parents; a node that is below itself, and one that
-// multiplies, would never end.
+// Walks a graph whose nodes may have several parents, and finds what no traversal could finish: a
+// node below itself, or shapes that are used too often.
 class GraphCheck {
  public:
   Result<Ok> run(SoNode* root) {

@@ -50,14 +50,14 @@
 namespace merlin::render::import {
 namespace {
 
-// What Coin complained of in this file, one line each. Coin's handler is one for the process, which
-// reads one file.
+// Coin's complaints about the file, one line each. Static, since Coin has one handler for the
+// process, which reads only one file.
 std::vector<std::string>& complaints() {
   static std::vector<std::string> all;
   return all;
 }
 
-// "Coin read error: WHAT\n\tOccurred at line 4 in PATH" as one line.
+// Keeps a complaint, "Coin read error: WHAT\n\tOccurred at line 4 in PATH", as one line.
 void complain(const SoError* error, void*) {
   std::string text = error->getDebugString().getString();
   for (std::size_t at = 0; (at = text.find("\n\t", at)) != std::string::npos;)
@@ -84,7 +84,7 @@ class NodeReference {
   SoNode* node_;
 };
 
-// All nodes of a type, each once.
+// Returns all nodes of a type, each once.
 template <typename Node>
 std::vector<Node*> nodesOf(SoNode* root) {
   SoSearchAction search;
@@ -140,8 +140,8 @@ class GraphReader {
  private:
   static GraphReader& of(void* self) { return *static_cast<GraphReader*>(self); }
 
-  // Coin reads no image files here. A texture gets one pixel instead, by whose address the
-  // traversal knows it.
+  // Coin reads no image files here. Instead, a texture gets one pixel, by whose address the
+  // traversal recognises it.
   void prepareTextures(SoNode* root) {
     constexpr unsigned char kPixel[3] = {255, 255, 255};
     for (SoTexture2* const node : nodesOf<SoTexture2>(root)) {
@@ -168,7 +168,8 @@ class GraphReader {
     }
   }
 
-  // The pixels of a texture that the file itself has; rows from the lowest, as Coin has them.
+  // Returns the image of a texture whose pixels are in the file itself. `bytes`: rows from the
+  // lowest, as Coin stores them.
   const image::ImageFile* inlineImage(const unsigned char* bytes, const SbVec2s& size,
                                       int components) {
     image::ImageFile image{size[0], size[1], {}};
@@ -197,7 +198,7 @@ class GraphReader {
     return {found->second, wrapOf(action.getTextureWrapS()), wrapOf(action.getTextureWrapT())};
   }
 
-  // Normals are made anew, so that a shape's own, whatever their indices, are not needed.
+  // Normals are computed anew, so a shape's own, whatever their indices, are not needed.
   static SoCallbackAction::Response leaveOutNormals(void*, SoCallbackAction* action,
                                                     const SoNode* node) {
     SoState* const state = action->getState();
@@ -227,7 +228,7 @@ class GraphReader {
     return SoCallbackAction::CONTINUE;
   }
 
-  // "IndexedFaceSet", or "IndexedFaceSet 'ROOF'".
+  // Returns the node's type and name: "IndexedFaceSet", or "IndexedFaceSet 'ROOF'".
   static std::string nameOf(const SoNode& node) {
     std::string_view type = node.getTypeId().getName().getString();
     if (type.starts_with("VRML")) type.remove_prefix(4);
@@ -235,7 +236,8 @@ class GraphReader {
     return name.empty() ? std::string(type) : fmt::format("{} '{}'", type, name);
   }
 
-  // What VRML 97's nodes say of their faces, which Coin does not hand on; nothing of other nodes.
+  // Returns whether a VRML 97 node's faces are clockwise, which Coin does not pass on; nothing for
+  // other nodes.
   static std::optional<bool> clockwiseOf(const SoNode& node) {
     if (const auto* const faces = dynamic_cast<const SoVRMLIndexedFaceSet*>(&node))
       return !faces->ccw.getValue();
@@ -244,7 +246,8 @@ class GraphReader {
     return std::nullopt;
   }
 
-  // Coin does not make the colours of an ElevationGrid its material.
+  // Returns the colours of an ElevationGrid, which Coin does not make its material; null if it has
+  // none.
   static const SoMFColor* coloursOf(const SoVRMLElevationGrid& grid) {
     const auto* const colours = dynamic_cast<const SoVRMLColor*>(grid.color.getValue());
     return colours && colours->color.getNum() > 0 ? &colours->color : nullptr;
@@ -255,11 +258,11 @@ class GraphReader {
     return SoCallbackAction::PRUNE;
   }
 
-  // The colour of an index; of one beyond the last, the last, as Coin draws it.
+  // Returns the colour of an index; if that is too large, the last colour, as Coin draws it.
   SbColor colourOf(const SoCallbackAction& action, int index) const {
     const auto within = [&index](int number) { return std::clamp(index, 0, number - 1); };
     if (grid_colours_) {
-      // Its faces are squares of two triangles; Coin's own index is that of their row.
+      // The grid's faces are squares of two triangles; Coin's own index is that of their row.
       if (!grid_->colorPerVertex.getValue()) index = drawn_ / 2;
       return (*grid_colours_)[within(grid_colours_->getNum())];
     }
@@ -267,7 +270,7 @@ class GraphReader {
     const int number = SoLazyElement::getInstance(state)->getNumDiffuse();
     const SbColor diffuse =
         number > 0 ? SoLazyElement::getDiffuse(state, within(number)) : SbColor(0, 0, 0);
-    // VRML's way of a colour without shading.
+    // In VRML, a black diffuse and another emissive colour mean a colour without shading.
     const SbColor& emission = SoLazyElement::getEmissive(state);
     const bool glows = diffuse == SbColor(0, 0, 0) && emission != SbColor(0, 0, 0);
     return glows ? emission : diffuse;
@@ -288,7 +291,7 @@ class GraphReader {
   static void takeTriangle(void* self, SoCallbackAction* action, const SoPrimitiveVertex* a,
                            const SoPrimitiveVertex* b, const SoPrimitiveVertex* c) {
     GraphReader& reader = of(self);
-    // Only here has the shape's own material and texture reached the action.
+    // Only now do the action's material and texture belong to this shape.
     if (!std::exchange(reader.begun_, true)) {
       const mesh::SurfaceTexture texture = reader.textureOf(*action);
       reader.textured_ = texture.picture != nullptr;
@@ -318,8 +321,8 @@ class GraphReader {
   ModelBuilder builder_;
   std::unordered_map<const unsigned char*, const image::ImageFile*> pictures_;
   std::size_t shapes_ = 0, others_ = 0, unmade_ = 0;
-  Result<Ok> shapes_are_whole_ = Ok{};  // or what is wrong with the last of them
-  // Of this shape.
+  Result<Ok> shapes_are_whole_ = Ok{};  // or the fault of the last one
+  // State of the current shape.
   bool begun_ = false, turned_ = false, textured_ = false;
   std::optional<bool> vrml_clockwise_;
   const SoVRMLElevationGrid* grid_ = nullptr;
@@ -332,8 +335,8 @@ SbBool reportReading(const SbName&, float share, SbBool, void* on_triangles) {
   return TRUE;
 }
 
-// What a file holds that Coin cannot be given as it is; empty if it can. Coin could unpack gzip as
-// well, but without a limit, and does not know a file behind a byte order mark.
+// Returns the content of a file that Coin cannot read as it is; empty if it can. Coin could unpack
+// gzip as well, but without a limit, and does not recognise a file behind a byte order mark.
 Result<std::string> unpacked(const std::string& path) {
   constexpr std::size_t kMost = std::size_t{1} << 30;  // [bytes]
   const auto beginning = FileCopy::read(path, 2);
@@ -348,7 +351,7 @@ Result<std::string> unpacked(const std::string& path) {
   return text;
 }
 
-// Why Coin gave up.
+// Returns why Coin gave up.
 std::string reasons() {
   std::string text;
   for (const std::string& c : complaints()) text += (text.empty() ? "" : "; ") + c;

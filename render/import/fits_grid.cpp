@@ -51,7 +51,7 @@ class Cards {
     if (there && !(std::abs(value) <= 1e30)) setFault(name, "is not a number of up to 1e30");
     return there && fault_.empty() ? std::optional(value) : std::nullopt;
   }
-  // Of any length: with the cards that continue it.
+  // Reads a text of any length, including the cards that continue it.
   std::string text(const std::string& name) {
     char* value = nullptr;
     int status = 0;
@@ -72,7 +72,7 @@ class Cards {
     fits_read_key(file_, type, name.c_str(), value, nullptr, &status);
     return noted(name, status);
   }
-  // Keeps a fault other than a card that is not there. Returns whether the card was read.
+  // Records a fault, unless the card is missing. Returns whether the card was read.
   bool noted(const std::string& name, int status) {
     if (status != 0 && status != KEY_NO_EXIST && status != VALUE_UNDEFINED)
       setFault(name, wordsOf(status));
@@ -180,10 +180,10 @@ class FitsGrid final : public GridSource {
     first.fill(1);
     first[1] = static_cast<long>(bottom_first_ ? head_.height - row : row + 1);
     float none = std::numeric_limits<float>::quiet_NaN();
-    int status = 0, any = 0;  // CFITSIO 4.2 writes to `any` without asking
+    int status = 0, any = 0;  // CFITSIO 4.2 writes to `any` even if it is null
     fits_read_pix(file_.get(), TFLOAT, first.data(), static_cast<LONGLONG>(values.size()), &none,
                   values.data(), &any, &status);
-    // A number that is too large for a float is no return as well.
+    // A number that is too large for a float also counts as no return.
     if (status == 0 || status == NUM_OVERFLOW) return {};
     return wordsOf(status);
   }
@@ -222,7 +222,7 @@ class FitsGrid final : public GridSource {
     std::size_t width = 0, height = 0;
   };
 
-  // Where the file is damaged behind an image, the images before it are listed.
+  // If the file is damaged behind an image, lists the images before the damage.
   Result<Ok> listImages() {
     int units = 0, status = 0;
     if (fits_get_num_hdus(file_.get(), &units, &status) != 0)
@@ -243,7 +243,7 @@ class FitsGrid final : public GridSource {
     return Ok{};
   }
 
-  // By its number, or by its name, in which capital letters count for nothing.
+  // Compares with the image's number, or with its name, ignoring case.
   static bool isCalled(const Image& image, const std::string& wanted) {
     return std::to_string(image.number) == wanted ||
            (!image.name.empty() && lowerCase(image.name) == lowerCase(wanted));
@@ -264,7 +264,8 @@ class FitsGrid final : public GridSource {
                                   : list;
   }
 
-  // Whether the image has two axes.
+  // Takes the image's size. Returns whether the image has two axes; more are allowed if their size
+  // is 1.
   bool takeSize() {
     int axes = 0, status = 0;
     std::array<LONGLONG, kMostAxes> sizes{};
@@ -293,7 +294,7 @@ bool isFits(std::string_view bytes) noexcept { return bytes.starts_with("SIMPLE 
 Result<std::unique_ptr<GridSource>> openFits(const std::string& path, const std::string& wanted) {
   fitsfile* opened = nullptr;
   int status = 0;
-  // Of this name as it is: fits_open_file() takes more than file names.
+  // This call takes the name as it is; fits_open_file() would take more than file names.
   if (fits_open_diskfile(&opened, path.c_str(), READONLY, &status) != 0)
     return Error{Errc::kMalformed, wordsOf(status)};
   auto grid = std::make_unique<FitsGrid>(File(opened));

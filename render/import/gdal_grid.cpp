@@ -24,7 +24,7 @@
 namespace merlin::render::import {
 namespace {
 
-// Readers that open what a file names.
+// Readers that open other files or addresses which a file names.
 constexpr std::string_view kNotAllowed[] = {
     "VRT",        "WMS",           "WCS",       "WMTS",         "HTTP",     "DAAS",
     "EEDA",       "EEDAI",         "NGW",       "OGCAPI",       "PLMOSAIC", "PLSCENES",
@@ -59,7 +59,7 @@ std::string projectionOf(OGRSpatialReferenceH reference) {
   return wkt;
 }
 
-// Metres of a unit of height; nothing if its name is not known.
+// Returns the metres in a unit of height; nothing if the unit's name is not known.
 std::optional<double> metresOf(std::string_view unit) {
   constexpr std::pair<const char*, double> kUnits[] = {{"", 1},
                                                        {"m", 1},
@@ -137,7 +137,7 @@ class GdalGrid final : public GridSource {
     return Ok{};
   }
 
-  // The map's cells, their order and where it lies.
+  // Takes the map's cell size, the order of its cells, and its position.
   void takeCells() {
     std::array<double, 6> t{};
     const bool placed = GDALGetGeoTransform(dataset_.get(), t.data()) == CE_None;
@@ -244,7 +244,7 @@ std::string variableIn(std::string_view address) {
 
 std::vector<Map> mapsOf(GDALDatasetH dataset) {
   constexpr int kMost = 1000;
-  // The whole list: GDALGetMetadataItem() finds none of netCDF's.
+  // Reads the whole list, since GDALGetMetadataItem() finds no items of netCDF files.
   char** const list = GDALGetMetadata(dataset, "SUBDATASETS");
   const auto item = [&](int number, const char* what) {
     const std::string key = fmt::format("SUBDATASET_{}_{}", number, what);
@@ -270,8 +270,8 @@ std::string listOf(const std::vector<Map>& maps) {
   return maps.size() > kNamed ? fmt::format("{} and {} more", list, maps.size() - kNamed) : list;
 }
 
-// The map with this number, from 1, or this name, in which capital letters count for nothing; of
-// one map nothing need be said. Errors: kInvalidArgument, with the list.
+// Returns the map with this number, from 1, or with this name, ignoring case; a single map need not
+// be named. Errors: kInvalidArgument, with the list.
 Result<Map> chosenMap(const std::vector<Map>& maps, const std::string& wanted) {
   if (wanted.empty() && maps.size() == 1) return maps.front();
   if (maps.empty())

@@ -55,7 +55,7 @@ Result<const json*> arrayOf(const json& object, const char* name) {
   return found;
 }
 
-// The JSON of the file: of a .glb its first chunk. Nothing for a .glb of another version.
+// Returns the JSON of the file: for a .glb, its first chunk. Nothing for a .glb of another version.
 Result<std::optional<std::string_view>> textOf(std::string_view file) {
   constexpr std::size_t kHead = 12, kChunkHead = 8;
   if (!file.starts_with("glTF")) return std::optional(file);
@@ -72,7 +72,7 @@ Result<std::optional<std::string_view>> textOf(std::string_view file) {
   return std::optional(text.substr(0, text.find_last_not_of('\0') + 1));
 }
 
-// Of glTF 1 the form is another.
+// True for glTF 1, whose JSON has another form.
 bool isFirstVersion(const json& model) {
   const json* asset = memberOf(model, "asset");
   const json* version = asset ? memberOf(*asset, "version") : nullptr;
@@ -116,7 +116,7 @@ Result<Ok> checkAttribute(const json& accessors, const std::string& where, const
                            what, number, type->get<std::int64_t>(), kFloat)};
 }
 
-// The triangles of `count` corners or indices.
+// Returns the number of triangles that `count` corners or indices form.
 std::uint64_t trianglesOf(const json& primitive, std::uint64_t count) {
   const json* mode = memberOf(primitive, "mode");
   if (mode && !mode->is_number_unsigned()) return 0;
@@ -128,7 +128,7 @@ std::uint64_t trianglesOf(const json& primitive, std::uint64_t count) {
   }
 }
 
-// Nothing of what is malformed: assimp judges that.
+// Returns the number of a primitive's triangles; 0 if it is malformed, which assimp reports.
 std::uint64_t promisedTriangles(const json& accessors, const json& primitive,
                                 const json& attributes) {
   const json* of = memberOf(primitive, "indices");

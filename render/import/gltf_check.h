@@ -1,4 +1,4 @@
-// What of a glTF file assimp would read wrongly, found in its JSON before assimp reads it.
+// Finds what assimp would read wrongly in a glTF file, by checking its JSON before assimp reads it.
 #pragma once
 
 #include <cstddef>
@@ -13,26 +13,26 @@
 
 namespace merlin::render::import {
 
-// What the file promises of a primitive.
+// What the file's JSON declares about a primitive.
 struct GltfPrimitive {
   std::size_t mesh = 0, number = 0;  // each from 0
-  std::uint64_t triangles = 0;       // 0 of lines and points
+  std::uint64_t triangles = 0;       // 0 for lines and points
 };
 
 struct GltfPromise {
   std::vector<GltfPrimitive> primitives;  // in the file's order
-  // Attributes of the program that wrote it, such as _CONFIDENCE, without control characters and
-  // cut: assimp reads none.
+  // Names of application-specific attributes, such as _CONFIDENCE, which assimp does not read;
+  // without control characters, and truncated.
   std::set<std::string> own_attributes;
-  GltfValues own;  // of these, what was read; NaN is left in it
+  GltfValues own;  // the values of those that were read; may contain NaN
 };
 
-// `file`: a whole .gltf or .glb of glTF 2; any other version is left to assimp.
-// Returns what it promises; nothing for another version. assimp 5.2 leaves out
-// triangles whose indices are out of range, so that fewer come. May throw std::bad_alloc. Errors,
-// without the file's name: kMalformed (no JSON, or of another form), kUnsupported (a required
-// extension that is not read; coordinates or weights that are no floats, whose bytes assimp 5.2
-// copies as if they were).
+// `file`: a whole .gltf or .glb file. Returns what it declares; an empty GltfPromise for any
+// version but glTF 2, which is left to assimp. assimp 5.2 drops triangles whose indices are out of
+// range, so it may deliver fewer than declared. May throw std::bad_alloc. Errors, without the
+// file's name: kMalformed (no JSON, or of another form), kUnsupported (a required extension that is
+// not supported; coordinates or weights that are not floats, whose bytes assimp 5.2 copies as if
+// they were).
 Result<GltfPromise> checkGltf(std::string_view file);
 
 }  // namespace merlin::render::import

@@ -31,7 +31,7 @@ std::optional<std::uint64_t> unsignedOf(const json& object, const char* name) {
   return found->get<std::uint64_t>();
 }
 
-// As unsignedOf(), and 0 where there is no such member.
+// The same as unsignedOf() for byteOffset, but 0 if there is no such member.
 std::optional<std::uint64_t> offsetOf(const json& object) {
   return memberOf(object, "byteOffset") ? unsignedOf(object, "byteOffset") : std::uint64_t{0};
 }
@@ -60,8 +60,8 @@ class ValueReader {
  public:
   ValueReader(const json& model, std::string_view chunk) : model_(model), chunk_(chunk) {}
 
-  // The bytes of an accessor of floats, `dimension` an element, one after another; nothing if it is
-  // of another kind or goes beyond its view or the chunk.
+  // Returns the bytes of an accessor of floats, `dimension` per element, without gaps; nothing if
+  // it is of another kind or goes beyond its view or the chunk.
   std::optional<std::string_view> bytesOf(const json* accessor, const char* type,
                                           std::size_t dimension) const {
     if (!accessor || unsignedOf(*accessor, "componentType") != kComponentFloat ||
@@ -80,7 +80,8 @@ class ValueReader {
   }
 
  private:
-  // Of elements of `bytes` without anything between them.
+  // Returns the view of an accessor; nothing if there are gaps between its elements of `bytes`
+  // bytes.
   std::optional<std::string_view> viewOf(const json& accessor, std::size_t bytes) const {
     const json* view =
         elementOf(memberOf(model_, "bufferViews"), unsignedOf(accessor, "bufferView"));
@@ -104,7 +105,7 @@ std::vector<float> floatsOf(std::string_view bytes) {
   return values;
 }
 
-// The attributes of the only primitive, which one node shows; null if there are several.
+// Returns the attributes of the only primitive, shown by one node; null if there are several.
 const json* onlyAttributes(const json& model) {
   const auto only = [](const json* array) {
     return array && array->is_array() && array->size() == 1 ? &(*array)[0] : nullptr;
@@ -124,14 +125,15 @@ bool hasChunk(const json& model) {
   return buffer && buffer->is_object() && !memberOf(*buffer, "uri");
 }
 
-// Whether MERLIN wrote colours of the vertices beside a texture: glTF's own would be multiplied
-// with it.
+// Whether MERLIN wrote vertex colours beside a texture, as its own attribute: glTF's vertex colours
+// would be multiplied with the texture.
 bool hasColoursBesideTexture(const json& model, const json& attributes) {
   const json* asset = memberOf(model, "asset");
   return asset && isString(*asset, "generator", "MERLIN") && memberOf(attributes, "TEXCOORD_0");
 }
 
-// How many floats a vertex the feature of an attribute of this name has; 0 if it is none.
+// Returns how many floats per vertex the feature of an attribute with this name has; 0 if it is no
+// feature.
 std::size_t dimensionOf(const std::string& name, bool coloured) {
   if (!name.starts_with('_')) return 0;
   const std::string feature = name.substr(1);

@@ -1,4 +1,4 @@
-// The values of vertices in a .glb file that glTF does not define, which assimp does not read.
+// Reads the vertex attributes of a .glb file that glTF does not define, since assimp skips them.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,23 @@
 
 namespace merlin::render::import {
 
-// Of the file's only primitive. All empty if nothing of it can be read.
+// Values of the file's only primitive. All empty if nothing can be read.
 struct GltfValues {
-  std::vector<float> positions;  // vertices x 3, by which another reader's are compared
-  // "heat" of "_heat", and "colour" (3, proportional to light) of a textured file of MERLIN's own;
-  // may hold what is no number.
+  std::vector<float> positions;  // vertices x 3, to match them with another reader's
+  // For example "heat" from the attribute "_heat"; also "colour" (3, proportional to light) if
+  // MERLIN wrote the file with a texture. May contain NaN.
   std::vector<mesh::Feature> features;
 };
 
-// The attributes of floats, one a vertex, whose names begin with "_", as a GLB that MERLIN wrote
-// has them: in the binary chunk, of a file whose single node with a mesh shows a single primitive.
-// All others are left to the caller's note. `model`: the JSON of `glb`, a whole .glb file of
-// version 2. Each offset and count is checked against the chunk. May throw std::bad_alloc.
+// Reads the vertex attributes of floats whose names begin with "_". They must be stored as in a GLB
+// that MERLIN wrote: in the binary chunk of a file in which only one node has a mesh, with a single
+// primitive. All others are ignored; the caller may add a note about them. `model`: the JSON of
+// `glb`, a whole .glb file of version 2. Each offset and count is checked against the chunk. May
+// throw std::bad_alloc.
 GltfValues ownValuesOf(const nlohmann::json& model, std::string_view glb);
 
-// For each row of the features, the first row that has the same values. O(n log n). REQUIRES: no
-// value is NaN, and each feature has `rows` rows.
+// Returns for each row of the features the index of the first row with the same values. O(n log n).
+// REQUIRES: no value is NaN, and each feature has `rows` rows.
 std::vector<std::uint32_t> firstEqualRows(const std::vector<mesh::Feature>& features,
                                           std::size_t rows);
 

@@ -27,7 +27,7 @@ Result<std::unique_ptr<GridSource>> openGrid(const GridInput& input) {
   if (fits) return openFits(in, input.hdu);
   if (!input.hdu.empty())
     return Error{Errc::kInvalidArgument, "--hdu is for FITS files, and this is none"};
-  // An absolute name is a file's; GDAL takes others for addresses and databases.
+  // GDAL takes an absolute path for a file's; other names could be addresses or databases.
   std::error_code error;
   const auto path = std::filesystem::absolute(in, error);
   return openGdal(error ? in : path.lexically_normal().string(), input.variable);

@@ -1,6 +1,6 @@
-// Makes grids (render/range/io/grid_file.h) of range images and elevation maps in FITS files, and
-// of elevation maps of any format that GDAL reads. Only the program merlin-import links this,
-// behind its sandbox.
+// Converts range images and elevation maps in FITS files, and elevation maps in any format that
+// GDAL reads, to grids (render/range/io/grid_file.h). Linked only into the program merlin-import,
+// which runs it in its sandbox.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,30 @@ namespace merlin::render::import {
 
 struct GridInput {
   std::string path;
-  std::string hdu{};       // of a FITS file: openFits()'s `wanted`
-  std::string variable{};  // of any other: openGdal()'s `wanted`
+  std::string hdu{};       // for a FITS file: `wanted` of openFits()
+  std::string variable{};  // for any other: `wanted` of openGdal()
 };
 
 struct ImportedGrid {
   std::size_t width = 0, height = 0;  // [pixels]
 };
 
-// Loads what the libraries need. To be called once, before the sandbox closes. Errors:
-// kUnsupported.
+// Loads the modules and data that the libraries need. To be called once, before the sandbox closes.
+// Errors: kUnsupported.
 Result<Ok> prepareGridImport(const char* program);
 
-// The files beside the input that describe it, as those of GTOPO30: of the same name but for the
-// ending, which is one of a few (.hdr, .prj, .blw, ...).
+// Returns the files in the input's folder that describe it, such as those of GTOPO30: files with
+// the same name except for the ending, which is one of a few (.hdr, .prj, .blw, ...).
 std::vector<std::string> gridHeadersBeside(const std::string& input);
 
-// Called with the part of the work that is done, 0..1, and the number of pixels so far.
+// Called with the share of the work that is done, 0..1, and the number of pixels so far.
 using OnGridProgress = std::function<void(double share, std::int64_t pixels)>;
-// Called with the size as soon as it is known; an error ends the import.
+// Called with the size as soon as it is known; if it returns an error, the import ends.
 using OnGridSize = std::function<Result<Ok>(const ImportedGrid&)>;
 
-// Reads `in`, by its content, and writes the grid to `out`. Rows are streamed. Errors, with the
-// file's name and the library's own words: kMalformed, kUnsupported, kIo (`out` cannot be written).
+// Reads `in`, whose content decides its format, and writes the grid to `out`. Rows are streamed.
+// Errors, with the file's name and the library's own message: kMalformed, kUnsupported, kIo (`out`
+// cannot be written).
 Result<ImportedGrid> importGrid(const GridInput& in, const std::string& out,
                                 const OnGridSize& on_size, const OnGridProgress& on_progress);
 

@@ -18,8 +18,8 @@ class GridSource {
   GridSource& operator=(const GridSource&) = delete;
 
   virtual const range::GridHead& head() const = 0;
-  // Sets the values of a row, counted from the top; NaN where there is none. Returns the library's
-  // words if that failed, else nothing.
+  // Sets the values of a row, counted from the top; NaN for missing values. Returns the library's
+  // message if that failed, else an empty string.
   virtual std::string readRow(std::size_t row, std::span<float> values) = 0;
 };
 

@@ -1,4 +1,4 @@
-// ModelBuilder: collects the triangles of a model's parts as one mesh.
+// ModelBuilder: collects the triangles of a model's parts in one mesh.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace merlin::render::import {
 
-// Colour of what has none in the file.
+// Colour of surfaces that have none in the file.
 inline constexpr std::array<float, 3> kPlain{0.8F, 0.8F, 0.8F};
 
 // A corner of a triangle: position in the model's coordinates; colour as a screen shows it, each
@@ -25,40 +25,40 @@ struct Corner {
   std::array<float, 3> position{};
   std::array<float, 3> colour = kPlain;
   std::array<float, 2> texcoord{};
-  std::uint32_t row = 0;  // of the values of takeValues()
+  std::uint32_t row = 0;  // index into the values of takeValues()
 };
 
 struct BuiltModel {
   mesh::Mesh mesh;
-  mesh::Origin origin{};       // of the file's coordinates; positions are relative to it
-  std::size_t parts = 0;       // that have triangles
+  mesh::Origin origin{};       // what was subtracted from the file's coordinates
+  std::size_t parts = 0;       // number of parts that have triangles
   std::size_t degenerate = 0;  // triangles that were dropped: two corners are one vertex
   std::size_t not_finite = 0;  // triangles that were dropped: a coordinate is not a number, or huge
-  mesh::WeldReport welded;     // of different parts
+  mesh::WeldReport welded;     // from welding different parts
   std::vector<std::string> notes;
 };
 
-// Corners of one part become one vertex if all of their numbers and their rows are the same, so
-// that seams of textures and borders of colours stay; vertices of different parts are welded where
-// the parts are one surface (render/mesh/weld_parts.h). Not pure in its use of memory alone:
-// std::bad_alloc leaves it. Thread-bound.
+// Corners of one part become one vertex if all their values and rows are equal, so that seams of
+// textures and borders of colours stay. Vertices of different parts are welded where the parts are
+// one surface (render/mesh/weld_parts.h). Pure, but may throw std::bad_alloc. Thread-bound.
 class ModelBuilder {
  public:
-  // Features whose rows the corners name; the mesh gets them, also instead of finish()'s own of the
-  // same name. REQUIRES: called before add(); every feature has the rows that are named.
+  // Takes additional features of the vertices; Corner::row selects the row of each corner. They
+  // replace features of the same name that finish() would make. REQUIRES: called before add();
+  // every feature has all rows that corners name.
   void takeValues(std::vector<mesh::Feature> values) { values_ = std::move(values); }
-  // The triangles that follow belong to a new part.
-  // `texture`: its picture must outlive the builder; null: none.
+  // Begins a new part, to which the triangles that follow belong. `texture`: its image must outlive
+  // the builder; null: none.
   void beginPart(const mesh::SurfaceTexture& texture);
-  // Adds a triangle, counter-clockwise from outside. Where the part has a texture, the colour is
-  // the texture's at the corner.
+  // Adds a triangle, counter-clockwise from outside. If the part has a texture, the colour of a
+  // corner is replaced by the colour of the texture there.
   void add(std::array<Corner, 3> corners);
 
   std::size_t triangles() const noexcept { return model_.mesh.triangleCount(); }
 
-  // The mesh has "colour" if a part has a colour or a texture, "texcoord" if a part has a texture,
-  // "label" (the part's number from 0) if there are several parts, and one texture if there is any
-  // (render/mesh/atlas).
+  // Returns the mesh. It has "colour" if a part has a colour or a texture, "texcoord" if a part has
+  // a texture, "label" (the part's number from 0) if there are several parts, and one joint texture
+  // if any part has one (render/mesh/atlas).
   BuiltModel finish() &&;
 
  private:
@@ -73,7 +73,7 @@ class ModelBuilder {
 
   BuiltModel model_;
   std::vector<float> colours_, texcoords_, labels_;
-  std::vector<mesh::Feature> values_;  // of takeValues()
+  std::vector<mesh::Feature> values_;  // from takeValues()
   std::vector<std::uint32_t> rows_;    // of the values, for each vertex; empty if there are none
   std::unordered_map<Key, std::uint32_t, Hash> vertices_;  // of this part
   mesh::SurfaceTexture texture_;                           // of this part

@@ -12,7 +12,7 @@
 namespace merlin::render::import {
 namespace {
 
-// Whether the file is there and may not be opened: the sandbox of daemon/import is closed to it.
+// Whether the file exists but the sandbox of daemon/import does not allow opening it.
 bool isForbidden(const std::string& path) {
   const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   return !file.valid() && errno == EACCES;

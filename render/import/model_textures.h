@@ -17,18 +17,18 @@ namespace merlin::render::import {
 
 class ModelTextures {
  public:
-  // folder: that of the model, in which (and below which) texture images are looked for.
+  // folder: the model's folder; texture images are searched for in it and below it.
   explicit ModelTextures(std::string folder) : folder_(std::move(folder)) {}
 
-  // The image that the model calls `name`; null if it cannot be had, which a note then says.
+  // Returns the image that the model calls `name`; null if it cannot be read, and a note says why.
   const image::ImageFile* named(const std::string& name);
-  // An image inside the model, PNG or JPEG; `name` is its name there.
+  // Decodes an image that the model contains as PNG or JPEG; `name` is its name in the model.
   const image::ImageFile* inside(const std::string& name, std::span<const std::uint8_t> file);
-  // An image of pixels; null if it is empty.
+  // Takes an image that the model contains as pixels; returns null if it is empty.
   const image::ImageFile* ofPixels(const std::string& name, image::ImageFile pixels);
 
-  // The image times a colour, proportional to light; each is made once. The image itself where that
-  // fails, which a note then says.
+  // Returns the image multiplied by a colour, proportional to light; each product is computed once.
+  // If that fails, returns the image itself, and a note says so.
   const image::ImageFile* tinted(const image::ImageFile& image, const std::array<float, 3>& factor);
 
   const std::vector<std::string>& notes() const noexcept { return notes_; }

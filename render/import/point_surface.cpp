@@ -23,7 +23,7 @@ using points::PointCloud;
 
 constexpr std::size_t kLeastPoints = 10;
 constexpr std::size_t kSpacingSamples = 10'000;
-constexpr int kGraphNeighbours = 10;  // of a point with itself; there are kLeastPoints at least
+constexpr int kGraphNeighbours = 10;  // per point, itself included; at most kLeastPoints
 constexpr int kSources = 4;           // points that give a vertex its features
 
 // The library reckons in floats: it gets points within a cube of side 1, whatever the file's unit.
@@ -53,8 +53,9 @@ o3d::PointCloud cloudOf(const PointCloud& cloud, const UnitCube& cube) {
   return made;
 }
 
-// The median distance to the fourth neighbour: the step of points on a square grid, and about that
-// of as many points strewn at random, whose nearest neighbour is half as far.
+// Returns the median distance to the fourth neighbour. On a square grid, that is the spacing; for
+// as many points at random places it is about the same, while their nearest neighbour is half as
+// far.
 double spacingOf(const o3d::PointCloud& cloud, const o3d::KDTreeFlann& tree) {
   constexpr int kFourth = 4, kLooked = 16;  // 0 is the point; others may lie in the same place
   const std::size_t step = std::max<std::size_t>(1, cloud.points_.size() / kSpacingSamples);
@@ -70,7 +71,7 @@ double spacingOf(const o3d::PointCloud& cloud, const o3d::KDTreeFlann& tree) {
   return points::medianSpacing(std::move(distances));
 }
 
-// kGraphNeighbours indices a point, itself included.
+// Returns kGraphNeighbours indices per point, itself included.
 std::vector<std::uint32_t> neighboursOf(const o3d::PointCloud& cloud,
                                         const o3d::KDTreeFlann& tree) {
   std::vector<std::uint32_t> neighbours;
@@ -129,7 +130,7 @@ struct Sources {
 void mixFeature(const mesh::Feature& from, const Sources& sources, std::vector<float>& to) {
   const bool whole = from.name == "label";
   const auto nearest = static_cast<std::size_t>(sources.points.front()) * from.dimension;
-  const double least = 1e-30 + 1e-6 * sources.squared.back();  // a vertex on a point
+  const double least = 1e-30 + 1e-6 * sources.squared.back();  // in case a vertex lies on a point
   for (std::size_t k = 0; k < from.dimension; ++k) {
     double sum = 0, weights = 0;
     for (std::size_t i = 0; i < sources.points.size(); ++i) {
@@ -142,7 +143,7 @@ void mixFeature(const mesh::Feature& from, const Sources& sources, std::vector<f
   }
 }
 
-// Positions and features of the vertices; returns which are within `trim` of a point.
+// Adds the vertices' positions and features; returns which vertices are within `trim` of a point.
 std::vector<bool> addVertices(const o3d::TriangleMesh& made, const PointCloud& cloud,
                               const UnitCube& cube, const o3d::KDTreeFlann& tree,
                               PointSurface& surface) {

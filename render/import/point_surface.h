@@ -1,5 +1,6 @@
-// Makes a surface of a point cloud, by Open3D, whose Poisson reconstruction is the code of M.
-// Kazhdan [KAZHDAN13]. Only the program merlin-import links this, behind its sandbox.
+// Reconstructs a surface from a point cloud, through Open3D, whose Poisson reconstruction is the
+// code of M. Kazhdan [KAZHDAN13]. Linked only into the program merlin-import, which runs it in its
+// sandbox.
 #pragma once
 
 #include <array>
@@ -18,25 +19,25 @@ namespace merlin::render::import {
 
 struct PointSurface {
   mesh::Mesh mesh;
-  points::SurfaceSettings settings;  // those used
+  points::SurfaceSettings settings;  // the values that were used
   double spacing = 0;                // median distance to the fourth neighbour
   std::size_t trimmed = 0;           // triangles that were too far from all points
-  std::string normals;               // where they come from, for a person
+  std::string normals;               // origin of the normals, for the user
   std::vector<std::string> notes;    // for the user
 };
 
-// Called with the part of the work that is done, 0..1, and the number of points or triangles.
+// Called with the share of the work that is done, 0..1, and the number of points or triangles.
 using OnSurfaceProgress = std::function<void(double share, std::int64_t items)>;
 
-// Quiets the library. To be called once, before the sandbox closes.
+// Silences the library's messages. To be called once, before the sandbox closes.
 Result<Ok> preparePoints(const char* program);
 
-// Normals are the cloud's own; else they are estimated from the nearest neighbours and turned to
-// the viewpoint, upwards (kAbove), or consistently along the surface [HOPPE92]. The features of a
-// vertex are the mean of the four nearest points', by inverse distance; a label is the nearest
-// one's. The same cloud gives the same mesh. Errors: kMalformed (fewer than ten points, points in
-// a few places), kUnsupported (nothing is left within the trim; the library's own reason), kIo (the
-// memory does not suffice).
+// Uses the cloud's own normals; if it has none, they are estimated from the nearest neighbours and
+// oriented towards the viewpoint, upwards (kAbove), or consistently along the surface [HOPPE92].
+// The features of a vertex are the means over the four nearest points, weighted by inverse
+// distance; a label is that of the nearest point. The same cloud gives the same mesh. Errors:
+// kMalformed (fewer than ten points, or points at only a few positions), kUnsupported (nothing is
+// left after trimming; or the library's own reason), kIo (not enough memory).
 Result<PointSurface> surfaceOf(const points::PointCloud& cloud, points::SurfaceSettings said,
                                const OnSurfaceProgress& on_progress);
 

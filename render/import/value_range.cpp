@@ -38,7 +38,7 @@ void sample(VipsRegion* region, const VipsRect& rows, std::int64_t step,
   }
 }
 
-// All but a thousandth on either side.
+// Returns the range of the values without the lowest and the highest thousandth.
 ValueRange middleOf(std::vector<float>& values) {
   const auto cut = static_cast<std::ptrdiff_t>(values.size() / 1000);
   const auto low = values.begin() + cut, high = values.end() - 1 - cut;
@@ -106,7 +106,7 @@ int stretch(VipsImage* image, const ValueRange& range, VipsImage** made) {
                     });
   if (!cast) return -1;
   g_object_ref(shades.get());
-  Image numbers(shades.get());  // 255 where there is a number, which is itself, else 0
+  Image numbers(shades.get());  // 255 where a value is a number (equal to itself), else 0
   const bool shaded =
       applyStep(numbers,
                 [](VipsImage* from, VipsImage** to) {

@@ -1,4 +1,5 @@
-// A handle of libvips' images, and one step of their processing. Private to render/import.
+// An owning handle for libvips' images, and a helper to process them in steps. Private to
+// render/import.
 #pragma once
 
 #include <memory>
@@ -12,8 +13,9 @@ struct Unref {
 };
 using Image = std::unique_ptr<VipsImage, Unref>;
 
-// A step of the way: replaces the image by what `step` makes of it, which keeps what it needs of
-// the one before. `step` returns what functions of libvips return: 0 for success.
+// Replaces the image by the one that `step` makes from it; the new image keeps its own reference to
+// the old one if it needs it. `step` returns 0 for success, as functions of libvips do. Returns
+// whether it succeeded; if not, the image stays as it was.
 template <typename Step>
 bool applyStep(Image& image, const Step& step) {
   VipsImage* made = nullptr;

@@ -46,7 +46,7 @@ Error broken(const std::string& in) {
   if (begin && isVideo(begin->text()))
     return {Errc::kUnsupported,
             in + ": is a video; MERLIN shows models, pictures, panoramas and slides"};
-  // The last reader that libvips tries is one that is not allowed here.
+  // The last reader that libvips tries is blocked here, so no other one knows the format.
   const bool unknown = why.find("operation is blocked") != std::string::npos ||
                        why.find("is not a known file format") != std::string::npos;
   if (why.empty() || unknown)
@@ -54,7 +54,8 @@ Error broken(const std::string& in) {
   return {Errc::kMalformed, fmt::format("{}: cannot be read as a picture: {}", in, why)};
 }
 
-// Rows are read once, from top to bottom; a picture that must be turned is needed as a whole.
+// Opens a picture to read its rows once, from top to bottom; one that must be turned is needed as a
+// whole.
 Result<Image> open(const std::string& in) {
   for (const VipsAccess access : {VIPS_ACCESS_SEQUENTIAL, VIPS_ACCESS_RANDOM}) {
     Image image(vips_image_new_from_file(in.c_str(), "access", access, "fail_on",
@@ -81,17 +82,18 @@ bool isReadTwice(const VipsImage* image, const PyramidOptions& options) {
   return !options.range && (isMeasured(image) || isGrey16(image));
 }
 
-// The range that makes shades of the picture's values; nothing if they are colours as they are.
-// Reads the picture, which has to be opened again then.
+// Returns the range that maps the picture's values to shades; nothing if the values are colours. If
+// isReadTwice(), reads the picture, which then has to be opened again.
 std::optional<ValueRange> rangeFor(VipsImage* image, const PyramidOptions& options,
                                    const PictureReports& reports) {
   if (options.range) return ValueRange{(*options.range)[0], (*options.range)[1]};
   if (!isReadTwice(image, options)) return std::nullopt;
   const auto found = rangeOf(image, [&](double share) { reports.progress(kFinding * share, 0); });
-  if (!found && vips_error_buffer()[0] != '\0') return std::nullopt;  // told when it is read again
+  // Reported when it is read again.
+  if (!found && vips_error_buffer()[0] != '\0') return std::nullopt;
   vips_error_clear();
   const bool dark = !isMeasured(image) && (!found || found->high >= kMostOfDarkGrey);
-  if (dark) return std::nullopt;  // grey of 16 bits, as it is
+  if (dark) return std::nullopt;  // 16-bit grey is kept as it is
   const ValueRange range = found.value_or(ValueRange{});
   reports.note(found ? fmt::format("{} are shown, which are all but a thousandth at either end; "
                                    "--range LOW HIGH sets others",
@@ -105,7 +107,7 @@ struct Opened {
   double done = 0;  // part of the work that finding the range was
 };
 
-// Opens the picture, its values as shades where they are no colours.
+// Opens the picture; values that are no colours are mapped to shades.
 Result<Opened> openShaded(const std::string& in, const PyramidOptions& options,
                           const PictureReports& reports) {
   auto image = open(in);
@@ -151,7 +153,7 @@ bool toSrgb(Image& image) {
   });
 }
 
-// Only the mark is left of what a file says about itself.
+// Removes the file's metadata and sets the mark alone.
 bool mark(Image& image, bool panorama) {
   if (!applyStep(image,
                  [](VipsImage* from, VipsImage** to) { return vips_copy(from, to, nullptr); }))
@@ -171,9 +173,9 @@ void evaluated(VipsImage* /*image*/, VipsProgress* progress, void* data) {
               progress->npels);
 }
 
-// Levels are halved until a side is one pixel. Of a picture that is long and thin the coarsest
-// would still be too long for whoever reads it. 0: it is not too thin; else the pixels that its
-// shorter side needs.
+// Levels are halved until a side is one pixel, so the coarsest level of a long and thin picture
+// could still be too long to be read. Returns 0 if the picture is not too thin; otherwise the
+// pixels that its shorter side needs.
 int neededSide(const ImportedPicture& size) {
   const std::int64_t longest = std::max(size.width, size.height);
   int needed = 1;
@@ -196,7 +198,7 @@ int save(VipsImage* image, const std::string& out, const PyramidOptions& options
 Result<Ok> prepareImport(const char* program) {
   if (VIPS_INIT(program) != 0) return Error{Errc::kUnsupported, "libvips: " + reported()};
   vips_cache_set_max(0);
-  // They start other programs, or fetch what a file names.
+  // Blocks readers that start other programs, or that fetch what a file names.
   for (const char* loader : {"VipsForeignLoadMagick", "VipsForeignLoadMagick7"})
     vips_operation_block_set(loader, TRUE);
   return Ok{};

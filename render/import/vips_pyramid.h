@@ -1,5 +1,5 @@
-// Makes pyramids (render/image/pyramid_file.h) of pictures of any format that libvips reads. Only
-// the program merlin-import links this, behind its sandbox.
+// Converts images of any format that libvips reads to pyramids (render/image/pyramid_file.h).
+// Linked only into the program merlin-import, which runs it in its sandbox.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ namespace merlin::render::import {
 
 struct PyramidOptions {
   bool panorama = false;  // mark the file as an equirectangular panorama
-  int quality = 90;       // of JPEG, 1 to 100; 0: no loss (deflate)
+  int quality = 90;       // of JPEG, 1 to 100; 0: lossless (deflate)
   int tile_px = 256;      // 256 or 512
-  // The values that become black and white; nothing: of measured values (value_range.h) those found
-  // in the picture, of colours as the format has them.
+  // The values that become black and white. Nothing: for measured values (value_range.h) the range
+  // found in the image, for colours the range of the format.
   std::optional<std::array<double, 2>> range{};
 };
 
@@ -29,15 +29,15 @@ struct ImportedPicture {
 // sandbox closes. Errors: kUnsupported.
 Result<Ok> prepareImport(const char* program);
 
-// Called with the part of the work that is done, 0..1, and the number of pixels that have been
+// Called with the share of the work that is done, 0..1, and the number of pixels that have been
 // read.
 using OnProgress = std::function<void(double share, std::int64_t pixels)>;
-// Called with the picture's size as soon as it is known; an error ends the import.
+// Called with the image's size as soon as it is known; if it returns an error, the import ends.
 using OnSize = std::function<Result<Ok>(const ImportedPicture&)>;
 // Called with sentences for the user about what was assumed.
 using OnNote = std::function<void(const std::string&)>;
 
-// Whom an import tells what.
+// The callbacks of an import.
 struct PictureReports {
   OnSize size;
   OnProgress progress;
@@ -45,10 +45,10 @@ struct PictureReports {
 };
 
 // Reads `in`, turns it upright, converts it to 8-bit sRGB (by its colour profile, if it has one;
-// measured values by their range), puts transparent pixels before black, and writes the pyramid to
-// `out`. Pixels are streamed where the format allows it; measured values are read twice. Errors:
-// kMalformed (not an image, or damaged or cut), kUnsupported (a video), kIo (the result cannot be
-// written), each with libvips' own words where it has some.
+// measured values by their range), blends transparent pixels with black, and writes the pyramid to
+// `out`. Pixels are streamed if the format allows it; measured values are read twice. Errors:
+// kMalformed (not an image, damaged or truncated), kUnsupported (a video), kIo (the result cannot
+// be written), each with libvips' own message if there is one.
 Result<ImportedPicture> importPicture(const std::string& in, const std::string& out,
                                       const PyramidOptions& options, const PictureReports& reports);
 

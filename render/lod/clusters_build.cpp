@@ -19,7 +19,7 @@ constexpr std::uint16_t kNoCluster = std::numeric_limits<std::uint16_t>::max();
 constexpr double kRungStep = 1.41421356, kLargeRungStep = 2;
 constexpr std::size_t kLargeRung = 300'000;
 constexpr unsigned kCurveBits = 10;
-// Cuts of fewer triangles per cluster than this do without clusters.
+// Cuts with fewer triangles per cluster than this do not use clusters.
 constexpr std::size_t kFewPerCluster = 64;
 // Automatic number of clusters: vertices per cluster, least and largest number.
 constexpr std::size_t kVerticesOfACluster = 700, kLeastUsual = 512, kMostUsual = 2048;
@@ -81,7 +81,7 @@ struct Clusters::Builder {
   const Dendrogram& d;
   std::size_t finest;
 
-  // Chooses L0 (coarsest_), and as `finest` the finest level for whose steps there is memory.
+  // Chooses L0 (coarsest_) and sets `finest` to the finest level whose steps fit into the memory.
   void chooseLevels(const ClusterSettings& settings);
   void numberClusters();
   void sortFinest();
@@ -186,7 +186,7 @@ void Clusters::Builder::addRungs() {
   auto triangles = static_cast<double>(d.trianglesAt(finest));
   for (;;) {
     triangles /= triangles > kLargeRung ? kLargeRungStep : kRungStep;
-    // Of a model that ends without any triangle, no count of steps would come down to it.
+    // Stop below one triangle: the coarsest level may have none, which division never reaches.
     if (triangles < 1 || triangles <= static_cast<double>(d.trianglesAt(c.coarsest_))) return;
     const std::size_t level = d.levelFor(static_cast<std::size_t>(triangles));
     const DetailStep& finer = c.steps_.back();
@@ -271,7 +271,7 @@ Boxes Clusters::Builder::boxesOfNodes() const {
 void Clusters::Builder::measure() {
   const auto positions = d.arrays().positions;
   Boxes boxes = boxesOfNodes();
-  // Corners in other clusters, and all ancestors that may replace them.
+  // The spheres also contain corners in other clusters, and all ancestors that may replace them.
   const auto coarse = c.aliveBelow(c.coarsest_);
   forBlocks(threadsOr(0), c.size(), [&](std::size_t i) {
     const DetailStep& step = c.steps_.front();

@@ -1,4 +1,4 @@
-// The finest level of a model: a model that has no other, and the box around it.
+// The finest level of a model: makes a model that has only this level, and finds its bounding box.
 #pragma once
 
 #include "render/lod/dendrogram.h"
@@ -6,7 +6,7 @@
 
 namespace merlin::render::lod {
 
-// A model of one level, which is the mesh. REQUIRES: as buildDendrogram().
+// Makes a model with one level, the mesh itself. REQUIRES: as buildDendrogram().
 Dendrogram oneLevel(const mesh::Mesh& mesh);
 
 // Bounding box of the corners of the finest level's triangles; of all positions if it has no

@@ -22,7 +22,7 @@ struct Places {
 
   Places(std::size_t vertices, const CollapseLog& log) : ends(vertices) {
     for (std::size_t v = 0; v < vertices; ++v) ends[v] = {};
-    HugeArray<std::uint32_t> place_of(log.children.size());  // [k]: of the node of collapse k
+    HugeArray<std::uint32_t> place_of(log.children.size());  // [k]: place of collapse k's node
     for (std::size_t k = 0; k < log.children.size(); ++k) {
       const auto place = [&](std::uint32_t n) { return n < vertices ? n : place_of[n - vertices]; };
       const std::uint32_t on = place(log.children[k][0]), over = place(log.children[k][1]);
@@ -61,7 +61,7 @@ RemovalOrder::RemovalOrder(const mesh::Mesh& mesh, const CollapseLog& log, unsig
   numberNodes();
 }
 
-// Numbers the roots in their order, then the children of the last collapse, ... of the first one.
+// Numbers the roots in their order, then the children of each collapse, from the last to the first.
 void RemovalOrder::numberNodes() {
   const std::size_t nodes = numbers_.size();
   for (std::size_t n = 0; n < nodes; ++n) numbers_[n] = kNever;
@@ -89,9 +89,10 @@ void RemovalOrder::findRemovals(const mesh::Mesh& mesh, unsigned threads,
   });
 }
 
-// Counting sort by level of removal, last first; equal ones keep the order of the mesh. alive_[d]
-// is first the number of triangles that are removed after level d, where those of level d begin.
-// After the sort it is where they end, which is the number of triangles left one level before.
+// Counting sort by level of removal, last first; triangles with the same level keep the order of
+// the mesh. alive_[d] first is the number of triangles that are removed after level d, which is the
+// index where those of level d begin. After the sort it is the index where they end, which is the
+// number of triangles left one level before.
 void RemovalOrder::sortTriangles(const HugeArray<std::uint32_t>& removals) {
   for (std::size_t t = 0; t < removals.size(); ++t) ++alive_[removals[t]];
   std::uint32_t later = 0;

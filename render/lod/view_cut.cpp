@@ -10,16 +10,16 @@ namespace merlin::render::lod {
 namespace {
 
 constexpr double kStepsAnOctave = 64;
-// One level for all clusters is as good if the finest wanted detail is at most this times the
-// coarsest.
+// All clusters get the same level if the finest wanted detail is at most this times the coarsest,
+// since levels of their own would then gain nothing.
 constexpr float kMuchTheSame = 1.15F;
 // Lower limit of the cosine g: a surface seen edge-on still shows its silhouette.
 constexpr float kLeastFacing = 0.1F;
 constexpr int kBisections = 12;
 constexpr float kLeastOfNeighbour = 0.4F;
 constexpr int kGradings = 3;
-// Least budget, in triangles of the coarsest level: with less, a cluster is a handful of triangles,
-// most of them at its border.
+// Clusters get levels of their own only for budgets above this multiple of the coarsest level's
+// triangles: with less, a cluster is a handful of triangles, most of them at its border.
 constexpr std::size_t kTimesTheCoarsest = 4;
 
 // Planes, eye and scale of the view of a tile.
@@ -27,8 +27,8 @@ struct Viewer {
   bool parallel;                      // the eye is infinitely far away
   Eigen::Matrix<float, 5, 4> planes;  // left, right, bottom, top, near; unit normals inwards
   Eigen::Vector4f depth;              // the row of the matrix that gives w
-  Eigen::Vector3f eye;                // model units; of a parallel projection, where to look
-  float near_w, pixels_per_unit;      // at w = 1
+  Eigen::Vector3f eye;            // model units; in a parallel projection, the direction of view
+  float near_w, pixels_per_unit;  // w at the near plane; pixels per model unit at w = 1
   float depth_per_unit;
 
   explicit Viewer(const TileView& tile) {
@@ -118,8 +118,8 @@ void ViewCut::look(std::span<const TileView> tiles) {
   }
 }
 
-// Raises wanted_ of the neighbours of clusters that are seen. Few passes, so that clusters far from
-// all that is seen stay as coarse as possible.
+// Raises wanted_ of the neighbours of visible clusters. Makes few passes, so that clusters far from
+// everything visible stay as coarse as possible.
 void ViewCut::grade() {
   for (int pass = 0; pass < kGradings; ++pass) {
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
@@ -154,7 +154,8 @@ bool ViewCut::choose(std::span<const TileView> tiles, std::size_t budget) {
   const auto [least, most] = std::minmax_element(wanted_.begin(), wanted_.end());
   if (*most <= 0 || *most <= kMuchTheSame * *least) return false;
   grade();
-  // The largest useful kappa: all visible clusters at full detail, if the budget allows it.
+  // The largest useful kappa gives all visible clusters full detail; it is taken if the budget
+  // allows.
   double high = 2 * static_cast<double>(dendrogram_.triangleCount()) / *most;
   for (const float w : wanted_) {
     if (w > 0) high = std::max(high, 2 * static_cast<double>(dendrogram_.triangleCount()) / w);

@@ -13,8 +13,9 @@
 // triangles between fine and very coarse clusters fold over. kappa follows from the budget by
 // bisection. Pure.
 //
-// Views may have different eyes, and parallel projections none: p and g are computed for each view
-// on its own, and what wants the most detail of a cluster decides. One cut is shown in all views.
+// Views may have different eye points, or none (parallel projections): p and g are computed for
+// each view separately, and the view that needs the most detail of a cluster decides. All views
+// show the same cut.
 #pragma once
 
 #include <cstdint>
@@ -49,8 +50,8 @@ class ViewCut {
 
   std::span<const std::uint32_t> levels() const noexcept { return levels_; }
 
-  // Whether `tile`, an index into the tiles of the last look() or choose(), may see a part of the
-  // cluster.
+  // Whether any part of the cluster may be visible in `tile`, an index into the tiles of the last
+  // look() or choose().
   bool sees(std::size_t tile, std::size_t cluster) const noexcept {
     return seen_[tile * clusters_.size() + cluster];
   }

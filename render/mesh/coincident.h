@@ -8,11 +8,11 @@
 
 namespace merlin::render::mesh {
 
-// Links coincident vertices into rings: entry v is the next vertex by index at the position of v,
-// after the last one the first, or v itself if no other vertex is there. Positions are equal if all
-// coordinates are (so -0 equals 0).
+// Links coincident vertices into rings. Entry v is the next higher index of a vertex at the
+// position of v; the highest index is followed by the lowest. A vertex that is alone at its
+// position is followed by itself. Positions are equal if all coordinates are equal (-0 equals 0).
 //   positions  vertices x 3, none of them NaN
-// Expected O(n), by a hash table; O(n log n) if positions were crafted to collide. Reentrant.
+// Expected O(n), with a hash table; O(n log n) if positions were crafted to collide. Reentrant.
 std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions);
 
 // Same result as coincidentVertices(), always in O(n log n).

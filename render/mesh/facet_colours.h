@@ -1,4 +1,4 @@
-// Colours of facets, as STL, OFF and PLY files may have them, as colours of vertices.
+// Converts the colours of facets, which STL, OFF and PLY files may have, to colours of vertices.
 #pragma once
 
 #include <span>
@@ -7,11 +7,12 @@
 
 namespace merlin::render::mesh {
 
-// Adds "colour" (3): that of the triangles at a vertex. A vertex at which triangles of several
-// colours meet becomes one for each colour, at the same place (coincidentVertices() finds them);
-// triangles keep their order. Vertices of no triangle are white. O(n log n).
+// Adds the feature "colour" (3): each vertex gets the colour of its triangles. If these have
+// several colours, the vertex is duplicated, so that there is one for each colour at the same
+// position (coincidentVertices() finds them). Triangles keep their order. Vertices that no triangle
+// uses are white. O(n log n).
 // colours  triangles x 3, each 0..1
-// REQUIRES: validate(mesh), and that it has no feature "colour".
+// REQUIRES: validate(mesh), and the mesh has no feature "colour".
 void colourByFacets(std::span<const float> colours, Mesh& mesh);
 
 }  // namespace merlin::render::mesh

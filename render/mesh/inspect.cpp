@@ -93,9 +93,9 @@ class Inspector {
   const Mesh& mesh_;
   Inspection result_;
   std::vector<Index> place_;    // by vertex: the first vertex at its position
-  std::vector<Index> corners_;  // places of the triangles that count
+  std::vector<Index> corners_;  // by corner of the triangles that count: its place
   std::vector<Index> borders_;  // corners at which an edge begins that no other triangle has
-  std::vector<bool> is_open_;   // triangles with an edge that has not two sides
+  std::vector<bool> is_open_;   // triangles with an edge without exactly two consistent sides
 };
 
 void Inspector::lookAtVertices() {
@@ -199,7 +199,7 @@ void Inspector::lookAtEdges(Sets& corners) {
   }
 }
 
-// One edge, by the corners at which its triangles begin it.
+// Examines one edge. begin, end: the corners at which its triangles begin it.
 void Inspector::lookAtEdge(const Index* begin, const Index* end, Sets& corners) {
   const auto count = end - begin;
   if (count == 1) borders_.push_back(*begin);
@@ -224,7 +224,8 @@ void Inspector::countFans(Sets& corners) {
       std::count_if(fans.begin(), fans.end(), [](std::uint8_t f) { return f > 1; }));
 }
 
-// Where a fan of triangles ends, one edge of the border goes on into the other.
+// Joins border edges to holes: where a fan of triangles ends, its two border edges follow each
+// other.
 void Inspector::joinBorders(Sets& corners) {
   for (const Index c : borders_) corners.unite(c, behind(c));
   std::vector<Index> hole_of(corners_.size());  // 0: none yet, else its place + 1

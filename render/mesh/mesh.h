@@ -1,4 +1,4 @@
-// Mesh: a triangulated surface with any number of named features at its vertices. Flat arrays.
+// Mesh: a triangulated surface with any number of named features per vertex, in flat arrays.
 //
 // An indexed triangle set without stored adjacency: non-manifold edges, borders and several
 // components are all legal; an algorithm that cannot handle one of them says so in its contract.
@@ -48,7 +48,7 @@ struct Mesh {
 struct TidyReport {
   std::size_t degenerate = 0;  // triangles with the same vertex twice
   std::size_t duplicate = 0;   // triangles with the same three vertices as an earlier one
-  std::size_t opposite = 0;    // as duplicate, but facing the other way
+  std::size_t opposite = 0;    // like `duplicate`, but facing the other way
   std::size_t unused = 0;      // vertices that no triangle uses
 };
 
@@ -66,7 +66,7 @@ TidyReport tidy(Mesh& mesh);
 // an entry for each vertex, and every vertex of a triangle is kept.
 std::size_t keepVertices(Mesh& mesh, const std::vector<bool>& kept);
 
-// Adds a vertex that is where `vertex` is and has all its features; returns the new one's index.
+// Adds a copy of `vertex`, with its position and features; returns the index of the copy.
 std::uint32_t addCopy(std::uint32_t vertex, Mesh& mesh);
 
 // Bounding box of all vertices; all zero if there are none.

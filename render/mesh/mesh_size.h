@@ -1,4 +1,4 @@
-// MeshSize: the counts that determine the memory of a mesh, also of one that is not loaded yet.
+// MeshSize: the counts that determine the memory of a mesh, which need not be loaded yet.
 #pragma once
 
 #include <cstddef>

@@ -197,7 +197,7 @@ class Splitter {
   Mesh& mesh_;
   std::vector<std::uint32_t> twins_;    // by half-edge: the one across, kNone at borders
   std::vector<std::uint32_t> fans_;     // by corner
-  std::vector<Edge> singular_;          // that are no manifold
+  std::vector<Edge> singular_;          // edges that are not manifold
   std::vector<std::uint32_t> sources_;  // of each new vertex: where it comes from
   std::size_t split_ = 0;
 };

@@ -1,4 +1,4 @@
-// Values of features that are not numbers, as programs mark what they have not measured.
+// Replaces feature values that are not numbers, with which some programs mark missing measurements.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace merlin::render::mesh {
 
-// Puts 0 where a value of a feature is not a finite number, and returns a note for the user, empty
-// if there was none. O(values).
+// Sets each feature value that is not a finite number to 0. Returns a note for the user, empty if
+// there was no such value. O(values).
 std::string replaceNonNumbers(std::vector<Feature>& features);
 
 }  // namespace merlin::render::mesh

@@ -59,7 +59,8 @@ void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums
   };
   for (std::size_t i = 0; i < sides.size(); ++i) {
     addThose(i, [&](std::size_t o) { return group[o] == group[i]; });
-    // Blades around an axis form a group too, but their normals cancel.
+    // Blades around an axis form a group too, but their normals cancel: then only those sides are
+    // added that form one surface with side i directly.
     if (dot(joined[i].data(), of(i)) < 0.5F * dot(of(i), of(i)))
       addThose(i, [&](std::size_t o) { return o == i || areOneSurface(of(i), of(o)); });
   }

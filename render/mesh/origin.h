@@ -1,18 +1,18 @@
-// The origin of a file's coordinates: positions are floats, which keep seven digits, and
-// coordinates of maps have nine. Readers subtract an origin from them while they are still doubles.
-// Pure.
+// The origin that readers subtract from a file's coordinates while these are still doubles:
+// positions are floats, which keep seven digits, but map coordinates have nine. Pure.
 #pragma once
 
 #include <array>
 
 namespace merlin::render::mesh {
 
-// Where the mesh's (0, 0, 0) lies in the coordinates of its file [the file's unit]; 0 0 0 where
+// Where the mesh's (0, 0, 0) lies in the coordinates of its file [the file's unit]; 0 0 0 if
 // nothing was subtracted.
 using Origin = std::array<double, 3>;
 
-// The origin for a mesh, a cloud or a scan with this point: a coordinate of 10^4 to 10^15, in
-// either direction, is moved by its whole part; any other axis keeps its zero.
+// Returns the origin for a mesh, a cloud or a scan that contains this point. On an axis where the
+// magnitude of the point's coordinate is 10^4 to 10^15, the origin is the coordinate's integer
+// part; on any other axis it is 0.
 Origin originNear(const std::array<double, 3>& point) noexcept;
 
 }  // namespace merlin::render::mesh

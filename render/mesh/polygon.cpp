@@ -22,14 +22,14 @@ double area(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-// The corners of a face, by what returns the position of each.
+// A face, given by a function that returns the position of each corner.
 template <typename PositionOf>
 class Face {
  public:
   Face(std::size_t corners, const PositionOf& position_of)
       : corners_(corners), position_of_(position_of) {}
 
-  // From the first corner, whose coordinates may be large.
+  // Returns the position relative to the first corner, since coordinates may be large.
   Vector at(std::size_t corner) const {
     const float* const p = position_of_(corner);
     const float* const first = position_of_(0);
@@ -49,7 +49,7 @@ class Face {
     return sum;
   }
 
-  // Whether no triangle of the fan faces the other way, by more than floats are rounded.
+  // Whether no triangle of the fan faces the other way, apart from rounding errors of floats.
   bool isFan(const Vector& normal) const {
     constexpr double kRounding = 1e-7;
     const double least = -kRounding * innerProduct(normal, normal);
@@ -64,7 +64,8 @@ class Face {
   const PositionOf& position_of_;
 };
 
-// The plane's coordinates: the axis along which the normal is longest is left out.
+// Returns the axes of the plane's coordinates: the axis of the normal's largest component is left
+// out.
 std::array<std::size_t, 2> axesAcross(const Vector& normal) {
   std::size_t longest = 0;
   for (std::size_t k = 1; k < 3; ++k) {
@@ -102,7 +103,7 @@ class EarCutter {
       before_[next] = before;
       ear_[before] = isEar(before);
       ear_[next] = isEar(next);
-      at = next_[next];  // triangles around one corner would be long and thin
+      at = next_[next];  // otherwise triangles around one corner would be long and thin
     }
     if (areaAt(at) < 0) return {};
     take(at);
@@ -123,8 +124,8 @@ class EarCutter {
     return true;
   }
 
-  // Whether corner k lies in the triangle at corner i or on its edge. Only a corner that is not
-  // convex can be there alone.
+  // Whether corner k lies in the triangle at corner i or on its edge. Ignores convex corners: one
+  // of them never lies there without one that is not convex.
   bool isInTheWay(std::size_t k, std::size_t i) const {
     const PlanePoint &a = points_[before_[i]], &b = points_[i], &c = points_[next_[i]],
                      &p = points_[k];
@@ -132,7 +133,8 @@ class EarCutter {
     return areaAt(k) <= 0 && p != a && p != b && p != c;
   }
 
-  // The next ear from `at` on. Where only flat corners are left, one of them: it is no corner.
+  // Finds the next ear from `at` on. If there is none, takes a flat corner, which is no real
+  // corner. Returns false if there is neither.
   bool findEar(std::size_t left, std::size_t& at) const {
     const std::size_t from = at;
     for (std::size_t n = 0; n < left; ++n, at = next_[at]) {

@@ -1,4 +1,4 @@
-// Faces of more than three corners, as files have them: each becomes triangles within itself.
+// Triangulates a file's faces with more than three corners; the triangles stay inside the face.
 #pragma once
 
 #include <cstddef>
@@ -11,41 +11,42 @@
 
 namespace merlin::render::mesh {
 
-// The triangles of a face with more corners than this stay the fan around its first corner: to cut
-// it otherwise takes O(corners^2).
+// A face with more corners than this stays a fan around its first corner, since any other
+// triangulation takes O(corners^2).
 inline constexpr std::size_t kMostCutCorners = 4096;
 
-// A face as the fan around its first corner: corners - 2 triangles that follow one another.
+// A face as a fan around its first corner: corners - 2 consecutive triangles of the mesh.
 struct Fan {
-  std::size_t triangle = 0;  // the first of them
+  std::size_t triangle = 0;  // index of the first one
   std::size_t corners = 0;
 };
 
-// Cuts the polygon with these corners (x, y, z each) in the plane of Newell's normal. Returns three
-// numbers of corners for each of its corners - 2 triangles, which face the same way. Empty where
-// the fan around the first corner has no triangle that faces the other way, as in every convex
-// polygon; and where no other cut is found: the polygon has no area, crosses itself, has a
-// coordinate that is not finite or more than kMostCutCorners corners. O(corners^2).
+// Triangulates the polygon with these corners (x, y, z each) in the plane of Newell's normal.
+// Returns three corner indices for each of its corners - 2 triangles, which all face the same way.
+// Returns an empty vector if the fan around the first corner is right, i.e. none of its triangles
+// faces the other way (as in every convex polygon); and if no other triangulation is found: the
+// polygon has no area, crosses itself, has a coordinate that is not finite or more than
+// kMostCutCorners corners. O(corners^2).
 std::vector<std::uint32_t> cutPolygon(std::span<const float> positions);
 
-// Collects the faces of a file for which a fan is wrong, or of which that is not known yet, since
-// their vertices come later.
+// Collects the faces of a file for which a fan is wrong, or may be wrong because their vertices
+// have not been read yet.
 class Fans {
  public:
-  // Takes the last triangles of `mesh` as the fan of a face of so many corners, 3 or more.
+  // Takes the last corners - 2 triangles of `mesh` as the fan of a face. REQUIRES: corners >= 3.
   void take(const Mesh& mesh, std::size_t corners);
 
-  // What is to be done for a face that is cut otherwise than as a fan: `order` is what
-  // cutPolygon() returned.
+  // Called for each face that is not triangulated as a fan. `order`: what cutPolygon() returned.
   using OnCut = std::function<void(const Fan& fan, std::span<const std::uint32_t> order)>;
-  // Once all vertices are there: cuts the faces that are to be cut, and calls `on_cut` for each.
+  // To be called when all vertices have been read. Triangulates anew the collected faces for which
+  // a fan is wrong, and calls `on_cut` for each of them.
   void cut(Mesh& mesh, const OnCut& on_cut = {});
 
  private:
   std::vector<Fan> fans_;
 };
 
-// Puts values at the corners of a fan's triangles into the order of the cut.
+// Reorders the values at the corners of a fan's triangles to match the new triangulation `order`.
 template <typename T>
 void reorder(const Fan& fan, std::span<const std::uint32_t> order, std::vector<T>& at_corners) {
   T* const at = &at_corners[3 * fan.triangle];

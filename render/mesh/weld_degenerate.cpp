@@ -32,7 +32,7 @@ class TwinSets {
     return v;
   }
 
-  // Whether they were of two sets.
+  // Joins the sets of a and b. Returns whether these were two sets.
   bool join(std::uint32_t a, std::uint32_t b) {
     if (parents_.empty()) {
       parents_.resize(vertices_);

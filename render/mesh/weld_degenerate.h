@@ -1,4 +1,4 @@
-// Makes one vertex of those that lie in one place and are joined by a triangle.
+// Merges coincident vertices that are corners of the same triangle.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,12 @@
 
 namespace merlin::render::mesh {
 
-// Corners of a triangle that lie in the same place and have the same features become one vertex, in
-// all triangles, so that the triangle has a vertex twice and tidy() drops it. To drop it alone
-// would open a slit, and with it the two sides of the slit cannot be reduced. Corners with other
-// features, such as the pole of a textured sphere, stay apart. Returns how many vertices were
-// merged into others; they stay, unused. O(n). Same input, same result. REQUIRES:
-// validate(mesh).ok().
+// Merges corners of a triangle that have the same position and the same features into one vertex,
+// in all triangles; the triangle then has a vertex twice and tidy() drops it. Dropping the triangle
+// without merging would open a slit, whose two sides could not be reduced. Corners with different
+// features, such as those at the pole of a textured sphere, are not merged. Returns how many
+// vertices were merged into others; they remain in the mesh, unused. O(n). Same input, same result.
+// REQUIRES: validate(mesh).ok().
 std::size_t weldDegenerate(Mesh& mesh);
 
 }  // namespace merlin::render::mesh

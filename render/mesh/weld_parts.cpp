@@ -13,7 +13,7 @@
 namespace merlin::render::mesh {
 namespace {
 
-// More vertices than this never become one: it bounds the work on meshes that are made for it.
+// At most so many vertices become one: this bounds the work on meshes that are crafted to be slow.
 constexpr std::size_t kMostInOne = 64;
 constexpr float kCosineOfCrease = 0.5F;  // 60 degrees
 
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> placesOf(const Mesh& mesh) {
   return place;
 }
 
-// Edges with one triangle, by the vertices' numbers.
+// Returns the edges that have one triangle, sorted by the numbers of their vertices.
 std::vector<Edge> borderEdges(const Mesh& mesh) {
   std::vector<Edge> edges;
   for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
@@ -70,7 +70,7 @@ class Welder {
     return report_;
   }
 
-  // For each vertex the one that it became.
+  // Returns for each vertex the one that it became.
   const std::vector<std::uint32_t>& roots() const noexcept { return root_; }
 
  private:
@@ -84,7 +84,7 @@ class Welder {
       list_[next[mesh_.triangles[i]]++] = static_cast<std::uint32_t>(i / 3);
   }
 
-  // Border edges at one place: two of different parts, that run against each other.
+  // Returns pairs of border edges at the same place, of different parts and in opposite directions.
   std::vector<std::pair<Edge, Edge>> pairs() const {
     std::vector<Edge> border = borderEdges(mesh_);
     const auto ends = [&](const Edge& e) { return std::minmax(place_[e.from], place_[e.to]); };
@@ -128,8 +128,8 @@ class Welder {
     return dot(normal(s).data(), normal(t).data()) > kCosineOfCrease;
   }
 
-  // The four vertices of an edge of two parts become two, unless a triangle would no longer show
-  // its part. Returns whether they did.
+  // Joins the four vertices of two border edges to two, unless too many vertices would become one,
+  // or a triangle would have no corner with its part's label. Returns whether they were joined.
   bool weld(const Edge& a, const Edge& b) {
     const std::array<std::array<std::uint32_t, 2>, 2> ends = {
         {{root_[a.from], root_[b.to]}, {root_[a.to], root_[b.from]}}};

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kSamePeriod = 0.03;
 constexpr Duration kStaleAfter = std::chrono::seconds(10);
-constexpr std::int64_t kMostShift = 16;  // of a period, in one frame
+constexpr std::int64_t kMostShift = 16;  // a frame moves by at most 1 / kMostShift of a period
 
 }  // namespace
 
@@ -30,7 +30,7 @@ bool VblankFrameClock::waitFor(std::int64_t k, const std::stop_token& stop) noex
   return clock_.sleepUntil(begin(k), stop);
 }
 
-// From frame k on: the display's period, and a step towards the blank that is nearest to frame k.
+// From frame k on, uses the display's period; also moves frame k towards the blank nearest to it.
 void VblankFrameClock::follow(std::int64_t k) {
   base_ = begin(k);
   base_k_ = k;

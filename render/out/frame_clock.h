@@ -74,14 +74,14 @@ class TimerFrameClock final : public FrameClock {
   Duration period_ = std::chrono::seconds(1);
 };
 
-// Frames that begin with a display's vertical blanks, every one or every n-th of them, while the
-// period asked for is within 3 % of n of the display's; otherwise, and while the display tells none
-// (for ten seconds or more), frames timed by a Clock. It changes from one to the other by at most a
-// sixteenth of a period a frame.
+// Frames that begin with every n-th vertical blank of a display (n >= 1), if the requested period
+// is within 3 % of n of the display's periods. Otherwise, and while the source returns no blank of
+// the last ten seconds, frames are timed by a Clock. In each frame the begin is shifted towards a
+// blank by at most a sixteenth of a period.
 class VblankFrameClock final : public FrameClock {
  public:
   using Source = std::function<std::optional<Vblank>()>;
-  // `clock` outlives this. `source` is called once a frame.
+  // `clock` outlives this. `source` is called once a frame and returns the display's last blank.
   VblankFrameClock(Clock& clock, Source source) : clock_(clock), source_(std::move(source)) {}
 
   void start(Timestamp from, Duration period) override;

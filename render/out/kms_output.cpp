@@ -7,7 +7,7 @@
 namespace merlin::render::out::kms {
 namespace {
 
-// The longest time without a sign of life from the thread.
+// Longest time between two signs of life of the thread.
 constexpr Duration kStep = std::chrono::milliseconds(500);
 constexpr Duration kLongestLook = std::chrono::seconds(2);
 
@@ -61,7 +61,7 @@ void CardWorker::start() {
   thread_ = WatchedThread(watch_, name, [this](const std::stop_token& stop, Progress& progress) {
     const std::stop_callback wake(stop, [this] { displays_.wake(); });
     while (!stop.stop_requested()) {
-      const Progress::Pause pause(progress);  // a display's modes take their time
+      const Progress::Pause pause(progress);  // reading a display's modes may take long
       displays_.step(kStep);
     }
   });

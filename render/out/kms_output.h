@@ -23,7 +23,7 @@ class CardWorker {
   CardWorker& operator=(const CardWorker&) = delete;
 
   Displays& displays() { return displays_; }
-  // Starts the thread, once: when every output has been added.
+  // Starts the thread, at the first call. All outputs must have been added before.
   void start();
 
  private:
@@ -45,7 +45,8 @@ class Cards {
   // master becomes it, and only the thread that opened it, or root, can give that away.
   void open();
 
-  // Never fails: what is not there may come. Its health says what is missing.
+  // Never fails, since a missing card or display may appear later; until then the output's fault
+  // says what is missing.
   std::unique_ptr<Output> makeOutput(const KmsSettings& settings, int picture_width,
                                      int picture_height);
 
@@ -53,7 +54,8 @@ class Cards {
   KeptFiles& kept_files_;
   ThreadWatch& watch_;
   const Clock& clock_;
-  // Shared by the outputs of the card; the last one that is removed gives the card back.
+  // Each is shared by the outputs of its card; the last of them that is destroyed releases the
+  // card.
   std::map<std::string, std::weak_ptr<CardWorker>> workers_;  // by path
 };
 

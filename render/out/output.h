@@ -32,7 +32,7 @@ struct Signal {
 struct DisplayReading {
   std::string where;  // the display, for a person: "HDMI-A-1"; empty: the output has only one
   FoundPicture found;
-  std::string programs{};  // of a foreign picture: whose it may be, "Xorg (812)"; empty: not known
+  std::string programs{};  // that may have drawn a foreign picture, "Xorg (812)"; empty: unknown
 };
 
 // Thread-bound to the wall's thread, except mend(), wantsFrame(), vblank(), readBack() and
@@ -66,12 +66,12 @@ class Output {
   // True if readBack() may find something.
   virtual bool canReadBack() const { return false; }
 
-  // Reads what the output really shows, of each of its displays that shows frames. May take
+  // Reads what is really shown by each of the output's displays that shows frames. May take
   // milliseconds; called on one thread, which is not the wall's. Errors: why it cannot be read.
   virtual Result<std::vector<DisplayReading>> readBack() { return std::vector<DisplayReading>(); }
 
-  // Called when the output was found to show another picture than what it was sent: sets up anew
-  // whatever may be wrong. A frame follows. Thread-safe.
+  // Called when the output was found to show another picture than the one it was sent: sets up
+  // again whatever may be wrong. A frame follows. Thread-safe.
   virtual void showAgain() {}
 
   // Called once a second, from any thread: restores what other processes have removed, e.g. a

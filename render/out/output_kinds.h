@@ -25,12 +25,12 @@ struct OutputParts {
   const tiles::TilesSettings& tiles;
   kms::Cards& cards;    // for outputs of kind kms
   WindowActs window{};  // for outputs of kind window
-  // The operator's panel in the frame, for their pointers; nothing: there is none.
+  // Where the operator's panel is in the frame, for the outputs' mouse pointers; nothing: no panel.
   std::optional<PanelPointer::Place> panel{};
 };
 
-// Where the picture of an output of these settings shows the panel. Nothing if it does not, or
-// mirrored or turned.
+// Returns where the picture of an output with these settings shows the operator's panel; nothing if
+// it does not show it, or shows it mirrored or rotated. `in_frame`: the panel's place in the frame.
 std::optional<PanelPointer::Place> panelIn(const OutputSettings& settings,
                                            const tiles::TilePlan& plan,
                                            const PanelPointer::Place& in_frame);

@@ -55,7 +55,8 @@ class OutputSet {
 
   // Output i, for whoever reads back what it shows.
   Output& output(std::size_t i) { return *entries_[i].named.output; }
-  // `checks` are told what the outputs are handed, and outlive the last present(); null: none are.
+  // Passes to `checks`, from now on, each picture that an output is handed. `checks` must outlive
+  // the last present(); null: none.
   void checkWith(PictureChecks* checks) { checks_ = checks; }
   // What the checks have found of output i.
   PictureState picture(std::size_t i) const { return checks_ ? checks_->state(i) : PictureState{}; }

@@ -8,7 +8,7 @@ namespace merlin::render::out {
 namespace {
 
 constexpr Duration kSoon = std::chrono::milliseconds(500);
-constexpr Duration kStep = std::chrono::milliseconds(500);  // at most without a sign of life
+constexpr Duration kStep = std::chrono::milliseconds(500);  // longest time without a sign of life
 
 std::string sentence(PictureVerdict verdict, const DisplayReading& reading) {
   const std::string at = reading.where.empty() ? "" : ", at " + reading.where;
@@ -34,7 +34,7 @@ PictureChecks::PictureChecks(const std::vector<Checked>& outputs, const Clock& c
     Entry& entry = entries_.emplace_back();
     entry.checked = outputs[i];
     if (!outputs[i].output->canReadBack()) entry.checked.every = Duration::zero();
-    // One after the other, not all at once.
+    // The outputs' first checks are spread over the interval.
     const auto turn = static_cast<std::int64_t>(i) + 1;
     entry.due = now + entry.checked.every * turn / static_cast<std::int64_t>(outputs.size());
   }
@@ -56,7 +56,8 @@ void PictureChecks::start(ThreadWatch& watch) {
       });
 }
 
-// A frame that looks like the one before it is no new one: it may be shown, or not, unnoticed.
+// A frame with the same digest as the one before it is not recorded: nobody can see which of the
+// two is shown.
 void PictureChecks::meant(std::size_t i, const Signal& signal) {
   Entry& entry = entries_[i];
   if (entry.checked.every == Duration::zero() || signal.pixels.empty()) return;
@@ -71,8 +72,8 @@ void PictureChecks::meant(std::size_t i, const Signal& signal) {
   entry.written.store(written + 1, std::memory_order_release);
 }
 
-// The last frames, oldest first. One that is overwritten meanwhile is left out, with those that are
-// older.
+// Returns the last frames, oldest first. If one was overwritten meanwhile, it and all older ones
+// are left out.
 std::vector<MeantPicture> PictureChecks::meantOf(const Entry& entry) {
   std::vector<MeantPicture> meant;
   const std::uint64_t written = entry.written.load(std::memory_order_acquire);
@@ -108,7 +109,8 @@ void PictureChecks::check(Entry& entry) {
   const Timestamp began = clock_.now();
   const auto read = entry.checked.output->readBack();
   const auto readings = read ? *read : std::vector<DisplayReading>();
-  // What is being set up anew shows nothing for a while and is no better for that.
+  // An output that is being set up again shows nothing for a while: its last, wrong state then
+  // remains.
   const bool is_mended = isWrong(entry.steady.current()) && began < entry.mend_at;
   PictureState state = entry.last_state;
   if (!readings.empty() || !is_mended) state = judge(entry, readings, began);
@@ -125,10 +127,10 @@ void PictureChecks::check(Entry& entry) {
   entry.due = now + (soon ? std::min(kSoon, entry.checked.every) : entry.checked.every);
 }
 
-// An output is as its worst display; verdicts are in the order of how much they say.
+// Returns the state of an output, which is that of its worst display: the highest PictureVerdict.
 PictureState PictureChecks::judge(Entry& entry, const std::vector<DisplayReading>& readings,
                                   Timestamp began) {
-  // Read after the pictures were: a frame that was handed over meanwhile may be on the display.
+  // Read after the displays, since a frame that was handed over meanwhile may already be shown.
   const std::vector<MeantPicture> meant = meantOf(entry);
   PictureVerdict worst = PictureVerdict::kUnchecked;
   std::string says;

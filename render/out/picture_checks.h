@@ -24,7 +24,7 @@ namespace merlin::render::out {
 // The result for one output. Trivial, so that a SeqSlot holds it: begin with PictureState{}.
 struct PictureState {
   PictureVerdict verdict;
-  float took_ms;   // of the last check
+  float took_ms;   // duration of the last check
   char says[112];  // what is wrong: "is black instead of what was meant, at HDMI-A-1"
 };
 
@@ -43,7 +43,8 @@ class PictureChecks {
 
   // Output i is handed this picture. Called on the wall's thread; never waits. Cost: digestOf().
   void meant(std::size_t i, const Signal& signal);
-  // True from when output i was found to show something else until meant(). Thread-safe.
+  // True after output i was found to show something else, until the next meant() for it.
+  // Thread-safe.
   bool wantsFrame(std::size_t i) const { return entries_[i].wants_frame.load(); }
   // Thread-safe; never waits.
   PictureState state(std::size_t i) const {
@@ -51,9 +52,9 @@ class PictureChecks {
   }
 
   // Checks the output whose turn it is, if it is due. An output that was found to show something
-  // else is checked every half second, counts as wrong from the second time on, and is then set up
-  // anew, once in its time. Returns when the next one
-  // is due; nothing: none ever is. Called by the thread, or by a test without one.
+  // else is checked every half second. From the second such result on it counts as wrong and is set
+  // up again, at most once in its Checked::every. Returns when the next check is due; nothing if no
+  // output is ever checked. Called by the thread, or by a test without one.
   std::optional<Timestamp> step();
 
  private:
@@ -64,11 +65,11 @@ class PictureChecks {
   };
   struct Entry {
     Checked checked{};
-    // Of the wall's thread, which writes the slots; newest_ counts the frames written.
+    // Written by the wall's thread; `written` counts the frames in `slots` so far.
     PictureDigest last{};
     std::array<shm::SeqSlot<Meant>, kRemembered> slots{};
     std::atomic<std::uint64_t> written{0};
-    // Of the thread that checks.
+    // Used by the thread that checks; other threads use only the last two.
     Timestamp due{}, mend_at{};
     SteadyVerdict steady{};
     PictureState last_state{};

@@ -25,7 +25,7 @@ class PngOutput final : public Output {
 
   // `interval_s`: minimum time between two files. `watch` outlives this.
   PngOutput(std::string path, double interval_s, ThreadWatch& watch);
-  // With another function that writes, called on the output's thread.
+  // Writes by another function, which is called on the output's thread.
   PngOutput(std::string path, double interval_s, ThreadWatch& watch, Write write);
   ~PngOutput() override;
   PngOutput(const PngOutput&) = delete;

@@ -13,10 +13,11 @@
 namespace merlin::render::out {
 namespace {
 
-// At the left, top, right and bottom border: clockwise, so that a turn by a quarter is a step.
+// Ramp widths at the left, top, right and bottom border: clockwise, so that a quarter turn moves
+// each by one.
 using Ramps = std::array<double, 4>;
 
-// The strips of a tile's picture, in pixels.
+// Returns the widths of a tile's shared strips, in pixels of its picture.
 Ramps rampsOf(const tiles::Tile& tile, const tiles::PlanePart& part,
               const tiles::SharedStrips& strips) {
   const auto pixels = [](double metres, double length, int size) {
@@ -27,7 +28,8 @@ Ramps rampsOf(const tiles::Tile& tile, const tiles::PlanePart& part,
           pixels(strips.bottom, part.height, tile.height)};
 }
 
-// The same in the output's picture, in which the tile is mirrored first, then turned clockwise.
+// Converts ramps to the output's picture, in which the tile is mirrored first, then turned
+// clockwise.
 Ramps onOutput(Ramps ramps, const PlacedTile& placed) {
   if (placed.mirror == Mirror::kHorizontal) std::swap(ramps[0], ramps[2]);
   if (placed.mirror == Mirror::kVertical) std::swap(ramps[1], ramps[3]);
@@ -35,14 +37,14 @@ Ramps onOutput(Ramps ramps, const PlacedTile& placed) {
   return ramps;
 }
 
-// The one tile that the output shows; nothing if it shows several, or one that is not there.
+// Returns the only tile that the output shows; nothing if it shows several or none.
 std::optional<PlacedTile> onlyTile(const OutputSettings& output, const tiles::TilePlan& plan) {
   if (output.tiles.size() == 1) return output.tiles[0];
   if (!output.tiles.empty() || plan.tiles.size() != 1) return std::nullopt;
   return PlacedTile{.tile = plan.tiles[0].name};
 }
 
-// Sets the ramps; a sentence if one that is given differs.
+// Sets the ramps. Returns a sentence, and sets none, if a configured ramp has another width.
 std::string setRamps(correct::BlendSettings& blend, const Ramps& ramps) {
   const std::pair<const char*, double*> all[] = {{"left", &blend.left},
                                                  {"top", &blend.top},

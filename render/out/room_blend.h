@@ -1,5 +1,5 @@
-// The blend ramps of outputs whose pictures overlap on one screen, from where the screens are.
-// Pure.
+// Computes the blend ramps of outputs whose pictures overlap on one screen from the screens'
+// positions. Pure.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@
 namespace merlin::render::out {
 
 // Sets the ramps of each output whose blend is `automatic` to the strips of its picture that other
-// tiles of the same screen and eye show as well, rounded to whole pixels. Pointers: those of
-// validate(outputs): an output that shows several tiles or one without a screen; a ramp that is
-// given and differs. REQUIRES: tiles in which validate() finds nothing. Outputs of which validate()
-// finds other faults are left as they are.
+// tiles of the same screen and eye show as well, rounded to whole pixels. Returns faults with
+// pointers like those of validate(outputs): an output that shows several tiles or a tile without a
+// screen; a ramp that is configured and differs from the computed one. REQUIRES: validate() finds
+// no fault in `tiles`. Outputs in which validate() finds other faults are left unchanged.
 SettingFaults fillBlends(std::vector<OutputSettings>& outputs, const tiles::TilesSettings& tiles);
 
 }  // namespace merlin::render::out

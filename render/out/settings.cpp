@@ -106,7 +106,8 @@ void checkDisplays(const std::vector<OutputSettings>& outputs, SettingFaults& fa
   }
 }
 
-// A mode that is named and smaller than the picture would be refused once the display is there.
+// Finds a named mode that is smaller than the picture: it would otherwise be refused only once the
+// display is there.
 void checkMode(const OutputSettings& o, const tiles::TilesSettings& tiles, const std::string& at,
                SettingFaults& faults) {
   const auto mode = kms::parseMode(o.kms.mode);
@@ -119,7 +120,7 @@ void checkMode(const OutputSettings& o, const tiles::TilesSettings& tiles, const
                                 o.kms.mode, size->width, size->height)});
 }
 
-// Of two outputs that write to one file each would overwrite the other's picture.
+// Finds two outputs that write to the same file: each would overwrite the other's picture.
 void checkFiles(const std::vector<OutputSettings>& outputs, SettingFaults& faults) {
   std::map<std::string, std::string> written;
   for (std::size_t i = 0; i < outputs.size(); ++i) {

@@ -47,7 +47,8 @@ struct OutputSettings {
   kms::KmsSettings kms{};           // kms: which display
   std::vector<PlacedTile> tiles{};  // tiles that the output is sent; empty: the whole frame
   correct::CorrectionSettings correction{};  // applied to the picture made of `tiles`
-  // Seconds between two looks at what it really shows; 0: none. Kinds shared_memory and kms.
+  // Time between two checks of what the output really shows [s]; 0: no checks. Kinds shared_memory
+  // and kms.
   double check_s = 5;
 
   std::string shownName() const { return name.empty() ? nameOf(kind) : name; }
@@ -61,7 +62,7 @@ struct Rectangle {
     return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
   }
 };
-// Where the tile is in the output's picture. `tile`: that which `placed` names, one of `all`.
+// Where the tile is in the output's picture. `tile`: the one of `all` that `placed` names.
 Rectangle placeOf(const PlacedTile& placed, const tiles::TileSettings& tile,
                   const tiles::TilesSettings& all);
 

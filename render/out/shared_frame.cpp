@@ -208,7 +208,7 @@ Result<std::optional<Timestamp>> SharedFrameOutput::present(const Signal& signal
   return std::optional(clock_.now());
 }
 
-// By its name, as any other process reads it.
+// Opens the segment by its name, as any other process does.
 Result<std::vector<DisplayReading>> SharedFrameOutput::readBack() {
   const auto reader = SharedFrameReader::open(name_);
   if (!reader) return reader.error();

@@ -71,14 +71,15 @@ class SharedFrameReader {
   static Result<SharedFrameReader> open(const std::string& name,
                                         SharedMemory::From from = SharedMemory::From::kAnyone);
 
-  // That of the daemon that created it, which is in the header of the daemon's other segments.
+  // Generation of the daemon that created the segment; the headers of that daemon's other segments
+  // have the same one.
   std::uint64_t generation() const noexcept { return checked().generation; }
   // Number of the newest frame; 0: there is none, or it is just being replaced.
   std::uint64_t newest() const noexcept;
   // Copies the newest frame into `frame` and reuses its memory. Errors: kTimeout (no frame yet, or
   // the writer overwrote the buffer during every attempt).
   Result<Ok> copy(CapturedFrame& frame) const;
-  // The newest frame's digest, without copying the frame. Errors: those of copy().
+  // Returns the newest frame's digest, without copying the frame. Errors: those of copy().
   Result<PictureDigest> digest() const;
 
  private:

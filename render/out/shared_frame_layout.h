@@ -5,9 +5,8 @@
 // two more frames. Little-endian. Any change of a field's meaning increments kVersion; clients
 // refuse a version that they do not know.
 //
-// The first 40 bytes have the same layout as in the other segments (daemon/shm/layout.h), and so
-// has the table of fields behind the header: a program that reads that table can read this segment
-// as well.
+// The first 40 bytes and the table of fields behind the header have the same layout as in the other
+// segments (daemon/shm/layout.h): a program that reads that table can read this segment as well.
 #pragma once
 
 #include <atomic>

@@ -10,7 +10,7 @@ namespace merlin::render::out {
 
 class WindowOutput final : public Output {
  public:
-  // As those of WindowLink.
+  // The parameters are those of WindowLink.
   WindowOutput(const WindowSettings& settings, const WindowActs& acts, const std::string& program,
                ThreadWatch& watch, const Clock& clock)
       : link_(settings, acts, program, watch, clock), clock_(clock) {}

@@ -51,7 +51,7 @@ struct Request {
   bool operator==(const Request&) const = default;
 };
 
-// How the content that is shown moves, and what the panel's buttons of kind and content say.
+// The kind of content that is shown: decides how it moves and what the panel's buttons say.
 enum class ShownKind : std::uint8_t { kModel, kPicture, kPanorama };
 
 struct PanelContent {
@@ -59,10 +59,10 @@ struct PanelContent {
   bool is_model = true;
 };
 
-// Which of the things that the panel can operate this wall has; does not change while it runs.
+// Which of the things that the panel can operate exist on this wall; constant while it runs.
 struct PanelOptions {
   std::vector<PanelContent> contents;  // of the configuration, in their order
-  bool snapshots = false;              // there is a folder for them
+  bool snapshots = false;              // there is a folder for snapshots
   bool projectors = false, video = false, lamp = false;
 };
 
@@ -72,7 +72,7 @@ struct PanelFacts {
   std::vector<std::string> missing;  // names of contents that cannot be shown yet
   ShownKind kind = ShownKind::kModel;
   bool flies = false;  // the ball moves the viewer
-  double rate_hz = 0;  // asked for
+  double rate_hz = 0;  // the requested frame rate
   bool rate_by_hand = false;
   std::uint32_t detail = 0;       // budget of moving frames, in detail_unit
   std::uint32_t full_detail = 0;  // cost of full detail; 0: not known
@@ -93,22 +93,24 @@ struct PanelFacts {
 enum class Acts : std::uint8_t { kClick, kStep, kMotion };
 
 Acts actsOf(ControlId id) noexcept;
-// What stands on its button. `by_ball`: the ball works the panel.
+// Returns the text on a control's button. `by_ball`: the ball operates the panel.
 std::string_view labelOf(ControlId id, const PanelFacts& facts, bool by_ball) noexcept;
 
-// The command that a control gives now; nothing if there is nothing to do, or if it moves.
+// Returns the command that a control gives now; nothing if there is nothing to do, or if the
+// control is for motion.
 std::optional<Request> requestOf(ControlId id, const PanelFacts& facts,
                                  const PanelOptions& options);
-// Whether its button is drawn as one that is switched on.
+// Whether a control's button is drawn as switched on.
 bool isLit(ControlId id, const PanelFacts& facts, bool by_ball) noexcept;
 
 // Speed of what a control moves while it is held.
 struct Motion {
-  std::array<float, 3> way_radii_s{};  // to the right, up, nearer; times the content's radius
+  std::array<float, 3> way_radii_s{};  // to the right, up, nearer; in radii of the content
   std::array<float, 3> turn_rad_s{};   // about these axes
 };
-// A model is turned, a picture shifted, a panorama looked around in; the arrows on the buttons say
-// where the content goes, or the view of a panorama. Nothing moves for a control of another kind.
+// A model is rotated, a picture is shifted, and in a panorama the view turns. The arrows on the
+// buttons point where the content moves, or where the view of a panorama turns. Zero for controls
+// that are not for motion.
 Motion motionOf(ControlId id, ShownKind kind) noexcept;
 
 }  // namespace merlin::render::panel

@@ -29,21 +29,23 @@ class PanelInput {
   // The pointer has left the tile, or does not exist any more.
   void leave();
 
-  // The ball begins, or ends, to work the panel. It begins at kFirst, wherever it was the last
-  // time. A button that is pressed now, and a push, do nothing until they are let go.
+  // Called when the ball begins, or ceases, to operate the panel. The selection begins at kFirst,
+  // wherever it was the last time. A button or a push that is held at that moment has no effect
+  // until it is released.
   void enterByBall(Timestamp now);
   void leaveByBall();
-  // To be called once a frame while the ball works the panel.
+  // To be called once a frame while the ball operates the panel.
   void ball(const BallPush& push, Timestamp now);
 
-  // To be called once a frame: what is held acts again. A pointer whose press was not heard of for
-  // kForgotten is let go; a ball that was not used for kIdle leaves.
+  // To be called once a frame: what is held acts again. A pointer's press that was not reported for
+  // kForgotten counts as released; a ball that was not used for kIdle ceases to operate the panel.
   void update(Timestamp now);
 
-  // Controls that act now, in their order: each once. Motions are not among them.
+  // Returns the controls that have acted since the last call, in order: at most 16, later ones are
+  // lost. Motions are not among them.
   std::vector<ControlId> takeActs();
 
-  // What is drawn.
+  // The state that is drawn.
   bool byBall() const noexcept { return by_ball_; }
   std::optional<ControlId> hovered() const noexcept { return hovered_; }
   std::optional<ControlId> selected() const noexcept;  // by the ball
@@ -64,7 +66,7 @@ class PanelInput {
  private:
   struct Press {
     ControlId id;
-    Timestamp heard;       // when the pointer was heard of last
+    Timestamp heard;       // when the press was reported last
     Timestamp next_act{};  // kStep: when it acts again
   };
   void begin(std::optional<Press>& press, ControlId id, Timestamp now);

@@ -118,7 +118,7 @@ const Button* buttonAt(const PanelLayout& layout, Point in_tile) noexcept {
   return nullptr;
 }
 
-// To the sides within the row; up and down to the next row, there the nearest one.
+// Returns the next button: sideways in the same row; up or down, the nearest one in the next row.
 ControlId neighbourOf(const PanelLayout& layout, ControlId from, int right, int down) noexcept {
   const Button* const start = layout.find(from);
   if (!start) return layout.buttons.empty() ? from : layout.buttons.front().id;

@@ -35,8 +35,9 @@ struct PanelLayout {
   const Button* find(ControlId id) const noexcept;
 };
 
-// For a tile of this size, whose text is `em_px` high: at its right edge, in the middle of its
-// height. Nothing if the tile is smaller than 320 x 240 pixels. The layout depends on nothing else.
+// Lays out the panel for a tile of this size, whose text is `em_px` high: at the tile's right edge,
+// in the middle of its height. Nothing if the tile is smaller than 320 x 240 pixels. The layout
+// depends on nothing else.
 std::optional<PanelLayout> layOutPanel(int tile_width_px, int tile_height_px, int em_px,
                                        const PanelOptions& options);
 

@@ -44,8 +44,8 @@ class PanelOverlay final : public frame::Overlay {
                                                     PanelSource& source);
 
   bool hasChanged() const override;
-  // Draws the panel anew if its view is another one; otherwise it costs the blending of the panel's
-  // pixels, and erase() a copy of them.
+  // Redraws the panel if its view has changed; otherwise it costs the blending of the panel's
+  // pixels. erase() costs a copy of them.
   void draw(std::span<std::uint8_t> canvas) override;
   void erase(std::span<std::uint8_t> canvas) override { cover_.erase(canvas); }
 

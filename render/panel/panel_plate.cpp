@@ -140,7 +140,7 @@ text::Plate drawPanel(const PanelView& view, const PanelLayout& layout, const Pa
   surface.fill({0, all.height - 1, all.width, 1}, kEdge);
   const Painter painter(view, options, fonts, surface);
   for (const Field& field : layout.fields) painter.field(field);
-  // The selected one last, since its frame is larger than its button.
+  // Draws the selected button last, since its frame is larger than the button.
   for (const bool selected : {false, true}) {
     for (const Button& button : layout.buttons) {
       if ((view.selected == button.id) == selected) painter.button(button);

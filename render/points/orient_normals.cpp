@@ -47,14 +47,16 @@ class Orientation {
     return step;
   }
 
-  // The cosine between the normal at b and the one at a, turned as along an arc of a circle to b:
-  // reflected at the plane between them. So an edge sharper than a right angle is passed as well.
+  // Returns the cosine between the normal at b and the normal at a after this was turned to b as
+  // along an arc of a circle, that is, reflected at the plane between a and b. So it is also right
+  // at an edge sharper than a right angle.
   double agreement(std::uint32_t a, std::uint32_t b) const {
     const Vector na = normalOf(a), nb = normalOf(b), d = directionTo(a, b);
     return dotOf(na, nb) - 2 * dotOf(na, d) * dotOf(nb, d);
   }
 
-  // Edges that leave the surface, as through a thin part, are the last to be taken.
+  // Makes edges that leave the surface, as through a thin part, expensive, so that they are taken
+  // last.
   float costOf(std::uint32_t a, std::uint32_t b) const {
     const Vector d = directionTo(a, b);
     const double out = std::max(std::abs(dotOf(normalOf(a), d)), std::abs(dotOf(normalOf(b), d)));
@@ -89,7 +91,7 @@ class Orientation {
     return edges;
   }
 
-  // Of each tree.
+  // Returns the highest point of each tree.
   std::vector<std::uint32_t> highestPoints() {
     constexpr std::uint32_t kNone = ~0U;
     std::vector<std::uint32_t> highest(tree_.size(), kNone);

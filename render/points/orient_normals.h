@@ -1,4 +1,4 @@
-// Turns the normals of points alike along the surface that they lie on. Pure.
+// Orients the normals of points consistently along the surface on which they lie. Pure.
 #pragma once
 
 #include <cstddef>
@@ -7,16 +7,16 @@
 
 namespace merlin::render::points {
 
-// Turns each normal or leaves it, so that those of neighbours agree: from point to point along the
-// minimum spanning forest of the graph of neighbours ([HOPPE92] section 3.3; README.md has what we
-// compare and which edges are cheap). In each tree the normal of the highest point (z) faces
-// upwards.
+// Reverses some of the normals such that those of neighbours agree. Goes from point to point along
+// the minimum spanning forest of the graph of neighbours ([HOPPE92] section 3.3; README.md says
+// what is compared and which edges are cheap). In each tree the normal of the highest point (z)
+// faces upwards.
 //
 // positions   points x 3
 // neighbours  points x k indices; the point itself may be among them
 // normals     points x 3, of length 1
-// returns     the number of trees: parts of the graph
-// cost        O(points k log(points k)); 12 bytes for each of points x k, and 30 a point
+// returns     the number of trees, i.e. of connected parts of the graph
+// cost        O(points k log(points k)); 12 k + 30 bytes per point
 std::size_t orientAlike(std::span<const float> positions, std::span<const std::uint32_t> neighbours,
                         std::size_t k, std::span<double> normals);
 

@@ -20,19 +20,20 @@ inline constexpr Cell kAcrossBd = 1, kFirst = 2, kSecond = 4;
 inline constexpr Corner kTriangles[2][2][3] = {{{kA, kD, kC}, {kA, kC, kB}},
                                                {{kA, kD, kB}, {kB, kD, kC}}};
 
-// How the cells around a pixel meet there. Clockwise from the top right: in cell 0 the pixel is
-// corner d, in cell 1 a, in cell 2 b, in cell 3 c. Between two successive cells lies an edge of the
-// grid. `sides` has two bits a cell: its triangles at the pixel use the edge before it (1), after
-// it (2). The triangles of one cell at one pixel are always connected.
+// How the triangles of the four cells around a pixel are connected there. The cells are numbered
+// clockwise from the top right: the pixel is corner d of cell 0, a of cell 1, b of cell 2 and c of
+// cell 3. Two successive cells share an edge of the grid. `sides` has two bits per cell: a triangle
+// of the cell at the pixel uses the edge before the cell (1), or the edge after it (2). The
+// triangles of one cell at one pixel are always connected.
 struct Fans {
   std::uint8_t count = 0;    // fans of triangles at the pixel, 0 to 4
-  std::uint8_t of_cell = 0;  // two bits a cell: its fan
+  std::uint8_t of_cell = 0;  // two bits per cell: the index of its fan
 };
 inline constexpr std::uint8_t kClosed = 0xFF;  // `sides` of a pixel inside the surface
 inline constexpr Corner kRing[4] = {kD, kA, kB, kC};
 
 constexpr std::uint8_t sidesAt(Corner corner, Cell cell) {
-  // By diagonal and triangle, for each corner: the edges that the triangle uses.
+  // [corner][diagonal][triangle]: bits of the edges that the triangle uses.
   constexpr std::uint8_t kSides[4][2][2] = {{{2, 1}, {3, 0}},   // a: b before, d after
                                             {{0, 3}, {2, 1}},   // b: c before, a after
                                             {{1, 2}, {0, 3}},   // c: d before, b after

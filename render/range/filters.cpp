@@ -16,8 +16,9 @@ void order(float& a, float& b) {
   a = low;
 }
 
-// The median of nine, by an odd-even sort of which only what the middle needs is done: columns,
-// then the largest of the low ones, the median of the middle ones, the smallest of the high ones.
+// Returns the median of nine by an odd-even sort that does only what this needs: it sorts the
+// columns, then finds the largest low one, the median of the middle ones, and the smallest high
+// one.
 float medianOfNine(std::array<float, 9> v) {
   for (std::size_t i = 0; i < 9; i += 3) {
     order(v[i + 1], v[i + 2]);
@@ -40,7 +41,7 @@ std::vector<float> copyOf(const std::vector<float>& ranges) {
   return copy;
 }
 
-// Pixels around one, with the columns of a full turn joined.
+// The pixels around a pixel; in a full turn, the first and the last column are neighbours.
 class Neighbourhood {
  public:
   Neighbourhood(const RangeImage& image, const std::vector<float>& ranges)
@@ -53,7 +54,7 @@ class Neighbourhood {
   bool isInside(std::ptrdiff_t row, std::ptrdiff_t column, std::ptrdiff_t reach) const {
     return row >= reach && column >= reach && row + reach < height_ && column + reach < width_;
   }
-  // NaN outside the image.
+  // Returns NaN outside the image.
   float at(std::ptrdiff_t row, std::ptrdiff_t column) const {
     if (row < 0 || row >= height_) return kNoReturn;
     if (wraps_) column = (column + width_) % width_;
@@ -85,7 +86,7 @@ float medianAt(const Neighbourhood& around, std::ptrdiff_t row, std::ptrdiff_t c
   return *middle;
 }
 
-// The nine pixels around one, row by row; whether all are returns.
+// Sets `nine` to the 3 x 3 pixels around a pixel, row by row; returns whether all are returns.
 bool nineAt(const Neighbourhood& around, std::ptrdiff_t row, std::ptrdiff_t column,
             std::array<float, 9>& nine) {
   const float* p = around.pixel(row - 1, column - 1);
@@ -96,7 +97,7 @@ bool nineAt(const Neighbourhood& around, std::ptrdiff_t row, std::ptrdiff_t colu
   return isReturn(sum);
 }
 
-// The number of neighbours, at most two of them counted, that agree with a pixel.
+// Counts the neighbours that agree with a pixel, up to two.
 int agreeing(const Neighbourhood& around, std::ptrdiff_t row, std::ptrdiff_t column,
              const Threshold& limit) {
   const float range = *around.pixel(row, column);

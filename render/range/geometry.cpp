@@ -22,8 +22,8 @@ struct SinCos {
   double sin = 0, cos = 1;
 };
 
-// The rays of all pixels, by tables of the columns and of the rows. The point of a pixel is its ray
-// times its range, in the scanner's coordinates.
+// The rays of all pixels, computed from tables of the columns and of the rows. A pixel's point is
+// its ray times its range, in the scanner's coordinates.
 class RayTable {
  public:
   explicit RayTable(const RangeImage& image) : image_(image) {
@@ -60,7 +60,7 @@ class RayTable {
  private:
   static SinCos ofAngle(double angle_rad) { return {std::sin(angle_rad), std::cos(angle_rad)}; }
 
-  // Of pixel `i` of `n` along an axis. Rows count downwards, angles upwards.
+  // Returns the entry of pixel `i` of `n` along an axis. Rows count downwards, angles upwards.
   SinCos entry(std::size_t i, std::size_t n, bool horizontal) const {
     const Geometry& g = image_.geometry;
     const double angle = horizontal ? g.horizontal_rad : g.vertical_rad;
@@ -151,7 +151,7 @@ std::string poseFault(const Pose& pose) {
   return off < 1e-3 ? "" : "the camera transform is not a rotation and a translation";
 }
 
-// A point's coordinates to the world's.
+// Transforms a point to world coordinates.
 void place(const Pose& pose, const Vector& p, float* out) {
   for (std::size_t k = 0; k < 3; ++k) {
     const double* row = &pose[4 * k];

@@ -1,4 +1,4 @@
-// Geometry of range images: points from ranges.
+// Geometry of range images: computes points from ranges.
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,25 @@
 
 namespace merlin::render::range {
 
-// A fault of the image's geometry as a sentence that says what is missing or wrong and how to give
-// it; empty if points can be made.
+// Returns a sentence that says what is missing or wrong in the image's geometry and how to supply
+// it; empty if points can be computed.
 std::string faultOf(const RangeImage& image);
 
 // The points of the image in world coordinates: pixels x 3, NaN where there is no return.
 // O(pixels). REQUIRES: faultOf(image) is empty.
 std::vector<float> pointsOf(const RangeImage& image, const Work& work);
 
-// Rows at equal steps of altitude over an angle, the top one first, for a spinning scanner.
+// Returns the beams of a spinning scanner whose rows have equal steps of altitude: the top row
+// first, from vertical_rad / 2 above the horizon to as much below it.
 std::vector<Beam> evenBeams(double vertical_rad, std::size_t rows);
 
-// Typical angle between the rays of neighbouring pixels, the larger one of those along rows and
-// those along columns: medians of up to 4096 pairs each [rad]; 0 for kElevation, or if no two rays
-// are neighbours. O(1). REQUIRES: faultOf(image) is empty.
+// Returns the typical angle between the rays of neighbouring pixels [rad]: the larger one of the
+// medians along rows and along columns, of up to 4096 pairs each; 0 for kElevation, or if no two
+// neighbouring pixels have rays. O(1). REQUIRES: faultOf(image) is empty.
 double stepOf(const RangeImage& image);
 
-// kRays only: whether the columns run to the left as the scanner sees it, so that triangles need
-// the other order to face it. O(pixels).
+// For kRays only: whether the columns run from right to left as the scanner sees them; triangles
+// then need the reverse order of corners to face the scanner. O(pixels).
 bool isMirrored(const RangeImage& image);
 
 }  // namespace merlin::render::range

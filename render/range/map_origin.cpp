@@ -26,7 +26,8 @@ double numberBehindName(std::string_view text) {
   return readNumber(trimmed(text.substr(0, text.find_first_of(",]"))), number) ? number : 0;
 }
 
-// Metres of a unit of projected coordinates in WKT, in lower case; 0 if it does not say.
+// Returns the metres in the unit of projected coordinates in WKT, in lower case; 0 if it is not
+// given.
 double metresInWkt(std::string_view text) {
   int depth = 0;
   bool quoted = false;
@@ -42,7 +43,7 @@ double metresInWkt(std::string_view text) {
   return 0;
 }
 
-// "Projection UTM Zone 33 Units METERS", in lower case.
+// Whether words such as "projection utm zone 33 units meters", in lower case, name metres.
 bool saysMetres(std::string_view words) {
   for (std::string_view word = takeWord(words); !word.empty(); word = takeWord(words)) {
     if (word != "units") continue;

@@ -1,4 +1,4 @@
-// Where an elevation map lies, in the coordinates of the mesh that is made of it. Pure.
+// Converts the origin of an elevation map to that of the mesh that is made from the map. Pure.
 #pragma once
 
 #include <string_view>
@@ -8,13 +8,13 @@
 
 namespace merlin::render::range {
 
-// Whether a projection's coordinates are metres: WKT with a length of 1 m, or ArcInfo's words
-// "Units METERS". False for degrees, feet, and names alone ("EPSG:32633").
+// Whether a projection's coordinates are metres: WKT whose unit of length is 1 m, or ArcInfo's text
+// "Units METERS". False for degrees, feet, and mere names ("EPSG:32633").
 bool isInMetres(std::string_view projection);
 
-// The map's origin as that of the mesh, at height 0, where both are in one unit: the projection is
-// in metres, or there is none and the coordinates are too large for degrees. Otherwise 0 0 0, also
-// for whatever is no elevation map.
+// Returns the map's origin as the origin of the mesh, with height 0, if both have the same unit:
+// the projection is in metres, or there is none and the coordinates are too large for degrees.
+// Otherwise 0 0 0, also for a geometry that is not an elevation map.
 mesh::Origin mapOrigin(const Geometry& geometry);
 
 }  // namespace merlin::render::range

@@ -1,5 +1,5 @@
 // RangeImage: distances, depths or heights on a grid of pixels, with registered images of other
-// modalities, and the geometry that makes points of them.
+// modalities, and the geometry that converts them to points.
 #pragma once
 
 #include <array>
@@ -36,15 +36,15 @@ inline constexpr Pose kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 struct Geometry {
   Scanner scanner = Scanner::kOrthogonal;
   // kOrthogonal: angle from the first to the last pixel. kPinhole: field of view, from edge to
-  // edge. kSpinning: `horizontal_rad` alone, the turn that all columns divide.
+  // edge. kSpinning: only `horizontal_rad`, the angle over which all columns are spread.
   double horizontal_rad = 0, vertical_rad = 0;
   std::vector<Beam> beams{};      // kSpinning: one per row, the top one first
   double cell_x = 1, cell_y = 1;  // kElevation: distance of columns and of rows [units]
   double exaggeration = 1;        // kElevation: factor of the heights
   std::vector<float> rays{};      // kRays: pixels x 3, unit vectors, NaN where there is no return
   Pose T_world_scanner = kIdentity;  // kElevation: unused
-  // kElevation: the projection as text (WKT), empty: unknown; and, in its own units, where the
-  // point (0, 0) of the mesh lies, the middle of the lower left pixel.
+  // kElevation: the projection as text (WKT), empty: unknown; and the coordinates, in units of the
+  // projection, of the middle of the lower left pixel, which is the point (0, 0) of the mesh.
   std::string projection{};
   std::optional<std::array<double, 2>> origin{};
 };
@@ -65,10 +65,10 @@ struct RangeImage {
   std::vector<Plane> planes{};
 
   std::size_t pixels() const noexcept { return width * height; }
-  bool join_ends = true;  // false: a full turn has a seam, as a texture needs it
+  bool join_ends = true;  // false: a full turn has a seam, which a texture needs
   std::string unit{};     // of the ranges, "m"; empty: not known
 
-  // Whether the last column's neighbour is the first: a spinning scanner's full turn.
+  // Whether the last and the first column are neighbours: a full turn of a spinning scanner.
   bool wraps() const noexcept {
     return join_ends && geometry.scanner == Scanner::kSpinning && width > 2 &&
            std::abs(geometry.horizontal_rad - 2 * std::numbers::pi) < 1e-6;
@@ -82,9 +82,9 @@ struct RangeImage {
 };
 
 inline constexpr float kNoReturn = std::numeric_limits<float>::quiet_NaN();
-// Ranges and heights beyond this, in either direction, are no return [units].
+// Ranges and heights whose magnitude is above this count as no return [units].
 inline constexpr float kFarthest = 1e9F;
-// Most pixels of an image, so that four vertices for each have 32-bit indices.
+// Maximum number of pixels of an image, so that 32-bit indices suffice for four vertices per pixel.
 inline constexpr std::size_t kMostPixels = std::size_t{1} << 28;
 
 inline bool isReturn(float range) noexcept { return range == range; }  // not NaN

@@ -51,7 +51,7 @@ class Triangulation {
   bool isAllowed(std::size_t p, std::size_t q, float squared) const {
     return squared <= std::min(squared_limits_[p], squared_limits_[q]);  // false for NaN
   }
-  // The edges of triangles at the pixel, cells.h.
+  // Returns the edges of triangles at the pixel, as bits: see cells.h.
   std::uint8_t sidesOf(std::size_t row, std::size_t column) const;
   std::uint32_t vertex(std::size_t pixel, Corner corner) const {
     const unsigned in_ring = corner == kD ? 0U : corner + 1U;
@@ -210,8 +210,8 @@ void Triangulation::fillTriangles(const Work& work) {
   forRows(work, image_.height - 1, [&](std::size_t row) { fillRow(row); });
 }
 
-// Even rows of cells first, then odd ones: two rows of the same kind share no vertex, so that each
-// vertex gets its normals in one order on any number of threads.
+// Adds even rows of cells first, then odd ones: two rows of the same kind share no vertex, so that
+// each vertex sums its normals in the same order with any number of threads.
 void Triangulation::fillNormals(const Work& work) {
   mesh::Mesh& mesh = result_.mesh;
   std::vector<float> normals;

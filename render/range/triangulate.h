@@ -14,22 +14,23 @@ namespace merlin::render::range {
 
 struct RangeMesh {
   mesh::Mesh mesh;                    // with "normal" and the planes as features, in their order
-  std::vector<std::uint32_t> pixels;  // of each vertex: row x width + column
-  std::vector<std::uint8_t> on_boundary;  // of each vertex: 1 if it is on a border of the surface
+  std::vector<std::uint32_t> pixels;  // by vertex: its pixel, row x width + column
+  std::vector<std::uint8_t> on_boundary;  // by vertex: 1 if it is on a border of the surface
   std::size_t returns = 0;                // pixels with a return
-  std::size_t unused = 0;                 // of these, in no triangle
+  std::size_t unused = 0;                 // pixels with a return, but in no triangle
   std::size_t split = 0;                  // vertices added where surfaces touch in one point only
-  std::size_t not_numbers = 0;            // values of planes that were not finite; 0 stands there
+  std::size_t not_numbers = 0;            // values of planes that were not finite and became 0
 };
 
-// In each cell the shorter diagonal with two returns is taken; it and the sides form triangles of
-// which every edge is at most as long as `max_edge` allows at the smaller range of its ends
-// ([GOURLEY98] A.6 and [TURK94]). Triangles are counter-clockwise as the scanner sees them; their
-// order is that of the cells, row by row.
+// In each cell the shorter one of the diagonals that have a return at both ends is taken. This
+// diagonal and the cell's sides form up to two triangles; a triangle is kept if each of its edges
+// is at most as long as `max_edge` allows at the smaller range of the edge's ends ([GOURLEY98] A.6
+// and [TURK94]). Triangles are counter-clockwise as the scanner sees them; their order is that of
+// the cells, row by row.
 //
-// A pixel whose triangles form several fans becomes a vertex for each, so the mesh is what
-// splitNonManifold() would leave; validate() and tidy() find nothing in it. Normals: the mean of
-// the unit face normals ([GOURLEY98] 4.1), as mesh::vertexNormals() has them.
+// A pixel whose triangles form several fans becomes one vertex per fan, so that the mesh is as
+// splitNonManifold() would leave it; validate() and tidy() find nothing to report or remove.
+// Normals: the mean of the unit face normals ([GOURLEY98] 4.1), as in mesh::vertexNormals().
 //
 // points  pointsOf(image)
 // cost    O(pixels), about 100 bytes a pixel with the mesh

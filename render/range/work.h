@@ -1,4 +1,4 @@
-// Work: on how many threads a step runs, and whom it tells how far it is.
+// Work: the number of threads of a processing step, and the callback for its progress.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@ struct Work {
   std::function<void(double)> progress{};
 };
 
-// The work of a part of a step, from one share of it to another.
+// Returns the work for a part of a step; its progress runs from the share `from` to the share `to`
+// of the step.
 inline Work partOf(const Work& work, double from, double to) {
   if (!work.progress) return work;
   return {work.threads, [progress = work.progress, from, to](double share) {

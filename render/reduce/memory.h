@@ -29,7 +29,7 @@ struct JobNeed {
 JobNeed needOfJob(const mesh::MeshSize& size, std::size_t file_size,
                   const ReduceSettings& settings);
 
-// Memory of a program and of its file buffers, beside its data [bytes].
+// Memory of a program and of its file buffers, in addition to its data [bytes].
 inline constexpr std::size_t kProgramBytes = std::size_t{32} << 20;
 
 // Returns in how many blocks to reduce the mesh so that settings.memory suffices; 1: as a whole.

@@ -22,8 +22,9 @@ using Weights = std::map<std::string, float, std::less<>>;
 inline constexpr float kMostWeight = 1e6F;  // above it, rounding loses the geometry
 
 // Weights from [GOURLEY98] chapter 5, for the cost pattern. The typical weights (figure 5.2)
-// include none for colour; we use that of geometry. For the segmented data and for Coleman's data
-// we infer that the third weight belongs to the label and to the confidence.
+// include none for colour; we give colour the weight of geometry. For the segmented data and for
+// Coleman's data we infer that the third weight belongs to the label and to the confidence,
+// respectively.
 struct Preset {
   const char* name;
   float geometry, normal;

@@ -29,10 +29,11 @@ struct ReduceSettings {
   // Keep at least one triangle of every connected component as long as any other triangle can be
   // removed. If false, components smaller than the error are removed as well.
   bool preserve_components = false;
-  // Only quadric. One entry per vertex of the mesh: true keeps the vertex where it is as long as
-  // any other collapse is allowed. If not empty, vertices on seams are kept as well. Empty: none.
+  // Only for the cost quadric. One entry per vertex of the mesh: true keeps the vertex where it is
+  // as long as any other collapse is allowed. If not empty, vertices on seams are kept as well.
+  // Empty: no vertex is locked.
   std::vector<bool> locked{};
-  bool fast = false;     // only quadric: 10 to 33 % less time, about 6 % larger RMS error
+  bool fast = false;     // only for quadric: 10 to 33 % less time, about 6 % larger RMS error
   unsigned threads = 0;  // 0: one per hardware thread; the result does not depend on it
   // Memory limit in bytes, without the mesh but with the log; 0: no limit. If it is too low for the
   // mesh as a whole, `quadric` reduces it in blocks (memory.h); the result then depends on the
@@ -55,8 +56,8 @@ struct ReduceProgress {
 
 struct ReduceReport {
   std::size_t collapses = 0;
-  // Refused collapses; an edge counts each time. Flips: a face would turn over. Topology: mostly
-  // the link condition, also labels, components and large stars.
+  // Refused collapses; an edge counts each time that it is refused. Flips: a face would turn over.
+  // Topology: mostly the link condition, but also labels, components and large stars.
   std::size_t flips_refused = 0;
   std::size_t topology_refused = 0;
   std::size_t triangles = 0;     // left

@@ -93,7 +93,7 @@ std::vector<PanelSettings> panelsOf(const RoomPresetSettings& p) {
   return panels;
 }
 
-// The part of a length that the i-th of `count` equal pictures covers, of which neighbours overlap.
+// The part of a length that the i-th of `count` equal, overlapping pictures covers.
 struct Stretch {
   double begin, length;
 };

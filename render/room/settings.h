@@ -76,7 +76,7 @@ struct DisplaySettings {
   // and what would be seen there stays hidden, as behind a window frame [m].
   std::array<double, 4> bezel_m{};
   tiles::TileCamera view = tiles::TileCamera::kWall;  // whose view it shows
-  tiles::FreeCamera camera{};                         // of view kFree
+  tiles::FreeCamera camera{};                         // if view is kFree
 
   bool operator==(const DisplaySettings&) const = default;
 };

@@ -1,5 +1,5 @@
-// Modalities: which features of a scanned mesh become planes of the range image, and their values.
-// Private to render/scan.
+// Modalities: decides which features of a scanned mesh become planes of the range image, and
+// computes their values. Private to render/scan.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace merlin::render::scan {
 
-// The place of the surface that a pixel shows.
+// The point of the surface that a pixel shows.
 struct Place {
   std::uint32_t triangle = 0;
   std::array<double, 3> barycentric{};  // of its corners
@@ -21,10 +21,10 @@ struct Place {
 
 class Modalities {
  public:
-  // Adds the planes to the image, all of their values 0. Borrows both.
+  // Adds the planes to the image, with all values 0. Keeps references to both arguments.
   Modalities(const Scene& scene, range::RangeImage& image);
 
-  // Sets a pixel of each plane. May be called for several pixels at once.
+  // Sets a pixel of each plane. Several threads may call it at once, for different pixels.
   void set(std::size_t pixel, const Place& place);
 
   const std::vector<std::string>& leftOut() const noexcept { return left_out_; }
@@ -43,7 +43,7 @@ class Modalities {
 
   const Scene& scene_;
   range::RangeImage& image_;
-  std::vector<Source> sources_;  // of the image's planes
+  std::vector<Source> sources_;  // one per plane of the image
   std::vector<std::string> left_out_;
 };
 

@@ -1,4 +1,4 @@
-// Where a scanner stands: its pose from a few numbers.
+// Computes the pose of a scanner from a few parameters.
 #pragma once
 
 #include <array>
@@ -10,13 +10,15 @@ namespace merlin::render::scan {
 
 using Point = std::array<double, 3>;  // world coordinates [units]
 
-// At `from`, looking towards `at`, with the y axis upwards in the image; where it looks along that
-// axis, the negative z axis. REQUIRES: from != at, finite.
+// Returns the pose of a scanner at `from` that looks towards `at`. The world's y axis points
+// upwards in the image; if the scanner looks along the y axis, the negative z axis does. REQUIRES:
+// from != at, finite.
 range::Pose lookAt(const Point& from, const Point& at);
 
-// So that the sphere around the box just fits into the smaller one of the geometry's angles, with
-// the box's centre in the middle. The angles turn the box as those of `merlin mesh picture` do:
-// first by the pitch about the horizontal axis, then by the yaw about the vertical axis.
+// Returns the pose from which the sphere around the box just fits into the smaller one of the
+// geometry's angles, with the box's centre in the middle of the image. `yaw_rad` and `pitch_rad`
+// turn the box as in `merlin mesh picture`: first by the pitch about the horizontal axis, then by
+// the yaw about the vertical axis.
 range::Pose around(const mesh::Box& box, double yaw_rad, double pitch_rad,
                    const range::Geometry& geometry);
 

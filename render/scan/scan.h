@@ -1,5 +1,5 @@
-// Simulated scanner: the range image that a scanner would take of a mesh, by casting a ray for each
-// pixel, with the modalities that the mesh carries.
+// Simulated scanner: computes the range image that a scanner would take of a mesh, by casting a ray
+// for each pixel, and images of the modalities that the mesh has.
 #pragma once
 
 #include <cstddef>
@@ -28,26 +28,26 @@ struct ScanSettings {
   range::Geometry geometry{};                        // kOrthogonal, kSpinning or kPinhole
   double noise = 0;                                  // standard deviation of the ranges [units]
   double drop_outs = 0;                              // share of the returns that are lost, 0..1
-  double most_incidence_rad = std::numbers::pi / 2;  // surfaces that are more oblique do not return
+  double most_incidence_rad = std::numbers::pi / 2;  // more oblique surfaces give no return
   std::uint64_t seed = 1;                            // of noise and drop-outs
 };
 
 struct Scan {
-  // Ranges, and one plane per modality, 0 where there is no return: "colour" (of the texture, else
-  // of the vertices); the vertices' other features of one value, interpolated, but for "label" and
-  // "part" those of the nearest corner; "confidence", the cosine of the angle of incidence, 0..1.
+  // Ranges, and one plane per modality, 0 where there is no return: "colour" (from the texture,
+  // else from the vertices); the vertices' other features of dimension 1 (interpolated, but "label"
+  // and "part" from the nearest corner); "confidence", the cosine of the angle of incidence, 0..1.
   range::RangeImage image;
   std::size_t met = 0;                // rays that met the mesh
-  std::size_t oblique = 0, lost = 0;  // of these without a return: by most_incidence_rad, drop_outs
-  std::vector<std::string> left_out;  // features of the mesh that became no plane, but for the
-                                      // normals and the texture coordinates
+  std::size_t oblique = 0, lost = 0;  // of these, no return by most_incidence_rad, by drop_outs
+  std::vector<std::string> left_out;  // features of the mesh that did not become planes, except
+                                      // normals and texture coordinates
 };
 
 // Scans the mesh, whose triangles are opaque from both sides.
 //
-// A range is that of the triangle itself, rounded to float, with normally distributed noise along
-// the ray; of kPinhole along its depth. Noise that makes a range 0 or less is a lost return.
-// errors  kInvalidArgument: faultOf() the image; kMalformed: no ray meets the mesh.
+// A range is the exact one of the triangle, rounded to float, plus normally distributed noise along
+// the ray (for kPinhole along the depth). If noise makes a range 0 or less, the return is lost.
+// errors  kInvalidArgument: faultOf() finds a fault; kMalformed: no ray meets the mesh.
 // order   each pixel has random numbers of its own: the same seed gives the same image, whatever
 //         the number of threads
 // cost    O((triangles + pixels) log triangles) time; 110 bytes a triangle, and per pixel 16 bytes

@@ -33,9 +33,9 @@ class Navigator {
   virtual void push(Poses& poses, const Push& push, BallMode mode) const = 0;
   // Moves the viewer by `way_m`; called in each frame in which a hand steers the flight.
   virtual void fly(Poses& poses, const Eigen::Vector3f& way_m) const = 0;
-  // Turns what nobody touches, for show: an object about the viewer's vertical axis, its front to
-  // the right; the view of a panorama to the right. Returns false, and moves nothing, if the
-  // content stands still for show: a plane does, like a picture in a gallery.
+  // Turns the content while nobody touches it, as a demonstration: an object rotates about the
+  // viewer's vertical axis, its front to the right; in a panorama the view turns to the right.
+  // Returns false, and moves nothing, if the content is demonstrated at rest, as a plane is.
   virtual bool turn(Poses& poses, float angle_rad) const = 0;
   // Moves a content that is grabbed: the hand was at `hand_then` and the poses were `grabbed` when
   // the grab began; the hand is at `hand` now.
@@ -66,7 +66,7 @@ class ObjectNavigator final : public Navigator {
 // moves the plane.
 class PlaneNavigator final : public Navigator {
  public:
-  // `nearest`: the nearest distance, as a multiple of the initial one.
+  // `nearest`: the minimum distance, as a multiple of the initial one.
   explicit PlaneNavigator(const SceneSettings& settings, float nearest = kNearest);
   Poses start() const override;
   void push(Poses& poses, const Push& push, BallMode mode) const override;

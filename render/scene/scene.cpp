@@ -10,7 +10,7 @@ namespace merlin::render::scene {
 namespace {
 
 constexpr float kRadian = std::numbers::pi_v<float> / 180;
-// Time step of ball and flight at most, also after a frame that took longer.
+// Longest time step of ball and flight, also after a frame that took longer.
 constexpr float kLongestStep_s = 0.1F;
 constexpr float kMostShear = 1e-4F;
 // What a drag over the height of a picture does: it turns an object, or the view of a panorama, by
@@ -100,7 +100,7 @@ Result<Ok> Scene::configure(const SceneSettings& settings) {
   settings_ = settings;
   navigator_ = makeNavigator(navigation_, settings_, nearest_);
   R_wall_tracker_ = *axisMap(settings.tracker_axes);
-  // A hand begins anew, from where it is.
+  // A hand that grabs or flies starts again from where it is now.
   grab_hand_.reset();
   fly_hand_.reset();
   return Ok{};
@@ -175,8 +175,9 @@ bool Scene::moveByBall(const SceneInput& input, float seconds) {
   return true;
 }
 
-// A plane can't be turned: it is moved as far as a drag would that turns an object so much. So the
-// same drag and the same key do something for each content. Returns whether a step is requested.
+// A plane cannot be turned: instead it moves as far as with a drag that would turn an object by
+// this angle, so that the same drag or key has an effect on each content. Returns whether a step is
+// requested.
 bool Scene::moveByStep(const SceneInput& input) {
   if (input.step.way_m.isZero(0) && input.step.turn_rad.isZero(0)) return false;
   Push step = input.step;
@@ -204,14 +205,14 @@ bool Scene::moveByTouch(const TouchMotion& touch) {
   if (object && touch.fingers >= 2) push.turn_rad.z() = touch.turn_rad;
   const float away = object ? view_.T_eye_model.translation().norm()
                             : static_cast<float>(settings_.model_distance_m);
-  // A plane and a panorama take the way to their zoom by the exponential function themselves.
+  // Planes and panoramas themselves compute their zoom as an exponential function of the way.
   push.way_m.z() = object ? away * (1 - std::exp(-touch.spread)) : away * touch.spread;
   navigator_->push(poses_, push, BallMode::kObject);
   return true;
 }
 
-// As fast as a ball that is pushed half way; a key can't be pushed less. Returns whether anything
-// is held.
+// Moves as fast as a ball that is pushed half way, since a key cannot be pushed less or more.
+// Returns whether anything is held.
 bool Scene::moveByHeld(const HeldMotion& held, float seconds) {
   constexpr float kShare = 0.5F;  // of a full push
   constexpr float kNearerPerSecond = std::numbers::ln2_v<float>;
@@ -232,7 +233,7 @@ bool Scene::moveByHeld(const HeldMotion& held, float seconds) {
   return true;
 }
 
-// Returns whether the content is one that turns by itself, and shall turn.
+// Turns a content that can turn by itself, if a speed is set. Returns whether it turned.
 bool Scene::turnByItself(const SceneInput& input, float seconds) {
   return input.turn_rad_s != 0 && navigator_->turn(poses_, input.turn_rad_s * seconds);
 }

@@ -20,8 +20,8 @@
 
 namespace merlin::render::scene {
 
-// What keys, buttons and postures move as long as they are held: each -1, 0 or 1. A model turns as
-// named; in a panorama and in the mode fly the view does.
+// Motion by keys, buttons and postures while they are held; each value is -1, 0 or 1. The turns are
+// those of a model; in a panorama and in the mode fly they are those of the view.
 struct HeldMotion {
   int right = 0, up = 0, nearer = 0;
   int turn_right = 0, turn_up = 0, roll_right = 0;
@@ -38,11 +38,11 @@ struct SceneInput {
   std::optional<TrackerSample> hand;
   bool grab = false, fly = false, point_at = false;  // held actions
   std::uint32_t reset_view = 0, next_mode = 0;  // how often each was requested since the last frame
-  TouchMotion touch;                            // of the fingers on a touch surface
+  TouchMotion touch;                            // motion of the fingers on a touch surface
   std::vector<TrackerSample> other_pointers;    // hands that point, besides `hand`
   HeldMotion held;
-  // Requested by the command move since the last frame: applied at once. A plane is moved by its
-  // rotation, too.
+  // Requested by the command move since the last frame, and applied at once. A plane cannot turn,
+  // so the rotation shifts it instead.
   Push step;
   float turn_rad_s = 0;  // speed at which the content turns by itself: see Navigator::turn()
 };
@@ -60,7 +60,7 @@ struct SceneView {
   BallMode mode = BallMode::kObject;
   bool grabbed = false;
   bool moving = false;  // an input exceeds its noise, or did so within the last still_after_s
-  std::vector<Pointed> others_pointed;  // by SceneInput::other_pointers
+  std::vector<Pointed> others_pointed;  // one per entry of SceneInput::other_pointers
   std::optional<Pointed> pointed;       // while a hand points; pointing does not count as motion
 };
 
@@ -82,13 +82,13 @@ class Scene {
   void reset();  // returns model and viewer to their initial poses; counts as motion
   void nextMode();
 
-  // Replaces the settings, from the next update() on; the poses stay. The initial view is that of
-  // the new settings. Errors: those of make(), and nothing is replaced.
+  // Replaces the settings, from the next update() on; the poses stay, and the initial view becomes
+  // that of the new settings. Errors: those of make(); nothing is replaced then.
   Result<Ok> configure(const SceneSettings& settings);
 
   // Sets how the content is moved from now on; initially kObject. If the kind of navigation
-  // changes, the view becomes the start view of the new kind, which counts as motion.
-  // `nearest`: of a plane, its nearest distance as a multiple of the initial one.
+  // changes, the view becomes the start view of the new kind, which counts as motion. `nearest`:
+  // minimum distance of a plane, as a multiple of the initial one.
   void setNavigation(content::Navigation navigation, float nearest = content::kNearestPlane);
 
  private:

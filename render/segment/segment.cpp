@@ -132,7 +132,8 @@ Queue neighbours(const mesh::Mesh& mesh, const Clusters& clusters) {
   return Queue({}, std::move(pairs));
 }
 
-// Merges neighbours until `keep` clusters are left, or none that are neighbours. Returns how many.
+// Merges neighbours until `keep` clusters are left, or no two are neighbours. Returns how many are
+// left.
 std::size_t mergeNeighbours(const mesh::Mesh& mesh, Clusters& clusters, std::size_t keep) {
   Queue queue = neighbours(mesh, clusters);
   std::size_t left = mesh.vertexCount();

@@ -26,9 +26,10 @@ struct Segmentation {
 // Default weights: normal 1, and colour 1 if the mesh has it.
 reduce::Weights segmentWeights(const mesh::Mesh& mesh);
 
-// Divides `mesh` into settings.segments segments, fewer if it has fewer vertices. Coincident
-// vertices (coincidentVertices()) are neighbours. If the mesh has more connected components than
-// that, the largest are kept and each of the others joins the one with the nearest mean. Errors:
+// Divides `mesh` into settings.segments segments, or fewer if it has fewer vertices. Coincident
+// vertices (coincidentVertices()) count as neighbours. If the mesh has more connected components
+// than that, the largest become segments and each of the others joins the one with the nearest
+// mean. Errors:
 // kInvalidArgument (0 segments; a weight that PatternSpace refuses; a weight of "boundary"). Time:
 // O(n log n); memory: 32 bytes per edge, and 8 per vertex and dimension of the pattern. Reentrant;
 // the same input gives the same labels. REQUIRES: validate(mesh), at least one vertex, and a

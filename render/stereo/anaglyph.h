@@ -1,4 +1,4 @@
-// Red and cyan: the two eyes' pictures in one. Pure.
+// Anaglyph: the two eyes' pictures in one, in red and cyan. Pure.
 #pragma once
 
 #include <cstdint>

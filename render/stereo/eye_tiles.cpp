@@ -22,7 +22,7 @@ std::string nameFor(tiles::Eye eye, const std::string& tile) {
   return fmt::format("{}.{}", tile, eye == tiles::Eye::kLeft ? 'L' : 'R');
 }
 
-// The rectangle at this distance that fills the tile's frustum.
+// Returns the rectangle at this distance that fills the tile's frustum.
 std::array<double, 9> screenAcross(const tiles::Tile& tile, double distance_m) {
   const Eigen::Matrix4d p = tile.projection.cast<double>();
   const Eigen::Matrix3d R_eye_view = tile.view.topLeftCorner<3, 3>().transpose().cast<double>();
@@ -47,7 +47,7 @@ Vector3d eyesDirection(const StereoSettings& stereo, const tiles::TilePlan& plan
   return Vector3d::UnitX();
 }
 
-// Every tile with a size of its own, and with a screen if it follows the wall.
+// Returns the tiles, each with a size of its own, and with a screen if it follows the wall.
 tiles::TilesSettings withScreens(const tiles::TilesSettings& tiles, const tiles::TilePlan& plan,
                                  double distance_m) {
   tiles::TilesSettings wall = tiles;
@@ -64,7 +64,7 @@ tiles::TilesSettings withScreens(const tiles::TilesSettings& tiles, const tiles:
   return wall;
 }
 
-// Where the pictures of the right eye are in the frame: as far from those of the left one.
+// Offset of the right eye's pictures from those of the left eye in the frame [px].
 struct SecondPart {
   int dx = 0, dy = 0;
 };
@@ -113,7 +113,7 @@ tiles::TilesSettings inPairs(const StereoSettings& stereo, tiles::TilesSettings 
   return wall;
 }
 
-// What an output shows where its settings say that it shows a tile that has become two.
+// Returns what an output shows in place of a configured tile, which may have become two.
 std::vector<out::PlacedTile> shown(const StereoSettings& stereo, const out::PlacedTile& placed,
                                    const tiles::TilesSettings& pairs) {
   const auto left = std::ranges::find(pairs.tiles, nameFor(tiles::Eye::kLeft, placed.tile),
@@ -132,7 +132,7 @@ std::vector<out::PlacedTile> shown(const StereoSettings& stereo, const out::Plac
   return {placed};
 }
 
-// An anaglyph of the whole frame is one of all its tiles.
+// Whether the output shows an anaglyph of the whole frame, which is one of all its tiles.
 bool showsAllTiles(const StereoSettings& stereo, const out::OutputSettings& output) {
   return stereo.mode == StereoMode::kAnaglyph && output.kind != out::OutputKind::kSharedMemory &&
          output.tiles.empty();
@@ -150,9 +150,10 @@ std::vector<out::PlacedTile> placedOn(const StereoSettings& stereo,
 // Where an output's tiles are in its signal, by the eye that they are for.
 struct PlacesByEye {
   std::vector<out::Rectangle> left, right;
-  bool of_both = false;  // a tile that is for both eyes
+  bool of_both = false;  // there is a tile for both eyes
 
-  // Whether the right eye's tiles are `by` from the left one's, whose half ends there.
+  // Whether the right eye's tiles are those of the left eye moved by `by`, and the left eye's tiles
+  // end where the right eye's half begins.
   bool areHalves(int width, int height, std::array<int, 2> by) const {
     if (left.size() != right.size() || width % 2 != 0 || height % 2 != 0) return false;
     const int right_end = by[0] > 0 ? by[0] : width, bottom_end = by[1] > 0 ? by[1] : height;

@@ -23,26 +23,26 @@ struct EyeTiles {
   std::vector<std::vector<std::size_t>> placed_from;
 };
 
-// The wall as it is drawn. Without stereo and without a head station, tiles and outputs are what
-// they were. With either, each tile that follows the wall has a screen: its own, or one across its
+// The wall as it is drawn. Without stereo and without a head station, tiles and outputs are
+// unchanged. With either, each tile that follows the wall has a screen: its own, or one across its
 // direction at the distance that the settings say, which its frustum fills.
 //
-// Where the pictures are in the frame: halves, in the place of their tile. Otherwise the left eye's
-// picture is where the tile was, and the right one's in a second part of the frame, to the right
-// (side_by_side), below (top_bottom), or where the frame's longer side becomes shorter. Snapshots
-// of the wall's picture show the left eye's. REQUIRES: the tiles' validate() found nothing. What
-// cannot be shown is left for validate().
+// Places of the pictures in the frame: two pictures of half size are in the place of their tile.
+// Otherwise the left eye's picture is where the tile was, and the right one's in a second part of
+// the frame, to the right (side_by_side), below (top_bottom), or where the frame's longer side
+// becomes shorter. Snapshots of the wall's picture show the left eye's. REQUIRES: the tiles'
+// validate() found nothing. What cannot be shown is reported by validate() and not here.
 EyeTiles eyeTiles(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
                   const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
 
-// The parts of the output's signal that have a picture each: two if the halves of the signal are
+// Returns how the output's signal is divided into pictures: in two if the halves of the signal are
 // the left and the right eye's, with the same arrangement. Nothing if the pictures of both eyes are
-// in other places: no correction fits them. Output and tiles as in EyeTiles.
+// arranged otherwise, for which there is no correction. `output` and `tiles` are those of EyeTiles.
 std::optional<correct::SignalParts> signalParts(const out::OutputSettings& output,
                                                 const tiles::TilesSettings& tiles);
 
-// Pointer of a fault of EyeTiles::outputs, as their validate() gives it, in the settings that the
-// outputs were made from.
+// Translates `pointer`, of a fault that validate() finds in EyeTiles::outputs, to the settings from
+// which these outputs were made.
 std::string pointerInSettings(const EyeTiles& eyes, const std::string& pointer);
 
 }  // namespace merlin::render::stereo

@@ -15,7 +15,7 @@ namespace merlin::render::stereo {
 // Thread-bound.
 class Head {
  public:
-  // `configured`: the viewer while the head is not tracked. `eye_m`: place of that viewer in the
+  // `configured`: the viewer while the head is not tracked. `eye_m`: position of that viewer in the
   // room. `still_after_s`: time without motion until the head counts as still.
   // REQUIRES: validate() of the settings found nothing.
   Head(const HeadSettings& settings, const tiles::Viewer& configured, const Eigen::Vector3d& eye_m,
@@ -26,10 +26,11 @@ class Head {
     bool moving = false;
     bool tracked = false;
   };
-  // Once a frame. `sample`: the station's newest one, in the tracker's coordinates; nothing, or
-  // something without finite figures: the head is not tracked, and the configured viewer returns,
-  // which counts as motion. A head that moves is taken as it is, without a filter; at rest it stays
-  // where it was until it has moved beyond the dead band. `now` never falls.
+  // Call once a frame. `sample`: the station's newest sample, in the tracker's coordinates. If
+  // there is none, or its values are not finite, the head is not tracked and the configured viewer
+  // is used; that change counts as motion. The position of a moving head is used without a filter;
+  // a head at rest keeps its position until it has moved beyond the dead band. REQUIRES: `now`
+  // never decreases.
   View update(const std::optional<TrackerSample>& sample, Timestamp now);
 
  private:
@@ -41,7 +42,7 @@ class Head {
   Eigen::Vector3d eye_m_;
   Duration still_after_;
   Eigen::Matrix3d R_room_tracker_;
-  tiles::Viewer anchor_;  // the last one that counted as motion
+  tiles::Viewer anchor_;  // the last viewer that counted as motion
   View view_;
   std::optional<Timestamp> last_motion_;
 };

@@ -106,7 +106,8 @@ std::optional<SettingFault> faultOfTile(const StereoSettings& s, const tiles::Ti
                                   t.name, half.what, half.pixels)};
 }
 
-// Eyes that are nearer to each other than the screen is to their middle are both in front of it.
+// The eyes must be nearer to each other than the screen is to their middle: then both are in front
+// of it.
 std::optional<SettingFault> faultOfEyes(const StereoSettings& s, const tiles::TileSettings& left) {
   const Eigen::Matrix3d corners = Eigen::Map<const Eigen::Matrix3d>(left.screen_m.data());
   const Vector3d across = corners.col(1) - corners.col(0), up = corners.col(2) - corners.col(0);
@@ -119,7 +120,8 @@ std::optional<SettingFault> faultOfEyes(const StereoSettings& s, const tiles::Ti
                   s.eye_separation_m, left.name.substr(0, left.name.size() - 2), distance_m)};
 }
 
-// Of eyes that are one behind the other, or the wrong way round, for the viewer of every screen.
+// Returns a fault if, for the viewer of every screen, one eye is behind the other or the two are
+// exchanged.
 std::optional<SettingFault> faultOfDirection(const StereoSettings& s, const EyeTiles& eyes) {
   constexpr double kAgainst = -0.5, kBehind = 0.99;  // cosines
   if (s.eyes_direction == std::array<double, 3>{}) return std::nullopt;
@@ -175,7 +177,8 @@ bool isOnItsSide(const out::PlacedTile& p) {
   return p.turn == out::Turn::k90 || p.turn == out::Turn::k270;
 }
 
-// A pair on its side would be packed along the wrong edge of the signal.
+// Finds pairs on their side, which would be packed along the wrong edge of the signal, and pairs in
+// mode two_outputs.
 SettingFaults faultsOfPlaced(const StereoSettings& s,
                              const std::vector<out::OutputSettings>& outputs,
                              const EyeTiles& eyes) {
@@ -204,13 +207,14 @@ SettingFaults faultsOfPlaced(const StereoSettings& s,
   return faults;
 }
 
-// Whether it moves or covers parts of the picture, so that it has to know what is where.
+// Whether the correction moves or covers parts of the picture, so that it depends on their place.
 bool dependsOnPlace(const correct::CorrectionSettings& c) {
   return c.corners != decltype(c.corners){} || !c.mesh.isOff() || !c.mpcdi.empty() ||
          c.blend.hasRamp() || !c.black.isOff();
 }
 
-// A correction is of the whole signal, or of each half of it. Both eyes' pictures may be elsewhere.
+// A correction applies to the whole signal or to each half of it. So one that depends on places is
+// a fault if the eyes' pictures are not these halves.
 SettingFaults faultsOfCorrections(const StereoSettings& s, const EyeTiles& eyes) {
   SettingFaults faults;
   for (std::size_t i = 0; i < eyes.outputs.size(); ++i) {

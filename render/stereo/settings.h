@@ -17,7 +17,7 @@ enum class StereoMode {
   kSideBySide,  // the left half of the signal is the left eye's
   kTopBottom,   // the upper half of the signal is the left eye's
   kAnaglyph,    // one picture in red and cyan
-  kTwoOutputs,  // an output, that is a projector, for each eye
+  kTwoOutputs,  // one output (a projector) for each eye
 };
 inline constexpr const char* kStereoModeNames[] = {"off", "side_by_side", "top_bottom", "anaglyph",
                                                    "two_outputs"};
@@ -25,25 +25,25 @@ inline constexpr const char* nameOf(StereoMode mode) {
   return kStereoModeNames[static_cast<int>(mode)];
 }
 
-// Of each eye's picture in kSideBySide and kTopBottom. In the order of kEyeSizeNames.
+// Size of each eye's picture in kSideBySide and kTopBottom. In the order of kEyeSizeNames.
 enum class EyeSize {
   kHalf,  // half of the tile's width or height: both together are as large as the tile
   kFull,  // as large as the tile: both together are twice as wide or high
 };
 inline constexpr const char* kEyeSizeNames[] = {"half", "full"};
 
-// Where the tracker stands in the room, and how far a head at rest seems to move.
+// The head tracker: its place in the room, and the noise that does not count as motion.
 struct HeadSettings {
   std::string tracker;  // its name; empty: the first tracker
-  int station = 0;      // of the tracker, on the viewer's head; 0: none
-  // Place of the eyes in the room where the tracker says 0, 0, 0: that of its transmitter, less the
-  // way from the eyes to the receiver on the head [m].
+  int station = 0;      // the tracker's station on the viewer's head; 0: none
+  // Position of the eyes in the room when the tracker measures (0, 0, 0): that of its transmitter
+  // minus the vector from the eyes to the receiver on the head [m].
   std::array<double, 3> origin_m{};
   // The room's x (right), y (up), z (towards the person) as axes of the tracker (1 x, 2 y, 3 z,
-  // negative to turn it round).
+  // negative: reversed).
   std::array<int, 3> axes = {-2, -3, 1};
   double scale = 1;  // metres of the room for a metre of the tracker
-  // What the head has to move or turn from rest until that counts as motion.
+  // Distance or angle by which a head at rest has to move or turn until this counts as motion.
   double dead_band_m = 0.005, dead_band_deg = 2;
 };
 
@@ -51,25 +51,25 @@ struct StereoSettings {
   StereoMode mode = StereoMode::kOff;
   EyeSize size = EyeSize::kHalf;
   double eye_separation_m = 0.063;
-  double screen_distance_m = 0;  // of tiles whose screen is not known; 0: the wall's
-  // From the left to the right eye of a viewer who is not tracked, of any length (x right, y up, z
-  // towards the person). All 0: along the tile in the middle of the wall.
+  double screen_distance_m = 0;  // of tiles without a screen; 0: the wall's distance
+  // Direction from the left to the right eye of a viewer who is not tracked, a vector of any length
+  // (x right, y up, z towards the person). All 0: along the tile in the middle of the wall.
   std::array<double, 3> eyes_direction{};
   HeadSettings head;
 
   bool isOn() const { return mode != StereoMode::kOff; }
 };
 
-// Finds stereo that no wall can show: eyes further apart than their screen is away, an eye that
-// does not see a screen from the front, a tile that cannot be halved or whose name has no room for
-// the eye's, an output that shows a tile in a way that the mode has not, one whose correction would
-// move or cover parts of both eyes' pictures where these are not the halves of the signal,
-// two_outputs without two outputs; eyes without a line, or one behind the other or the wrong way
-// round for every screen; axes of the tracker that are not a
-// right-handed permutation, figures that are not numbers. Pointers are relative to /wall:
-// "/stereo/mode", "/outputs/0/tiles/1". What else is wrong with the resulting tiles and outputs,
-// their own validate() finds. Pure. `tiles`: those of the wall without stereo, without faults;
-// `wall_distance_m`: of the screens of tiles that have none, unless `stereo` says more.
+// Checks for: eyes further apart than their screen is away, an eye that does not see a screen from
+// the front, a tile that cannot be halved or whose name has no room for the eye's, an output that
+// shows a tile in a way that the mode does not have, one whose correction would move or cover parts
+// of both eyes' pictures where these are not the halves of the signal, two_outputs without two
+// outputs; an eye direction that is undefined, or with which the eyes are behind each other or
+// swapped for every screen; axes of the tracker that are not a right-handed permutation; values
+// that are not numbers. Pointers are relative to /wall: "/stereo/mode", "/outputs/0/tiles/1". Other
+// faults of the resulting tiles and outputs are found by their own validate(). Pure. `tiles`: those
+// of the wall without stereo, without faults. `wall_distance_m`: distance that is assumed for the
+// screens of tiles that have none, unless `stereo` gives one.
 SettingFaults validate(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
                        const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
 

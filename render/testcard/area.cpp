@@ -52,7 +52,7 @@ double halfWidth(const Pitch& radii, double y) {
 
 }  // namespace
 
-// Pixels whose centres are between the two ellipses.
+// Fills the pixels whose centres are between the two ellipses.
 void Area::ring(double x, double y, const Pitch& outer, double thick, Colour colour) {
   const Pitch inner{std::max(outer.x - thick, 0.0), std::max(outer.y - thick, 0.0)};
   for (int row = static_cast<int>(std::floor(y - outer.y)); row <= y + outer.y; ++row) {

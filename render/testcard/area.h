@@ -25,7 +25,7 @@ struct Pitch {
 // Everything is clipped to the area. Coordinates are pixels from its upper left corner.
 class Area {
  public:
-  // `canvas`: RGBA, `canvas_width` pixels a row, which has the rectangle.
+  // `canvas`: RGBA, `canvas_width` pixels a row, which contains the rectangle.
   Area(std::span<std::uint8_t> canvas, int canvas_width, int x, int y, int width, int height)
       : canvas_(canvas),
         canvas_width_(canvas_width),
@@ -43,10 +43,11 @@ class Area {
   // The border of a rectangle, a pixel wide, inside it.
   void frame(int x, int y, int width, int height, Colour colour);
   void line(int x0, int y0, int x1, int y1, Colour colour);
-  // An ellipse around a point between pixels: (1, 1) is where the first four meet. `outer` has its
-  // outer radii; `thick` is its width.
+  // An elliptical ring around a point, whose coordinates count from pixel corners: (1, 1) is where
+  // the first four pixels meet. `outer`: its outer radii; `thick`: its width.
   void ring(double x, double y, const Pitch& outer, double thick, Colour colour);
-  // Text of `scale` pixels for each of the font's, 8 * scale high; (x, y) is its upper left corner.
+  // Text in which a pixel of the font is `scale` pixels wide and high, so 8 * scale high; (x, y) is
+  // its upper left corner.
   void text(int x, int y, int scale, std::string_view text, Colour colour);
   // The same around a point, on a black box.
   void label(int x, int y, int scale, std::string_view text, Colour colour);

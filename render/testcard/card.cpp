@@ -19,7 +19,7 @@ constexpr Colour kStrip{70, 0, 70}, kStripEdge{255, 0, 255}, kMark{255, 90, 0};
 constexpr int kGridColumns = 16;
 constexpr int kGreySteps = 17;
 
-// Text is as large as it can be within a share of the area, a pixel per pixel at least.
+// Returns the largest scale of a text within a share of the area, 1 or more.
 int scaleFor(const Area& a, std::string_view text, double width_share, double height_share) {
   const double columns = std::max(textWidth(text, 1), kGlyphSize);
   const double scale =
@@ -34,8 +34,9 @@ CardPart partOf(const CardTile& t) {
   return {0, 0, w, h, w, h};
 }
 
-// The pixel of a line at `place` of a plane, of which the tile has `size` pixels from `from` over
-// `length`; the first and the last line are on the outermost pixels. Nothing beyond the tile.
+// Returns the pixel of a line at `place` of a plane, of which the tile shows `length` from `from`
+// on with `size` pixels. The first and the last line are on the outermost pixels. Nothing if the
+// line is beyond the tile.
 std::optional<int> pixelOf(double place, double from, double length, int size) {
   constexpr double kRounding = 1e-6;
   const double at = (place - from) / length * size;
@@ -43,7 +44,7 @@ std::optional<int> pixelOf(double place, double from, double length, int size) {
   return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1);
 }
 
-// An even number of lines' distances: the middle has a line.
+// Rounds to an even number of intervals, so that there is a line in the middle.
 int evenly(double distances) {
   return std::max(2, 2 * static_cast<int>(std::lround(distances / 2)));
 }
@@ -61,7 +62,7 @@ void drawGridLines(Area& a, const CardPart& p) {
   }
 }
 
-// Circles on the screen, whose pixels need not be square.
+// Draws circles that are round on the screen, whose pixels need not be square.
 void drawCircles(Area& a, const CardPart& p) {
   const double w = a.width(), h = a.height();
   const Pitch pitch{w / p.width, h / p.height};
@@ -135,7 +136,8 @@ Colour channel(int band, int value) {
   return bands[band];
 }
 
-// Along the plane, so that neighbours show the same grey at their seam and where they overlap.
+// Draws ramps along the plane, so that neighbours show the same grey at their seam and where they
+// overlap.
 void drawRamps(Area& a, const CardPart& p) {
   const int w = a.width(), h = a.height();
   const auto from = [h](int band) { return band * h / 6; };
@@ -161,7 +163,7 @@ void drawNames(Area& a, const CardTile& t, std::size_t number) {
   const int w = a.width(), h = a.height();
   a.fillAll(kBackgrounds[number % std::size(kBackgrounds)]);
   a.frame(0, 0, w, h, kWhite);
-  const int arrow = h / 12;  // up
+  const int arrow = h / 12;  // points up
   for (int y = 0; y < arrow; ++y) a.fill(w / 2 - y, h / 24 + y, 2 * y + 1, 1, kWhite);
   const int scale = scaleFor(a, t.name, 0.8, 0.3);
   a.text(w / 2 - textWidth(t.name, scale) / 2, h * 2 / 5 - kGlyphSize * scale / 2, scale, t.name,

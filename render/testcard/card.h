@@ -25,14 +25,14 @@ struct CardPart {
   double plane_width = 0, plane_height = 0;
 };
 
-// A tile, with what a card says of it.
+// A tile, with what a card shows of it.
 struct CardTile {
   std::string name;
   int x = 0, y = 0, width = 0, height = 0;  // in the canvas [px]
   std::vector<std::string> lines{};         // further lines of the card names
   // Strips at its borders that a neighbour shows as well [px].
   int left = 0, right = 0, top = 0, bottom = 0;
-  CardPart part{};  // of width 0: the tile is a plane of its own
+  CardPart part{};  // if its width is 0: the tile is a plane of its own
 };
 
 // A corner of a tile that is marked: 2 * row + column.
@@ -40,7 +40,8 @@ struct MarkedCorner {
   std::size_t tile = 0, corner = 0;
 };
 
-// Draws a card into each tile of a canvas (RGBA, `canvas_width` pixels a row), which has them.
+// Draws a card into each tile of a canvas (RGBA, `canvas_width` pixels a row), which contains the
+// tiles.
 //   grid   lines at equal distances on the plane, the border, diagonals, circles: for geometry
 //   edges  the tile's outermost pixels, its corners (red, green, blue, yellow: upper left, upper
 //          right, lower left, lower right), strips of overlap with their inner edges
@@ -48,7 +49,7 @@ struct MarkedCorner {
 //          black and white
 //   names  tile, output, size, panel
 //   focus  checkers and lines of single pixels, Siemens stars, small text
-//   black, grey, white  nothing else: for overlaps, where neighbours are to be as bright as one
+//   black, grey, white  one colour: for overlaps, which are to be as bright as the rest
 // `mark`: a corner that is being moved, on the cards grid and edges. Costs some milliseconds per
 // million pixels.
 void drawCard(Card card, std::span<const CardTile> tiles, std::optional<MarkedCorner> mark,

@@ -19,8 +19,8 @@ class CardOverlay final : public frame::Overlay {
   // `width` x `height`: of the canvas [px].
   CardOverlay(int width, int height, std::vector<CardTile> tiles);
 
-  // Shows a card from the next frame on, or none. Draws it here, and needs two pictures of the
-  // canvas's size as long as it is shown.
+  // Shows a card from the next frame on, or none. Draws the card in this call, and needs memory for
+  // two pictures of the canvas's size as long as it is shown.
   void show(std::optional<Card> card, std::optional<MarkedCorner> mark = std::nullopt);
 
   // Whether a card is drawn, or will be with the next frame.
@@ -32,7 +32,7 @@ class CardOverlay final : public frame::Overlay {
   void erase(std::span<std::uint8_t> canvas) override;
 
  private:
-  // A card as it is drawn, and what was there before; of the canvas's size.
+  // The drawn card, and the pixels that it covers; each of the canvas's size.
   struct Pictures {
     std::vector<std::uint8_t> card, covered;
   };
@@ -40,7 +40,7 @@ class CardOverlay final : public frame::Overlay {
 
   int width_, height_;
   std::vector<CardTile> tiles_;
-  std::mutex mutex_;  // of next_ and retired_
+  std::mutex mutex_;  // guards next_ and retired_
   std::unique_ptr<Pictures> next_, retired_;
   std::atomic<bool> waiting_{false}, wanted_{false};
   std::unique_ptr<Pictures> shown_;

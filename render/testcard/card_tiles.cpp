@@ -55,7 +55,7 @@ std::size_t sideOf(const frame::TileAxes::Step& step) {
   return step.y > 0 ? 3 : 2;
 }
 
-// The strips of the output's picture, as far as they reach into the tile.
+// Adds the strips of the output's picture to the tile, as far as they reach into it.
 void addStrips(CardTile& tile, const Shown& shown, const out::PictureSize& size,
                const correct::BlendSettings& blend) {
   const std::array<double, 4> strips = {
@@ -81,12 +81,13 @@ out::PictureSize sizeOf(const out::OutputSettings& output, const tiles::TilePlan
   return size;
 }
 
-// The name of the tile that was made into one for each eye: "left" of "left.L".
+// Returns the name of the tile that was made into one for each eye: "left" for "left.L".
 std::string nameForBothEyes(const tiles::Tile& tile) {
   return tile.eye == tiles::Eye::kMiddle ? tile.name : tile.name.substr(0, tile.name.rfind('.'));
 }
 
-// In an anaglyph both eyes' tiles lie over one another, and have to say the same.
+// Whether the tile is in an anaglyph, where both eyes' tiles lie over one another and have to say
+// the same.
 bool isInAnaglyph(const tiles::Tile& tile, const std::vector<out::OutputSettings>& outputs) {
   return std::ranges::any_of(outputs, [&](const out::OutputSettings& output) {
     return std::ranges::any_of(output.tiles, [&](const out::PlacedTile& placed) {

@@ -1,4 +1,4 @@
-// What test cards say of a wall's tiles: the outputs that show each, its strips of overlap, and
+// What test cards show of a wall's tiles: the outputs that show each, its strips of overlap, and
 // which of its corners is a corner of an output's picture. Pure.
 #pragma once
 
@@ -13,14 +13,14 @@
 
 namespace merlin::render::testcard {
 
-// `panels`: for the names of tiles the panels that they are on, as far as the wall has any. An
-// output of kind shared_memory, which nobody looks at, is not named.
+// `panels`: maps the names of tiles to those of the panels that they are on, if the wall has any.
+// An output of kind shared_memory, which nobody looks at, is not named.
 std::vector<CardTile> cardTiles(const tiles::TilePlan& plan,
                                 const std::vector<out::OutputSettings>& outputs,
                                 const std::map<std::string, std::string>& panels);
 
-// The tile, and its corner, that is seen in a corner (2 * row + column) of an output's picture;
-// nothing where no tile is.
+// Returns which tile, and which of its corners, is in a corner (2 * row + column) of an output's
+// picture; nothing if no tile is there.
 std::optional<MarkedCorner> cornerOf(const tiles::TilePlan& plan, const out::OutputSettings& output,
                                      std::size_t corner);
 

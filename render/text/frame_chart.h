@@ -9,10 +9,10 @@
 
 namespace merlin::render::text {
 
-// What one column of the chart shows: the longest frame that was in work in its time.
+// What one column of the chart shows: the longest frame that was being drawn during its time.
 struct ChartColumn {
-  // When the frame was done, as a share of its period: 100 at its deadline, at most 255; 0: there
-  // was no frame, because nothing moved.
+  // When the frame was finished, in percent of its period: 100 at its deadline, at most 255; 0:
+  // there was no frame, because nothing moved.
   std::uint8_t percent = 0;
   bool late = false;
 
@@ -39,7 +39,7 @@ class FrameChart {
   Columns at(Timestamp now) const;
 
  private:
-  // By number of the column since the clock's origin, modulo kChartColumns.
+  // Indexed by the column's number since the clock's origin, modulo kChartColumns.
   struct Slot {
     std::int64_t number = -1;
     ChartColumn column;

@@ -77,7 +77,7 @@ class GlyphAtlas::Builder {
     atlas_.glyphs_.push_back(glyph);
   }
 
-  // As high as a capital letter, with a line around it.
+  // Adds the outline of a box that is as high as a capital letter.
   void addBox(int em_px) {
     const int height = std::max(em_px * 3 / 4, 3), line = std::max(em_px / 14, 1);
     Glyph glyph{.width = std::max(em_px / 2, 3),

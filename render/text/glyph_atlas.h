@@ -19,7 +19,7 @@ struct Glyph {
 };
 
 struct FontSize {
-  int em_px = 0;                      // as asked for
+  int em_px = 0;                      // as requested
   int ascent_px = 0, descent_px = 0;  // of the font, from the base line; both positive
 };
 
@@ -50,7 +50,7 @@ class GlyphAtlas {
   class Builder;
 
   std::vector<char32_t> characters_;  // ascending
-  // Of each size, one after another: those of characters_, then the box.
+  // For each size, one after another: the glyphs of characters_, then the box.
   std::vector<Glyph> glyphs_;
   std::vector<FontSize> sizes_;
   std::vector<std::uint8_t> coverage_;

@@ -17,21 +17,21 @@
 
 namespace merlin::render::text {
 
-// The plate of a sentence on a tile of this size: one line, as wide as the sentence, in the middle
-// of the lower edge; what is too long ends with an ellipsis. Pure. REQUIRES: the tile is at least
-// kLeastTileWidth_px x kLeastTileHeight_px.
+// Draws the plate of a sentence on a tile of this size: one line, as wide as the sentence, in the
+// middle of the lower edge; what is too long ends with an ellipsis. Pure. REQUIRES: the tile is at
+// least kLeastTileWidth_px x kLeastTileHeight_px.
 Plate drawNotice(std::string_view text, const Font& font, const Rect& tile);
 
-// show() is thread-safe; the rest is thread-bound to the wall's thread, and takes no lock for which
-// it would have to wait.
+// show() is thread-safe; the rest is thread-bound to the wall's thread, and never waits for a lock.
 class NoticeOverlay final : public frame::Overlay {
  public:
-  // Of a plan without a tile of kind wall that has room for it, nothing is drawn. `clock` must
+  // If no tile of kind wall in the plan has room for the plate, nothing is drawn. `clock` must
   // outlive this object.
   NoticeOverlay(const tiles::TilePlan& plan, const Clock& clock);
 
-  // Shows the sentence until then, in place of the one before; an empty one ends it. The first call
-  // costs about 60 ms, for the font; each draws the plate. Errors: those of GlyphAtlas::make().
+  // Shows the sentence until the time `until`, in place of the one before; an empty text removes
+  // it. The first call costs about 60 ms, for the font; each draws the plate. Errors: those of
+  // GlyphAtlas::make().
   Result<Ok> show(std::string_view text, Timestamp until);
 
   bool hasChanged() const override { return visible() != drawn_; }

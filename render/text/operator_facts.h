@@ -31,7 +31,7 @@ struct MessageFact {
 struct OperatorFacts {
   double rate_asked_hz = 0, rate_held_hz = 0;
   double rate_now_hz = 0;   // less than asked if the wall has lowered it
-  double late_percent = 0;  // of the last minute
+  double late_percent = 0;  // late frames in the last minute
   FrameChart::Columns chart{};
 
   std::uint32_t cost = 0, full_cost = 0;  // of the detail that is shown, and of full detail

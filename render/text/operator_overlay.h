@@ -20,7 +20,7 @@ namespace merlin::render::text {
 // show() and isShown() are for any thread; the rest is thread-bound to the wall's thread.
 class OperatorOverlay final : public frame::Overlay {
  public:
-  // For the plan's tiles of kind kOperator that have room for it; without any it draws nothing.
+  // Draws on the plan's tiles of kind kOperator that have room for it; nothing if there are none.
   // `source` and `clock` must outlive this object. Costs about 60 ms for each size of text. Errors:
   // those of GlyphAtlas::make().
   static Result<std::unique_ptr<OperatorOverlay>> make(const tiles::TilePlan& plan,
@@ -30,11 +30,13 @@ class OperatorOverlay final : public frame::Overlay {
   void show(bool shown) noexcept { asked_.store(shown); }
   bool isShown() const noexcept { return asked_.load(); }
 
-  // Looks at the facts at most twice a second: a wall that stands is not presented more often.
-  // Once after the last frames of a motion it looks earlier, if draw() did not read them for those.
+  // Checks the facts at most twice a second, so that a wall that stands still is not presented more
+  // often.
+  // Once after the last frames of a motion it checks earlier, if draw() did not read the facts for
+  // these.
   bool hasChanged() const override;
-  // Reads the facts and draws the plates anew at most ten times a second; otherwise it costs the
-  // blending of the plates' pixels, and erase() a copy of them.
+  // Reads the facts and redraws the plates at most ten times a second; otherwise it costs the
+  // blending of the plates' pixels. erase() costs a copy of them.
   void draw(std::span<std::uint8_t> canvas) override;
   void erase(std::span<std::uint8_t> canvas) override;
 

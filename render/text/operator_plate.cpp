@@ -42,7 +42,7 @@ class Rows {
   Rows(const Surface& surface, const PlateFonts& fonts, const Rect& inside)
       : surface_(surface), fonts_(fonts), left_(inside) {}
 
-  // The next `height_px` of the plate.
+  // Returns the next `height_px` of the plate.
   Rect take(int height_px) {
     const Rect taken{left_.x, left_.y, left_.width, std::min(height_px, left_.height)};
     left_.y += taken.height;
@@ -55,7 +55,7 @@ class Rows {
     surface_.fill({space.x, space.y + space.height / 2, space.width, 1}, kRule);
   }
 
-  // A name on the left and its value behind a column that is as wide for all rows.
+  // Draws a name on the left and its value in a column that begins at the same place in all rows.
   void row(std::string_view name, std::string_view value, Colour colour = kBright) {
     const Rect line = take(lineHeight());
     drawTextIn(surface_, fonts_.text, nameIn(line), name, kDim);
@@ -99,7 +99,7 @@ void drawRate(const OperatorFacts& facts, Rows& rows) {
   drawTextIn(rows.surface(), rows.fonts().text, rest, asked, kDim, Align::kRight);
 }
 
-// Bars up to twice the period; the line is the deadline.
+// Draws bars up to twice the period, and a line for the deadline.
 void drawChart(const OperatorFacts& facts, Rows& rows) {
   const Rect chart = rows.take(4 * rows.lineHeight());
   const Surface& surface = rows.surface();
@@ -185,8 +185,8 @@ Plate drawStatePlate(const OperatorFacts& facts, const PlateFonts& fonts, const 
   return plate;
 }
 
-// At the lower edge of `free`, the newest at the bottom, as wide as the longest. Where there is
-// little room below `top_px`, only the newest.
+// Draws messages at the lower edge of `free`, the newest at the bottom: as many as fit below
+// `top_px`, 1 to 4. The plate is as wide as the longest message.
 Plate drawMessages(const OperatorFacts& facts, const PlateFonts& fonts, const Rect& free,
                    int top_px) {
   const int padding = paddingOf(fonts), line = Rows::lineHeightOf(fonts.text);

@@ -5,8 +5,8 @@
 namespace merlin::render::text {
 namespace {
 
-// `over` on `under`, as many bytes of each; `over` is premultiplied. In 16 bits, which the compiler
-// makes vectors of.
+// Blends `over`, which is premultiplied, onto as many bytes of `under`. Computes with 16 bits, so
+// that the compiler uses vector instructions.
 void blendRow(std::span<const std::uint8_t> over, std::uint8_t* __restrict under) {
   const std::uint8_t* __restrict const from = over.data();
   for (std::size_t i = 0; i + 4 <= over.size(); i += 4) {
@@ -45,7 +45,7 @@ void PlateCover::put(const Plate& plate, const Rect& tile, std::span<std::uint8_
   });
 }
 
-// The last one first, since plates of a low tile may overlap.
+// Restores the last plate first, since plates of a low tile may overlap.
 void PlateCover::erase(std::span<std::uint8_t> canvas) {
   std::size_t end = covered_.size();
   for (auto rect = put_.rbegin(); rect != put_.rend(); ++rect) {

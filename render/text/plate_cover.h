@@ -13,7 +13,7 @@ namespace merlin::render::text {
 // Thread-bound. Keeps its memory from frame to frame.
 class PlateCover {
  public:
-  // Of a canvas of this width, RGBA, rows from the top [px].
+  // For a canvas of this width [px], RGBA, rows from top to bottom.
   explicit PlateCover(int canvas_width_px) : width_(static_cast<std::size_t>(canvas_width_px)) {}
 
   // Blends a plate onto the canvas; `tile`: its tile in the canvas. REQUIRES: the plate lies in the

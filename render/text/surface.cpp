@@ -8,7 +8,7 @@
 namespace merlin::render::text {
 namespace {
 
-// What is put over a pixel: premultiplied, and the share of it that remains.
+// A premultiplied colour that is put over a pixel, and the share of the pixel that remains.
 struct Source {
   std::uint8_t rgba[4];
   std::uint32_t rest;

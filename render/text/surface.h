@@ -12,7 +12,7 @@ struct Rect {
   bool operator==(const Rect&) const = default;
 };
 
-// The part that both have; without pixels if there is none.
+// The intersection; a rectangle without pixels if they do not overlap.
 Rect common(const Rect& a, const Rect& b) noexcept;
 // The rectangle without a margin of `by` pixels on each side.
 Rect shrunk(const Rect& r, int by) noexcept;
@@ -28,8 +28,9 @@ struct Colour {
 // The same, more transparent: alpha times `share`, 0..1.
 Colour faded(Colour colour, float share) noexcept;
 
-// Borrows the pixels: RGBA, premultiplied by alpha, rows from the top without gaps. Each drawing
-// puts its colour over what is there, and nothing outside the clip. Reentrant.
+// Borrows the pixels: RGBA, premultiplied by alpha, rows from the top without gaps. Each call
+// except fillWhole() blends its colour over the pixels inside the clip, and changes none outside.
+// Reentrant.
 class Surface {
  public:
   // REQUIRES: rgba.size() is 4 * width * height.

@@ -8,7 +8,7 @@ namespace {
 constexpr int kWidest_px = 1'000'000;
 constexpr std::string_view kEllipsis = "\u2026";
 
-// The beginning of `text` that takes at most `width_px`.
+// Returns the longest beginning of `text` that takes at most `width_px`.
 std::string_view beginning(const Font& font, std::string_view text, int width_px) {
   std::string_view rest = text;
   for (int width = 0; !rest.empty();) {

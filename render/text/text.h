@@ -1,8 +1,8 @@
 // Draws text into a surface. Pure.
 //
 // From left to right, a character after another: no kerning, no ligatures, no combining marks, no
-// lines. A character that the atlas lacks, a control character and a byte that is not UTF-8 are
-// boxes.
+// line breaks. A character that the atlas lacks, a control character and a byte that is not UTF-8
+// are drawn as boxes.
 #pragma once
 
 #include <string_view>
@@ -23,8 +23,8 @@ struct Font {
 // Sum of the characters' advances [px]; at most about a million, beyond which it stops.
 int textWidth(const Font& font, std::string_view text) noexcept;
 
-// Draws from `pen`, which is on the base line. Returns the pen behind the text; what would be
-// beyond the right edge of the clip is not looked at.
+// Draws from `pen`, which is on the base line. Returns the pen behind the text; text beyond the
+// right edge of the clip is left out.
 Point drawText(const Surface& surface, const Font& font, Point pen, std::string_view text,
                Colour colour) noexcept;
 

@@ -35,7 +35,7 @@ bool liesOn(const Plane& plane, const Screen& screen) {
          std::abs(normal.dot(screen.corner - plane.corner)) < kLeast_m;
 }
 
-// The tile's part, its `top` still upwards from the plane's corner.
+// Adds a tile to the plane. Returns its part, with `top` still upwards from the plane's corner.
 PlanePart addTo(Plane& plane, std::size_t number, const Screen& screen) {
   const Eigen::Vector3d from = screen.corner - plane.corner;
   const double left = plane.right.dot(from), low = plane.up.dot(from);
@@ -47,8 +47,8 @@ PlanePart addTo(Plane& plane, std::size_t number, const Screen& screen) {
   return {number, left, low + height, width, height};
 }
 
-// How far the strip from `from` to `to` is covered from its lower end by another one, which begins
-// before it and ends within it.
+// Returns how much of the strip from `from` to `to` another one covers at its lower end; 0 unless
+// the other one begins before it and ends within it.
 double coveredFrom(double from, double to, double other_from, double other_to) {
   const bool begins_before = other_from < from - kLeast_m, ends_within = other_to < to - kLeast_m;
   return begins_before && ends_within ? std::max(0.0, other_to - from) : 0;

@@ -68,8 +68,8 @@ struct TileSettings {
   // All 0: no screen.
   std::array<double, 9> screen_m{};
   TileCamera view = TileCamera::kWall;
-  FreeCamera camera{};     // of view kFree
-  Eye eye = Eye::kMiddle;  // render/stereo makes the others
+  FreeCamera camera{};     // if view is kFree
+  Eye eye = Eye::kMiddle;  // render/stereo sets the others
 
   // Whether it shows a part of the wall's view.
   bool followsWall() const { return kind == TileKind::kWall && view == TileCamera::kWall; }

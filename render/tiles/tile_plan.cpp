@@ -173,7 +173,7 @@ Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vec
 
 TileMatrices parallelMatrices(TileCamera camera, float aspect, const Eigen::Vector3f& centre,
                               float radius) {
-  // Of the picture in eye coordinates: right and up; what is left is towards the camera.
+  // The picture's right and up, in eye coordinates; the third axis points towards the camera.
   Eigen::Vector3f right = Eigen::Vector3f::UnitX(), up = Eigen::Vector3f::UnitY();
   if (camera == TileCamera::kTop) up = -Eigen::Vector3f::UnitZ();
   if (camera == TileCamera::kSide) right = -Eigen::Vector3f::UnitZ();

@@ -83,23 +83,24 @@ Eigen::Matrix4f offAxis(float left, float right, float lower, float upper, float
 Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vector3f& centre,
                              float radius);
 
-// With which a tile draws.
+// The matrices with which a tile is drawn.
 struct TileMatrices {
   Eigen::Matrix4f projection, view;
 };
 
 // A parallel projection of a sphere (centre and radius in eye coordinates, metres), along an axis
-// of the wall: the sphere fits into the tile, wherever it is. From above the person is at the lower
-// edge, from the right at the left one. REQUIRES: `camera` is kTop, kSide or kFront.
+// of the wall: the sphere fits into the tile, wherever it is. In the view from above, the viewer's
+// side is at the lower edge; in the view from the right, at the left edge. REQUIRES: `camera` is
+// kTop, kSide or kFront.
 TileMatrices parallelMatrices(TileCamera camera, float aspect, const Eigen::Vector3f& centre,
                               float radius);
 
-// What a tile shows of a content with this bounding sphere (eye coordinates, metres): the sphere
-// decides where the tile is fitted to it, otherwise the plan.
+// Returns the matrices for a content with this bounding sphere (eye coordinates, metres): fitted to
+// the sphere if tile.isFitted(), otherwise those of the plan.
 TileMatrices matricesOf(const Tile& tile, const Eigen::Vector3f& centre, float radius);
 
-// What a tile shows of a panorama, in whose centre the eye is, wherever that is: the plan's frustum
-// and direction. A tile that is fitted to other contents looks straight ahead.
+// Returns the matrices for a panorama, whose centre is always at the eye: the plan's frustum and
+// direction. A tile that is fitted to other contents (isFitted()) looks straight ahead.
 TileMatrices panoramaMatrices(const Tile& tile);
 
 // Whether any part of a box may be visible in a tile that follows the wall or has a free camera:

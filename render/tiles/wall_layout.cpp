@@ -42,7 +42,7 @@ double pitchOf(const Vector3d& direction) {
   return std::atan2(direction.y(), std::hypot(direction.x(), direction.z()));
 }
 
-// The middles of the picture's four edges.
+// Returns the directions to the middles of the picture's four edges.
 std::array<Vector3d, 4> edgesOf(const Tile& tile) {
   return {directionOf(tile, -1, 0), directionOf(tile, 1, 0), directionOf(tile, 0, -1),
           directionOf(tile, 0, 1)};
@@ -72,7 +72,7 @@ Extent downByAngle(const Tile& tile) {
   return extent;
 }
 
-// In metres, since a far screen of the same row is seen at another angle.
+// Measures in metres, since a far screen of the same row is seen at another angle.
 Extent downByHeight(const std::array<double, 9>& screen) {
   const double across = screen[4] - screen[1], up = screen[7] - screen[1];
   return {-(screen[1] + (across + up) / 2), (std::abs(across) + std::abs(up)) / 2};

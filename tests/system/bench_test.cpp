@@ -13,9 +13,9 @@ namespace merlin::test {
 namespace {
 
 const std::string kBin = MERLIN_BIN_DIR;
-const std::string kBench = kSource + "/tests/bench";
-const std::string kDemo = kSource + "/config/demo.json";
-const std::string kScan = kSource + "/config/models/ankylosaurus.ply";
+const std::string kBench = MERLIN_SOURCE_DIR "/tests/bench";
+const std::string kDemo = MERLIN_SOURCE_DIR "/config/demo.json";
+const std::string kScan = MERLIN_SOURCE_DIR "/config/models/ankylosaurus.ply";
 
 struct Said {
   int status;

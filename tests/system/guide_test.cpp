@@ -14,7 +14,7 @@
 namespace merlin::test {
 namespace {
 
-const std::string kGuide = kSource + "/systemd/from-boxes-to-wall.md";
+const std::string kGuide = MERLIN_SOURCE_DIR "/systemd/from-boxes-to-wall.md";
 
 std::vector<std::string> linesOf(const std::string& text) {
   std::vector<std::string> lines;

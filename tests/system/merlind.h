@@ -17,6 +17,8 @@
 
 namespace merlin::test {
 
+// Not for the initial values of other global constants: clang sets those of a precompiled header
+// last.
 inline const std::string kMerlin = MERLIN_BIN_DIR "/merlin";
 inline const std::string kMerlind = MERLIN_BIN_DIR "/merlind";
 inline const std::string kSource = MERLIN_SOURCE_DIR;

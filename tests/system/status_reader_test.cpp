@@ -9,7 +9,7 @@
 namespace merlin::test {
 namespace {
 
-const std::string kReader = kSource + "/daemon/status/read_status.py";
+const std::string kReader = MERLIN_SOURCE_DIR "/daemon/status/read_status.py";
 const std::string kPython = "/usr/bin/python3";  // the Python for which Debian packages python3-zmq
 
 TEST(StatusReader, FollowsATopicAndSendsCommands) {

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kHinged = kSource + "/config/wall-three-160.json";
+const std::string kHinged = MERLIN_SOURCE_DIR "/config/wall-three-160.json";
 
 class WallPlan : public testing::Test {
  protected:

@@ -1,5 +1,5 @@
-// Finds the device in a configuration file that a calibration is for, and writes what was measured
-// into its entry.
+// Finds the device that a calibration is for in a configuration file, and writes the measured
+// values into its entry.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ namespace merlin::cli {
 struct CalibratedDevice {
   std::string file;
   std::string pointer;         // "/devices/2"
-  std::string name, driver;    // those in effect: an entry without a name has its kind's
+  std::string name, driver;    // the values in effect: an entry without a name has that of its kind
   nlohmann::ordered_json own;  // the entry's settings of its driver: an object, which may be empty
   nlohmann::ordered_json baud = 0;  // the entry's speed of the line; 0: the driver's usual one
   std::string port = {};            // the entry's; empty: it has none
@@ -43,25 +43,25 @@ Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
 Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::string& port,
                                   int baud);
 
-// A device's own line, which the calibration has opened: no merlind may have it meanwhile.
+// A device's line that the calibration itself has opened; no merlind may use it meanwhile.
 struct OwnLine {
   DeviceSettings settings;
   std::unique_ptr<ByteStream> stream;
 };
 
-// Opens it at `port`, or at the entry's port if that is empty. Errors: those of settingsOf() and
-// io::openPort(); kInvalidArgument (neither names a port).
+// Opens the device's line at `port`, or at the entry's port if that is empty. Errors: those of
+// settingsOf() and io::openPort(); kInvalidArgument (neither names a port).
 Result<OwnLine> openOwnLine(const CalibratedDevice& device, const std::string& port, int baud);
 
-// Copies the members of `values` into the device's settings of its driver, and keeps all else in
-// the file and the order; creates the file if it does not exist. Errors: those of findDevice() and
-// writeFile(); kInvalidArgument (the file has changed meanwhile: the device has another driver
-// there). After an error the old file is unchanged.
+// Copies the members of `values` into the device's settings of its driver, and keeps everything
+// else in the file, and its order; creates the file if it does not exist. Errors: those of
+// findDevice() and writeFile(); kInvalidArgument (the file has changed meanwhile: the device has
+// another driver there). After an error the old file is unchanged.
 Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind,
                         const nlohmann::ordered_json& values);
 
-// The same, once the loader has allowed the values; prints what was written. Errors also: those of
-// settingsOf().
+// The same, but first has the loader check the values; prints what was written. Errors also: those
+// of settingsOf().
 Result<Ok> saveChecked(const CalibratedDevice& device, SampleKind kind,
                        const nlohmann::ordered_json& values);
 

@@ -1,5 +1,5 @@
-// Guided calibration of a tracker that measures in a frame of its own (drivers vrpn and osc): which
-// of its axes are those of the samples, and where its origin is.
+// Guided calibration of a tracker that measures in a frame of its own (drivers vrpn and osc):
+// determines which of its axes are those of the samples, and where its origin is.
 #pragma once
 
 #include "daemon/base/result.h"

@@ -1,5 +1,5 @@
-// IgnoringSink: takes the samples of a device that a calibration reads itself; each calibration
-// overrides publish() of the kind that it measures.
+// IgnoringSink: ignores the samples of a device that a calibration reads itself; each calibration
+// overrides publish() for the kind of samples that it measures.
 #pragma once
 
 #include "drivers/port/sample_sink.h"

@@ -27,11 +27,11 @@ class EditedFile {
   const std::string& copy() const noexcept { return copy_; }
   // Whether copy and file differ. Errors: those of reading the copy.
   Result<bool> hasChanged() const;
-  // Puts the copy's content in the file's place, at once, with the owner, group and mode of the
+  // Replaces the file's content by the copy's, atomically, with the owner, group and mode of the
   // file. Errors: kIo (also if the file has changed since open(), or its owner cannot be kept);
   // the file is then as it was.
   Result<Ok> replace();
-  // The copy is left behind.
+  // Leaves the copy behind when this object is destroyed.
   void keepCopy() noexcept { kept_ = true; }
 
  private:

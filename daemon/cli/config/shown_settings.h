@@ -17,9 +17,9 @@ enum class Origin { kDefault, kFile, kState };
 inline constexpr const char* kOriginNames[] = {"default", "file", "state"};
 
 struct ShownSetting {
-  SettingValue setting;  // with the value in effect, which is the default of what an entry omits
+  SettingValue setting;  // if a list entry omits it, its default is the value in effect
   Origin origin = Origin::kDefault;
-  std::string file;  // of kFile and kState
+  std::string file;  // for kFile and kState
   int line = 0;      // of kFile
   bool differs() const { return setting.value != setting.default_value; }
 };
@@ -30,7 +30,8 @@ struct RunTimeChanges {
   state::State state;
 };
 
-// Every setting, in the order of written files. `file`: the configuration. `changes`: null: none.
+// Every setting, in the order of written files. `file`: the configuration. `changes`: null if there
+// are none.
 std::vector<ShownSetting> shownSettings(const LoadedSettings& loaded, const std::string& file,
                                         const RunTimeChanges* changes);
 
@@ -38,11 +39,12 @@ std::vector<ShownSetting> shownSettings(const LoadedSettings& loaded, const std:
 // from the default.
 std::string settingsLines(std::span<const ShownSetting> settings);
 
-// The other changes at run time, which no setting has, one line each; empty if there are none.
+// The other changes at run time, for which there is no setting, one line each; empty if there are
+// none.
 std::string changesLines(const RunTimeChanges& changes);
 
-// [{"pointer", "value", "default", "differs", "origin", "file", "line"}, ...]; default is null
-// where a file has the setting and it exists because of others only.
+// [{"pointer", "value", "default", "differs", "origin", "file", "line"}, ...]; "default" is null
+// for a setting that is in a file and exists only because of other settings.
 std::string settingsJson(std::span<const ShownSetting> settings);
 
 }  // namespace merlin::cli

@@ -8,9 +8,9 @@
 
 namespace merlin::cli {
 
-// Each device with its health and what it complains of; below it, if it works, what it measures
-// now: bars for the ball's axes and the numbers of its buttons, the glove's joints in degrees and
-// its posture, the position of each of the tracker's stations. Below all, the last gesture of each
+// Each device with its health and its complaint; below it, if it works, its current values: bars
+// for the ball's axes and the numbers of its buttons, the glove's joints in degrees and its
+// posture, the position of each of the tracker's stations. Below all, the last gesture of each
 // hand.
 std::string liveTable(const shm::DeviceSlots& devices, Timestamp now);
 

@@ -16,9 +16,9 @@ void addGestureTrain(Command gesture, Run& run);
 void addGestureTest(Command gesture, Run& run);
 void addGestureSynthesize(Command gesture, Run& run);
 
-// Synthetic people, numbered from `first`: each makes every ready gesture `times` times and then
-// goes about without making one for `ordinary_s`; then for `kind_s` in each kind of ordinary motion
-// alone.
+// Synthetic people, numbered from `first`: each makes every ready gesture `times` times, then moves
+// without a gesture for `ordinary_s`, then performs each kind of ordinary motion alone for
+// `kind_s`.
 struct SyntheticMovers {
   std::size_t first = 1, people = 20, times = 5;
   double ordinary_s = 600, kind_s = 0;
@@ -28,7 +28,7 @@ struct SyntheticMovers {
 // What the tracker of one of them records; `person`: its number. About 4 MB for ten minutes.
 nn::PathRecording recordingOf(const SyntheticMovers& movers, std::size_t person);
 
-// Strokes of all of them; `lost`: set to the number of takes in which there is none.
+// Strokes of all of them; `lost`: set to the number of takes without a stroke.
 std::vector<nn::LabelledStroke> strokesOf(const SyntheticMovers& movers, std::size_t& lost);
 
 // Time after a gesture in which strokes are neither the gesture nor ordinary motion.

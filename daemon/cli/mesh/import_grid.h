@@ -14,20 +14,20 @@ namespace merlin::cli {
 
 struct ForeignGrid {
   std::string input;
-  std::string output;              // of the command; the work folder lies beside it meanwhile
-  std::uint64_t memory_bytes = 0;  // that merlin-import may take
-  std::string hdu{};               // of a FITS file; empty: the first image
-  std::string variable{};          // of a file of several maps; empty: none is named
+  std::string output;  // output file of the command; the temporary work folder is beside it
+  std::uint64_t memory_bytes = 0;  // limit for merlin-import
+  std::string hdu{};               // HDU of a FITS file; empty: the first image
+  std::string variable{};          // variable of a file with several maps; empty: none is named
 };
 
-// Has merlin-import read the file, and reads what it made, which is as hostile as the file. Errors:
-// those of importForeign() and of range::readGrid(), with the input's name.
+// Lets merlin-import read the file, then reads the result, which is as untrusted as the file.
+// Errors: those of importForeign() and of range::readGrid(), with the input's name.
 Result<render::range::LoadedRange> readForeignGrid(const ForeignGrid& grid,
                                                    const render::range::RangeOptions& options);
 
-// What loadRange() is to read a file of this kind with: readForeignGrid() for a grid of another
-// program's format, else range::readRange(), which takes neither `hdu` nor `variable`. The path of
-// `grid` counts for nothing.
+// The reader that loadRange() needs for a file of this kind: readForeignGrid() for a grid in
+// another program's format, otherwise range::readRange(), which takes neither `hdu` nor `variable`.
+// The path in `grid` is ignored.
 RangeReader readerOf(const std::optional<InputKind>& kind, const ForeignGrid& grid);
 
 }  // namespace merlin::cli

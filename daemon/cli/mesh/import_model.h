@@ -18,8 +18,9 @@ namespace merlin::cli {
 struct ImportedModel {
   render::mesh::LoadedMesh loaded;
   std::string format = "mesh";
-  std::optional<std::size_t> parts{};  // of a foreign format: surfaces that became one mesh
-  // Along whose common edges parts were welded, and vertices that became one with others.
+  std::optional<std::size_t> parts{};  // of a foreign format: surfaces that were joined
+  // Number of common edges along which parts were welded, and of vertices that were merged with
+  // others.
   std::size_t welded_edges = 0, welded_vertices = 0;
   std::optional<PointFacts> cloud{};
   std::vector<std::string> notes{};  // already printed
@@ -27,17 +28,17 @@ struct ImportedModel {
   const render::mesh::Origin& origin() const { return cloud ? cloud->origin : loaded.origin; }
 };
 
-// Where a foreign format is read meanwhile, and the memory that reading may take, in the program
-// that reads a foreign format as in this one.
+// The output, beside which a foreign format is read, and the memory that reading may take, in
+// merlin-import and in this program.
 struct ModelLimits {
   std::string output;
   std::uint64_t memory_bytes = 0;
   render::points::SurfaceSettings surface{};  // of a point cloud
 };
 
-// Reads by our own readers, or by merlin-import, whose result is then read as any mesh. Adds
-// normals; prints the notes. Errors: those of the readers, with the file's name; kInvalidArgument
-// (the memory does not suffice).
+// Reads the file by our own readers, or by merlin-import, whose result is then read like any mesh.
+// Adds normals; prints the notes. Errors: those of the readers, with the file's name;
+// kInvalidArgument (the memory does not suffice).
 Result<ImportedModel> loadModel(const std::string& path, const InputKind& kind,
                                 const ModelLimits& limits);
 

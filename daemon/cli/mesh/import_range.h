@@ -16,19 +16,21 @@
 
 namespace merlin::cli {
 
-// The options that are about range images.
+// The options for range images.
 class RangeImport {
  public:
   void addTo(Command command);
-  // The options of how a file is read, and the filters, for a command that makes its own mesh of
-  // several files: all but --max-edge, --feature, --colour-by and --border.
+  // Adds the options for reading and for the filters only, for a command that makes its own mesh
+  // from several files: all except --max-edge, --feature, --colour-by and --border.
   void addReadingTo(Command command);
-  // The name of an option that was given, for a message that it does not fit; empty if none was.
+  // The name of an option that was given, for a message that it does not apply; empty if none was
+  // given.
   std::string anyGiven() const;
-  // The name of an option that was given and changes a mesh alone, so that it would do nothing to a
-  // range image that is written as one; empty if none was.
+  // The name of a given option that only changes a mesh and so would have no effect if the range
+  // image is written as a range image; empty if none was given.
   std::string givenForMesh() const;
-  // A file name that the greedy --angles took, because it stood before the input.
+  // Returns a file name that --angles took as one of its values, because the option stood before
+  // the input.
   std::optional<std::string> takeInput();
 
   // What can be done about a feature whose file is missing, for a message.
@@ -39,9 +41,9 @@ class RangeImport {
   bool isRaw() const { return !raw_.empty(); }
   bool filters() const { return !between.empty() || !spikes.empty() || median > 0; }
 
-  std::optional<double> scale;  // of any input
-  std::string hdu;              // of a FITS file
-  std::string variable;         // of a file of several maps
+  std::optional<double> scale;  // for any input
+  std::string hdu;              // HDU of a FITS file
+  std::string variable;         // variable of a file with several maps
   std::string colour_by, max_edge, spikes;
   std::vector<std::string> features;
   std::vector<double> between;
@@ -78,16 +80,17 @@ struct ImportedRange {
   render::range::Threshold max_edge;
   std::string max_edge_text;  // for a person
   render::range::RangeMesh mesh;
-  // Of the camera transform's coordinates; the mesh is relative to it.
+  // Origin of the camera transform's coordinates; the mesh is relative to it.
   render::mesh::Origin origin{};
 };
 
-// Reads the file by the options; render::range::readRange() is one.
+// Reads a file with these options, such as render::range::readRange().
 using RangeReader = std::function<Result<render::range::LoadedRange>(
     const std::string& path, const render::range::RangeOptions&)>;
 
 // Reads a range image and its modalities. `texture`: whether a picture will be laid over it.
-// Errors: those of the readers; kInvalidArgument (two features of one name, --colour-by).
+// Errors: those of the readers; kInvalidArgument (two features have the same name; --colour-by is
+// invalid).
 Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture,
                                 const RangeReader& read);
 
@@ -96,10 +99,10 @@ Result<ImportedRange> loadRange(const std::string& path, const RangeImport& opti
 Result<Ok> filterRange(const std::string& path, const RangeImport& options, std::size_t limit,
                        const render::range::Work& work, ImportedRange& range);
 
-// Takes an origin near the scanner's place, which may be the coordinates of a map, from the camera
-// transform, and returns it.
+// Subtracts from the camera transform an origin near the scanner's position, whose coordinates may
+// be those of a map, and returns this origin.
 render::mesh::Origin takeOrigin(render::range::Geometry& geometry);
-// Takes this origin from the camera transform.
+// Subtracts this origin from the camera transform.
 void subtract(const render::mesh::Origin& origin, render::range::Geometry& geometry);
 
 // Makes the mesh, relative to range.origin, which takeOrigin() gives. Errors: kMalformed if no

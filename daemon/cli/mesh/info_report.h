@@ -1,4 +1,4 @@
-// The facts that `merlin mesh info` prints, and how.
+// The facts that `merlin mesh info` prints, and functions that print them.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct ImageInfo {
 };
 
 struct CloudInfo {
-  std::size_t points = 0, coincident = 0;  // coincident: at the place of an earlier one
+  std::size_t points = 0, coincident = 0;  // coincident: points at the position of an earlier one
 };
 
 struct LevelInfo {
@@ -32,21 +32,21 @@ struct LevelInfo {
   float error = 0;                       // its estimate [model units]
 };
 
-// What a file is, whichever it is.
+// The facts about a file of any kind.
 struct FileInfo {
   std::string file, format;
   std::size_t triangles = 0, vertices = 0;
-  std::optional<ImageInfo> image{};  // of range images and elevation maps
-  std::optional<CloudInfo> cloud{};  // of point clouds
+  std::optional<ImageInfo> image{};  // for range images and elevation maps
+  std::optional<CloudInfo> cloud{};  // for point clouds
   LevelInfo levels{};
-  std::optional<std::size_t> parts{};  // of a foreign format
+  std::optional<std::size_t> parts{};  // for a foreign format
   std::vector<FeatureInfo> features{};
   std::size_t texture_bytes = 0;
   std::string unit{};             // of the coordinates; empty if it is not known
   render::mesh::Origin origin{};  // of the coordinates; the box is relative to it
   std::string projection{};       // of the coordinates; empty if it is not known
   render::mesh::Inspection is{};
-  std::vector<Repair> repairs{};  // that reading needed
+  std::vector<Repair> repairs{};  // repairs that reading needed
   std::string mended{}, about{};
 };
 

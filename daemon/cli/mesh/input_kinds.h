@@ -1,4 +1,4 @@
-// What an input of `merlin mesh import` is, by its content: one table.
+// The kinds of inputs of `merlin mesh import`, recognised by their content.
 #pragma once
 
 #include <optional>
@@ -7,27 +7,27 @@
 
 namespace merlin::cli {
 
-inline constexpr const char* kGridKind = "grid";  // of merlin-import
+inline constexpr const char* kGridKind = "grid";  // kinds of merlin-import
 inline constexpr const char* kPointsKind = "points";
 
 enum class InputReader { kRange, kMesh, kForeign };
 
 struct InputKind {
   InputReader reader = InputReader::kMesh;
-  // Of kForeign: what merlin-import is told (its kind, and the ending of the format's usual name),
-  // and the format's name for a person.
+  // For kForeign: the arguments for merlin-import (kind, and the usual ending of the format's
+  // files), and the format's name for a person.
   std::string kind{}, ending{}, format{};
 
-  // Whether it becomes a range image or an elevation map, by whichever reader.
+  // Whether the input becomes a range image or an elevation map, with any reader.
   bool isGrid() const { return reader == InputReader::kRange || kind == kGridKind; }
   bool isPoints() const { return kind == kPointsKind; }
-  // The unit of its coordinates: "m" where its format's rules say so, and of ranges and heights,
-  // which reading converts; else empty.
+  // The unit of the coordinates: "m" if the format defines it, and for ranges and heights, which
+  // the reader converts; otherwise empty.
   std::string unit() const;
 };
 
-// Reads the file's beginning; the name's ending counts only where the content tells nothing.
-// Nothing if no reader is for it, or it cannot be opened.
+// Reads the beginning of the file; the ending of its name counts only if the content is not
+// conclusive. Nothing if there is no reader for the file, or it cannot be opened.
 std::optional<InputKind> inputKindOf(const std::string& path);
 
 // The foreign formats, for messages and help.

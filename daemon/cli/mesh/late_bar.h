@@ -12,10 +12,10 @@
 
 namespace merlin::cli {
 
-// Thread-bound. Must outlive the Work that it gives.
+// Thread-bound. Must outlive the Work that it returns.
 class LateBar {
  public:
-  // `listener`: is told from the beginning on; may be empty.
+  // `listener`: called from the beginning on; may be empty.
   LateBar(const std::string& title, std::size_t pixels, const Clock& clock,
           ProgressListener listener = {})
       : title_(title),

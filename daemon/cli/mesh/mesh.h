@@ -26,7 +26,7 @@ void addMeshScan(Command mesh, Run& run);
 void addMeshSegment(Command mesh, Run& run);
 
 // Opens a multiresolution model (.mrm), or reads a mesh and makes a dendrogram of one level from
-// it. `origin`, if not null, receives that of its coordinates. Errors: those of the readers.
+// it. `origin`, if not null, receives the origin of its coordinates. Errors: those of the readers.
 Result<render::lod::Dendrogram> openModel(const std::string& path,
                                           render::mesh::Origin* origin = nullptr);
 
@@ -56,7 +56,7 @@ void printWritten(const render::mesh::WrittenMesh& written);
 bool hasOrigin(const render::mesh::Origin& origin, bool local,
                const render::mesh::WrittenMesh& written);
 
-// Says, for a person, what became of the mesh's origin in the file; nothing of 0 0 0.
+// Prints, for a person, how the file treats the mesh's origin; prints nothing if that is 0 0 0.
 void printOrigin(const render::mesh::Origin& origin, bool local,
                  const render::mesh::WrittenMesh& written);
 

@@ -1,4 +1,4 @@
-// The import of `merlin mesh import`, which `merlin show` makes as well.
+// The import of models for `merlin mesh import` and `merlin show`.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 namespace merlin::cli {
 
 struct MeshImport {
-  std::vector<std::string> inputs;  // one
+  std::vector<std::string> inputs;  // the input file; always one entry
   std::string output, texture;
   RangeImport range;
   PointImport points;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;      // 0: all cores
-  bool local = false;        // a mesh is written without its origin
+  bool local = false;        // whether a mesh is written without its origin
   bool json = false;
-  bool quiet = false;           // no report; notes and progress are printed all the same
+  bool quiet = false;           // no report; notes and progress are still printed
   ProgressListener progress{};  // may be empty
 
   const std::string& input() const { return inputs.front(); }
 };
 
-// Adds the options that are about the input, and the limits.
+// Adds the options for the input, and the limits.
 void addImportOptions(Command command, MeshImport& options);
 
 // Imports the file; prints notes, progress and the report. Ctrl-C leaves nothing behind. Errors:

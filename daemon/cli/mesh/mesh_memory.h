@@ -25,9 +25,9 @@ Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSi
                           std::size_t limit);
 
 // Checks with meshFileSize(), before the mesh is loaded, that loading it takes at most `limit`
-// bytes. `named`: the file that an error names, this file or the one that it was made from. Errors:
-// kInvalidArgument, with the need and the limit. A file that cannot be read or whose format tells
-// no counts (an ASCII .stl) is not an error here.
+// bytes. `named`: the file that an error names: this file, or the one that it was made from.
+// Errors: kInvalidArgument, with the required memory and the limit. A file that cannot be read or
+// whose format states no counts (an ASCII .stl) is not an error here.
 Result<Ok> roomToRead(const std::string& path, const std::string& named, std::size_t limit);
 
 // Makes the checks of roomForReduction() and roomForPicture() before the mesh is read, with the

@@ -10,7 +10,8 @@ namespace merlin::cli {
 
 // Reads three or four rows of four numbers, separated by spaces or new lines: rotation and
 // translation from the scanner's coordinates to the world's; a fourth row is 0 0 0 1. Whether it is
-// a rotation is for range::faultOf(). Errors, with the file's name: kNotFound, kIo, kMalformed.
+// a rotation is checked by range::faultOf() only. Errors, with the file's name: kNotFound, kIo,
+// kMalformed.
 Result<render::range::Pose> readPose(const std::string& path);
 
 }  // namespace merlin::cli

@@ -18,10 +18,10 @@ Result<render::reduce::Reduction> reduceWithProgress(const render::mesh::Mesh& m
                                                      double& seconds,
                                                      const ProgressListener& listener = {});
 
-// A model that is to be made of a mesh.
+// A model that is to be made from a mesh.
 struct ModelOutput {
   std::string file;        // the model
-  std::string named;       // what errors about the mesh name
+  std::string named;       // the file that errors about the mesh name
   std::string about;       // lines for the model's text "about"
   std::size_t memory = 0;  // limit of the whole command [bytes]
   unsigned threads = 0;    // 0: all cores

@@ -1,4 +1,4 @@
-// The secrets that a report must not have, wherever they stand.
+// The secrets that must not appear anywhere in a report.
 #pragma once
 
 #include <string>
@@ -9,19 +9,19 @@
 
 namespace merlin::cli {
 
-// A report takes nothing that is secret by its meaning: neither the settings that name files with
-// secrets nor these files nor the page's token. This is for what other programs have written down,
-// such as a journal: where a secret that this user can read stands in a text, it is replaced.
+// A report includes neither the settings that name files with secrets, nor these files, nor the
+// page's token. This class is for texts of other programs, such as a journal: it replaces every
+// secret in them that this user can read.
 class KnownSecrets {
  public:
-  // Reads the files that the settings name, and `others` that exist, as far as this user may. The
-  // name of a file that does not exist counts as a secret, since somebody may have written the
-  // secret there. So does an argument of an alarm's program, from 12 characters on: it may be a
-  // token.
+  // Reads the secret files that the settings name, and those of `others` that exist, as far as this
+  // user may. The name of a file that does not exist counts as a secret itself, since somebody may
+  // have entered the secret instead of a name. So does an argument of an alarm's program with at
+  // least 12 characters, since it may be a token.
   KnownSecrets(const Settings& settings, const std::vector<std::string>& others);
   explicit KnownSecrets(const std::vector<std::string>& texts);
 
-  // Those of other settings too.
+  // Adds the secrets of other settings.
   void add(const Settings& settings);
 
   // The text with each secret replaced by kSecretLeftOut. O(text x secrets).
@@ -33,7 +33,7 @@ class KnownSecrets {
   void addFile(const std::string& path);
   void sortByLength();
 
-  std::vector<std::string> texts_;  // the longest first: one may be part of another
+  std::vector<std::string> texts_;  // the longest first, since one may be part of another
 };
 
 }  // namespace merlin::cli

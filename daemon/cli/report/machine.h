@@ -1,4 +1,4 @@
-// What a report says about the machine: versions and hardware, read from /sys, /proc and /etc
+// The texts of a report about the machine: versions and hardware, read from /sys, /proc and /etc
 // without other programs.
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace merlin::cli {
 
-// `root`: the folder that has /sys, /proc, /dev and /etc; empty for this machine's. What is absent
-// is left out of the texts. Reentrant.
+// `root`: the folder that has /sys, /proc, /dev and /etc; empty for this machine's. Missing facts
+// are left out of the texts. Reentrant.
 
 // MERLIN, kernel and distribution, one per line.
 std::string versionsText(const std::string& root);
-// The files of libraries that a process has loaded, by their whole names, which have the versions.
-// Empty if the process is another user's.
+// The files of libraries that a process has loaded, by their full paths, which include the
+// versions. Empty if the process is another user's.
 std::string librariesText(const std::string& root, const std::string& pid);
 
 // CPU, memory, file systems of MERLIN's folders, graphics cards, displays at their connectors, PCI

@@ -16,16 +16,17 @@ struct KeptSettings {
   LoadedSettings loaded;
 };
 
-// What a report is about.
+// The subject of a report: a configuration and its daemon.
 struct ReportSubject {
   std::string config;                // the configuration's file
-  LoadedSettings loaded;             // what it says
+  LoadedSettings loaded;             // the settings in it
   std::string instance;              // name of the daemon
-  std::string run_directory;         // of its sockets; flight recordings are in its folder flight
-  std::vector<KeptSettings> kept{};  // if `loaded` is invalid: instead of it
+  std::string run_directory;         // folder of its sockets; "flight" in it has flight recordings
+  std::vector<KeptSettings> kept{};  // used instead of `loaded` if that is invalid
 
   bool isValid() const { return loaded.verdict() != LoadedSettings::Verdict::kInvalid; }
-  // The settings by which the daemon is found: those of the file, or else the first that are kept.
+  // The settings by which the daemon is found: those of the file, or, if they are invalid, the
+  // first that are kept.
   const Settings& settings() const {
     return isValid() || kept.empty() ? loaded.settings : kept.front().loaded.settings;
   }
@@ -33,14 +34,15 @@ struct ReportSubject {
 
 struct ReportPart {
   PartSettings settings;
-  std::string about;  // what it is, as a clause
+  std::string about;  // a description, as a clause
 };
 
-// In the order in which they are collected; the most useful first, since they get their room first.
-// `subject` outlives them.
+// The parts in the order in which they are collected; the most useful first, since they get space
+// first. `subject` must outlive them.
 std::vector<ReportPart> reportParts(const ReportSubject& subject);
 
-// The findings of a configuration, one per line, without text of the file that may be anything.
+// The findings of a configuration, one per line, without text copied from the file, which may
+// contain anything.
 std::string findingsText(const std::string& file, const LoadedSettings& loaded);
 
 }  // namespace merlin::cli

@@ -14,9 +14,9 @@ struct PackedFile {
   std::string content;  // any bytes
 };
 
-// Writes the archive whole or not at all (writeFile()). `time_s`: that of all files, in seconds
-// since 1970. Equal files and times give equal bytes. The archive is readable by its owner only.
-// Errors: those of writeFile(); kIo (libarchive failed).
+// Writes the archive whole or not at all (writeFile()). `time_s`: time stamp of all files, in
+// seconds since 1970. Equal files and times give equal bytes. The archive is readable by its owner
+// only. Errors: those of writeFile(); kIo (libarchive failed).
 Result<Ok> writeTarGz(const std::string& path, std::span<const PackedFile> files,
                       std::int64_t time_s);
 

@@ -14,21 +14,21 @@ struct ContentFolder {
   std::uint64_t limit_bytes = 0;  // of all files in it together
 };
 
-// Asks the wall. Errors: those of askRole(); kUnsupported (the wall has no content folder, and
-// why).
+// Asks the wall for its content folder. Errors: those of askRole(); kUnsupported (the wall has no
+// content folder, and why).
 Result<ContentFolder> contentFolderOf(const std::string& instance);
 
-// Whether the path lies in the folder itself: then it need not be put there.
+// Whether the path lies directly in the folder, so that it need not be copied there.
 bool isIn(const ContentFolder& folder, const std::string& path);
 
-// Checks that this user may put files there, and returns for how many bytes there is room. O(files
-// in the folder). Errors: kIo, with the folder, its group and the way out; kUnsupported (full).
+// Checks that this user may put files there, and returns the free space in bytes. O(files in the
+// folder). Errors: kIo, with the folder, its group and a remedy; kUnsupported (full).
 Result<std::uint64_t> roomIn(const ContentFolder& folder);
 
 // Gives what was made, a file or a folder of files beside which nothing else is used, to the group
-// of the content folder, and then its name there, in place of what had that name. Whoever looks
-// sees the old one or all of the new one. `made` lies in a work folder in the content folder.
-// Errors: kIo.
+// of the content folder, and then its name there, in place of what had that name. Readers see
+// either the old one or the complete new one. REQUIRES: `made` is in a work folder in the content
+// folder. Errors: kIo.
 Result<Ok> handOver(const std::string& made, const ContentFolder& folder, const std::string& name);
 
 // Copies a file, by sharing its blocks where the file system can. `on_progress` may be empty.

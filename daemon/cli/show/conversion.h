@@ -1,4 +1,4 @@
-// The step of `merlin show` from any file to one that merlind shows.
+// The conversion, in `merlin show`, of any file to one that merlind can show.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 namespace merlin::cli {
 
 struct Conversion {
-  std::string input, output;  // output: a file, or a folder for slides, that is not there yet
+  std::string input, output;  // output: a file, or a folder for slides, that does not exist yet
   FileKind kind = FileKind::kModel;
-  std::uint64_t most_bytes = 0;  // of the output
+  std::uint64_t most_bytes = 0;  // limit of the output's size
 };
 
-// Makes the output as `merlin mesh import` and `merlin image import` do, by these options, or by a
-// copy where nothing is to be converted. Of a folder each picture becomes a slide; what cannot be
-// one is left out with a note. Errors: those of the imports and of copyFile(); kUnsupported (larger
-// than most_bytes), kNotFound (a folder without a picture).
+// Makes the output as `merlin mesh import` and `merlin image import` do with these options, or by
+// copying if no conversion is necessary. Each picture of a folder becomes a slide; other files are
+// left out with a note. Errors: those of the imports and of copyFile(); kUnsupported (larger than
+// most_bytes), kNotFound (a folder without a picture).
 Result<Ok> convert(const Conversion& conversion, const MeshImport& mesh, const ImageImport& image,
                    const ProgressListener& listener);
 

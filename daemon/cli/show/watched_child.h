@@ -1,5 +1,5 @@
-// Runs long work in a child process, so that the parent stays there to say how far it is, to end
-// it, and to clear up, whatever becomes of it.
+// Runs long work in a child process, so that the parent can report its progress, end it, and clean
+// up, however it ends.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@
 namespace merlin::cli {
 
 struct WatchedWork {
-  // Is called in the child; tells the listener how far it is. May print.
+  // Called in the child; reports its progress to the listener. May print.
   std::function<Result<Ok>(const ProgressListener&)> work;
-  // Is called in the parent ten times a second with what the child has told last: its step and its
-  // share; with an empty title before the first.
+  // Called in the parent ten times a second with the child's last report: its step and its share;
+  // with an empty title before the first report.
   ProgressListener on_progress;
-  std::uint64_t most_bytes = 0;  // of each file that the child writes
+  std::uint64_t most_bytes = 0;  // limit for each file that the child writes
 };
 
 // Runs the work until it is done or `stop`, of stopSignals(), is readable. `mask`: the signal mask

@@ -24,8 +24,8 @@ struct AlignKey {
     kQuit
   };
   What what = What::kQuit;
-  bool far = false;  // a move by ten steps
-  int number = 0;    // of a corner, 0 to 3, for kCorner
+  bool far = false;  // whether it is a move by ten steps
+  int number = 0;    // for kCorner: number of the corner, 0 to 3
 
   bool operator==(const AlignKey&) const = default;
 };
@@ -39,12 +39,12 @@ inline constexpr const char* kAlignKeyHelp[] = {
 
 class AlignKeyReader {
  public:
-  // The keys that these bytes complete; bytes that are none are left out. A sequence that begins
-  // with Escape may be in several pieces.
+  // The keys that these bytes complete; bytes that belong to no key are ignored. A sequence that
+  // begins with Escape may be in several pieces.
   std::vector<AlignKey> feed(std::string_view bytes);
 
  private:
-  std::string pending_;  // of a sequence
+  std::string pending_;  // beginning of an incomplete sequence
 };
 
 }  // namespace merlin::cli

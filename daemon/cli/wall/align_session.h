@@ -1,4 +1,4 @@
-// AlignSession: what the keys of `merlin wall align` do, and what its screen shows.
+// AlignSession: executes the keys of `merlin wall align`, and composes its screen.
 #pragma once
 
 #include <functional>
@@ -10,29 +10,29 @@
 
 namespace merlin::cli {
 
-// The wall as a session needs it: a fake in tests.
+// The functions of the wall that a session needs; tests use a fake.
 struct AlignLink {
   std::function<Result<AlignAnswer>(const state::AlignRequest&)> ask;
-  std::function<Result<Ok>(const std::string& card)> show_card;  // or "off"
+  std::function<Result<Ok>(const std::string& card)> show_card;  // name of a test card, or "off"
 };
 
 class AlignSession {
  public:
-  // `output`: the first one that is chosen; empty: the first of all.
+  // `output`: the output that is selected first; empty: the first of the wall.
   AlignSession(AlignLink link, std::string output);
-  // Takes off a test card that the session has put on.
+  // Removes a test card that the session has shown.
   ~AlignSession();
   AlignSession(const AlignSession&) = delete;
   AlignSession& operator=(const AlignSession&) = delete;
 
-  // Reads where the corners are. Errors: the wall's; kInvalidArgument: it has no output that can
-  // be aligned, or none of that name.
+  // Reads the positions of the corners. Errors: those of the wall; kInvalidArgument (it has no
+  // output that can be aligned, or none of that name).
   Result<Ok> begin();
 
-  // Does what a key says; false for the one that ends the session. What goes wrong is shown.
+  // Executes a key; returns false if it ends the session. Errors are shown on the screen.
   bool press(const AlignKey& key);
 
-  // Asks again where the corners are: others move them too.
+  // Reads the positions of the corners again, since others may move them too.
   void refresh();
 
   // Lines for a terminal.

@@ -1,4 +1,4 @@
-// AlignedWall: the alignment of a running wall, by way of its socket.
+// AlignedWall: accesses the alignment of a running wall through its socket.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 
 namespace merlin::cli {
 
-// What the command `align` answers, read.
+// The answer of the command `align`, parsed.
 struct AlignedCorner {
   state::Offset configured, moved;  // [px]
 };
-struct AlignedPoint {  // of the mesh
+struct AlignedPoint {  // a point of the mesh
   int column = 0, row = 0;
   state::Offset moved;  // [px]
 };
@@ -23,16 +23,16 @@ struct AlignedPicture {
   int width = 0, height = 0;
   bool pending = false;
   std::array<AlignedCorner, 4> corners;   // in the order of state::kCornerNames
-  std::vector<AlignedPoint> points = {};  // those that are moved
+  std::vector<AlignedPoint> points = {};  // only those that are moved
   state::SeenAxes axes{};
   int mesh_columns = 0, mesh_rows = 0;  // 0: no mesh
 
-  // Whether anything of it is not where the configuration has it.
+  // Whether anything of this output is not at its configured position.
   bool isMoved() const;
 };
 struct AlignAnswer {
   std::vector<AlignedPicture> outputs;
-  std::size_t undo = 0, redo = 0;  // steps
+  std::size_t undo = 0, redo = 0;  // number of steps
   std::string done;                // what an undo or redo did
   std::string text;                // the JSON
 
@@ -47,7 +47,7 @@ class AlignedWall {
   // Errors: those of askRole(); kMalformed: not an answer of this version.
   Result<AlignAnswer> ask(const state::AlignRequest& request) const;
 
-  // The same, and waits until all outputs show what was changed, 60 s at most. Errors: kTimeout.
+  // The same, then waits until all outputs show the change, 60 s at most. Errors: kTimeout.
   Result<AlignAnswer> askAndWait(const state::AlignRequest& request) const;
 
  private:

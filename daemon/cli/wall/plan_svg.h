@@ -11,11 +11,10 @@
 namespace merlin::cli {
 
 struct WallPlan {
-  render::room::RoomSettings
-      room;  // with explicit panels; without any if the tiles are set by hand
+  render::room::RoomSettings room;  // with explicit panels, or none if the tiles are set by hand
   render::tiles::TilesSettings tiles;
   render::tiles::TilePlan plan;  // of `tiles`
-  double wall_distance_m = 2;    // from the eye at which tiles without a screen are drawn
+  double wall_distance_m = 2;    // distance from the eye at which tiles without a screen are drawn
 };
 
 // The table as lines of text: a heading, a line for each tile, then its overlaps.

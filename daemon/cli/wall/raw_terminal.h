@@ -10,9 +10,9 @@
 
 namespace merlin::cli {
 
-// One at a time. The terminal is as it was before when this is destroyed, and also when the process
-// is ended by a signal (but SIGKILL). Job control (Ctrl-Z) is off meanwhile. Blocks the signals of
-// stopSignals().
+// Only one may exist at a time. The terminal is restored when this is destroyed, and also when a
+// signal other than SIGKILL ends the process. Job control (Ctrl-Z) is off meanwhile. Blocks the
+// signals of stopSignals().
 class RawTerminal {
  public:
   // Errors: kUnsupported: standard input or output is not a terminal.
@@ -22,8 +22,8 @@ class RawTerminal {
   RawTerminal(const RawTerminal&) = delete;
   RawTerminal& operator=(const RawTerminal&) = delete;
 
-  // Waits for keys, `timeout_ms` at most: their bytes, or none. Nothing after a signal that ends
-  // the program, or when the terminal is gone.
+  // Waits for keys, at most `timeout_ms`, and returns their bytes, which may be none. Returns
+  // nothing after a signal that ends the program, or when the terminal is gone.
   std::optional<std::string> read(int timeout_ms);
 
   // Shows these lines instead of the last ones.

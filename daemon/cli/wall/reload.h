@@ -5,8 +5,8 @@
 
 namespace merlin::cli {
 
-// Has the daemon of this instance read its configuration, prints what became of it, and returns
-// the exit status of merlin reload.
+// Lets the daemon of this instance read its configuration again, prints the result, and returns the
+// exit status of merlin reload.
 int reloadNow(const std::string& instance);
 
 }  // namespace merlin::cli

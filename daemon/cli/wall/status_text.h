@@ -17,12 +17,12 @@ namespace merlin::cli {
 // "lost_roles"/ROLE: "silent_s" and a "reason", such as "does not run; it ended 12 s ago". Errors:
 // kIo (no daemon runs), kTimeout (a role does not answer).
 Result<nlohmann::ordered_json> askStatus(const std::string& instance);
-// The same of any daemon.
+// The same for any daemon.
 Result<nlohmann::ordered_json> askStatus(const DaemonAddress& daemon);
 
 // Merges one role's status document into `both`, the object of both roles. A document that is not a
 // JSON object is ignored. The services of each role are kept in "roles"/ROLE/"services"; "services"
-// has those of both roles, and of two with the same name the one that has failed.
+// has those of both roles; if two have the same name, the one that has failed.
 void mergeStatus(nlohmann::ordered_json& both, const std::string& document);
 
 // Adds the lost roles of this instance to `both`, as askStatus() does.

@@ -10,13 +10,13 @@
 
 namespace merlin::cli {
 
-// One at a time, thread-bound. While it exists, the terminal shows another screen and passes each
-// key on at once; afterwards it is as it was before. Blocks the signals of stopSignals(): they
-// arrive as the end of keys.
+// Only one may exist at a time; thread-bound. While it exists, the terminal shows another screen
+// and passes each key on at once; afterwards it is restored. Blocks the signals of stopSignals();
+// key() reports them as kQuit.
 class CursesScreen {
  public:
-  // Whether standard input and output are a terminal that can place text anywhere: not where TERM
-  // is unset or "dumb".
+  // Whether standard input and output are a terminal that can place text anywhere: false if TERM is
+  // unset or "dumb".
   static bool isPossible();
 
   CursesScreen();
@@ -24,8 +24,8 @@ class CursesScreen {
   CursesScreen(const CursesScreen&) = delete;
   CursesScreen& operator=(const CursesScreen&) = delete;
 
-  // Why the terminal cannot be used: ncurses does not know its type. REQUIRES of all that follow:
-  // Ok.
+  // Ok, or why the terminal cannot be used (ncurses does not know its type). REQUIRES for all
+  // functions that follow: it returned Ok.
   Result<Ok> opened() const;
 
   ScreenSize size() const;

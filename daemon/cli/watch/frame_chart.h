@@ -25,15 +25,16 @@ class FrameTimes {
 
 struct ChartPlace {
   int row = 0, column = 0;  // its upper left cell
-  int rows = 0;             // of the bars
-  int columns = 0;          // with the scale to the left of the bars
+  int rows = 0;             // height of the bars
+  int columns = 0;          // including the scale to the left of the bars
 };
 
 // Draws the chart: to the left the scale in milliseconds, then the bars, the newest at the right. A
 // bar above `period_ms`, the time that a frame has at the asked rate, has the style kBad; the
 // period's row is marked where no bar covers it; 0: no period is known. The scale reaches to the
-// largest of the times and the period. `blocks`: with Unicode's block elements, an eighth of a row
-// exact; otherwise with '#'. Nothing if the place has fewer than 2 rows or 20 columns.
+// largest of the times and the period. `blocks`: draws with Unicode's block elements, exact to an
+// eighth of a row; otherwise with '#'. Draws nothing if the place has fewer than 2 rows or 20
+// columns.
 void drawChart(CellGrid& grid, const ChartPlace& place, const FrameTimes& times, double period_ms,
                bool blocks);
 

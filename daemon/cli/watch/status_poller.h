@@ -23,7 +23,7 @@ class StatusPoller {
   // Sends what is due and takes the answers that have arrived; to be called at least ten times a
   // second. True if `state` has changed. While no daemon runs, or none of its roles answers,
   // state.absent says why, and a second without a frame time is added each second; once one answers
-  // again, also after a restart, the state is that of now.
+  // again, also after a restart, the state is the current one.
   bool poll(Timestamp now, WatchedState& state);
 
   static constexpr Duration kPeriod = std::chrono::seconds(1);
@@ -44,7 +44,7 @@ class StatusPoller {
 
   DaemonAddress daemon_;
   std::map<std::string, Role> roles_;  // by their endpoints
-  std::string fault_;                  // why there are none
+  std::string fault_;                  // why there are no roles
   Timestamp next_{};
   bool waiting_ = false;  // a round has begun whose answers have not all arrived
 };

@@ -18,10 +18,11 @@ struct WatchedEvent {
 };
 
 struct WatchedState {
-  std::string name;    // of the daemon: its instance or its addresses
+  std::string name;    // name of the daemon: its instance or its addresses
   std::string absent;  // why nothing is known at present; empty while the daemon answers
-  nlohmann::ordered_json status = nlohmann::ordered_json::object();  // of all roles: mergeStatus()
-  std::vector<WatchedEvent> events;                                  // oldest first
+  // The statuses of all roles, joined by mergeStatus().
+  nlohmann::ordered_json status = nlohmann::ordered_json::object();
+  std::vector<WatchedEvent> events;  // oldest first
   FrameTimes frame_times;
 };
 
@@ -30,9 +31,9 @@ struct ScreenSize {
 };
 
 // Lays out title, wall, devices, outputs, failed services, chart and last events, as far as there
-// is room: chart and events get the rows that the others leave. Where not even those fit, the last
-// row says how many rows are missing. While `absent` is not empty, the last state stays visible,
-// but dim. Values of the wrong type in the status are shown as "-".
+// is room: chart and events get the rows that the others leave. If not even those fit, the last row
+// says how many rows are missing. While `absent` is not empty, the last state stays visible, but
+// dim. Values of the wrong type in the status are shown as "-".
 CellGrid layOut(const WatchedState& state, const ScreenSize& size, bool blocks);
 
 }  // namespace merlin::cli

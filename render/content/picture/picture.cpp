@@ -17,7 +17,7 @@ Result<Ok> readPictureTile(image::PyramidReader& reader, PictureKind kind,
   if (const auto also = reader.readTile({place.level, 0, place.row}, left); !also) return also;
   const std::size_t filled = 4 * static_cast<std::size_t>(there);
   constexpr std::size_t kRow = std::size_t{4} * kTileSide;
-  // A panorama that is narrower than what is left over repeats its own first pixels.
+  // The rest of the tile continues with the panorama's first pixels, at most with its whole width.
   const std::size_t count = std::min(kRow - filled, 4 * static_cast<std::size_t>(level.width));
   for (std::size_t y = 0; y < kTileSide; ++y)
     std::copy_n(&left[y * kRow], count, &pixels[y * kRow + filled]);

@@ -23,7 +23,7 @@ struct Picture {
   std::shared_ptr<const image::PyramidFile> file;
   PictureKind kind = PictureKind::kPlane;
   std::vector<TilePixels> coarsest;  // the tiles of the coarsest level, row by row: 16 at most
-  bool is_nothing = false;           // nothing is drawn of it
+  bool is_nothing = false;           // the picture is not drawn
 };
 
 // Opens a pyramid and decodes its coarsest level: a few milliseconds. Errors: those of
@@ -36,7 +36,8 @@ Result<std::shared_ptr<const Picture>> makePicture(std::shared_ptr<const image::
 // A picture of one pixel that is not drawn, for a wall that has nothing to show yet.
 std::shared_ptr<const Picture> noPicture();
 
-// Reads a tile for drawing as `kind`: beyond the right edge of a panorama its left edge goes on.
+// Reads a tile for drawing as `kind`: a panorama continues beyond its right edge with its left
+// edge.
 Result<Ok> readPictureTile(image::PyramidReader& reader, PictureKind kind,
                            const image::TilePlace& place, TilePixels& pixels);
 

@@ -15,8 +15,9 @@ using image::TilePlace;
 
 // Texels of full detail for each pixel of the wall: 1 to 4, depending on the zoom.
 constexpr std::size_t kTexelsPerPixel = 2;
-// Tiles that are taken up in a frame: while the wall moves, so few that their upload (0.1 ms each,
-// in each context) makes no frame late; while it stands, slices of the upload bound the time.
+// Maximum number of loaded tiles that one frame takes into the cache. While the wall moves, these
+// are few enough that their upload (0.1 ms each, in each context) makes no frame late; while it
+// stands still, the upload is divided into slices, which bound the time.
 constexpr std::size_t kTakenMoving = 6, kTakenStill = 64;
 // Share of the slots that one frame's tiles may take; the rest is for coarser ones and for what was
 // seen just now.
@@ -116,8 +117,9 @@ void PictureContent::choose(std::size_t step, std::span<const ContentView> views
   askForMissing(views);
 }
 
-// Tiles that this frame needs, or their coarser ones, must not make way for those that arrive.
-// `held`: tiles taken before that some context has not uploaded yet.
+// Moves loaded tiles into the cache. Tiles that this frame needs, or the coarser ones in their
+// place, are marked as used first, so that the new tiles do not replace them. `held`: tiles taken
+// before that some context has not uploaded yet.
 void PictureContent::takeLoaded(std::size_t held) {
   for (const auto& leaves : leaves_) {
     for (const TilePlace& leaf : leaves) {
@@ -134,13 +136,13 @@ void PictureContent::takeLoaded(std::size_t held) {
   }
 }
 
-// The finest choice that fits into the cache.
+// Chooses the finest tiles that fit into the cache.
 void PictureContent::chooseLeaves(double texel_px, std::span<const ContentView> views) {
   constexpr int kAttempts = 24;
   for (int i = 0; i < kAttempts; ++i) {
     if (chooseWithin(texel_px * std::exp2(0.5 * i), views)) return;
   }
-  // All of the coarsest level, which is always there.
+  // Otherwise takes all tiles of the coarsest level, which is always in the cache.
   for (auto& leaves : leaves_) {
     leaves.clear();
     const PyramidLevel& coarsest = picture_->file->levels().back();
@@ -165,7 +167,8 @@ bool PictureContent::chooseWithin(double texel_px, std::span<const ContentView> 
   return all.size() <= most;
 }
 
-// The tile itself, or the nearest coarser one that is there, and its slot.
+// Returns the tile itself, or the nearest coarser one that is in the cache; sets `slot` to its
+// slot.
 TilePlace PictureContent::nearestThere(const TilePlace& leaf, std::size_t& slot) {
   const Levels levels = picture_->file->levels();
   TilePlace place = leaf;
@@ -192,7 +195,7 @@ void PictureContent::addPieces(std::span<const ContentView> views) {
     list_.pieces[tile].clear();
     if (picture_->is_nothing) continue;
     for (const TilePlace& leaf : leaves_[i]) addPiece(leaf, list_.pieces[tile]);
-    // By texture: see PictureRenderer.
+    // Sorts the pieces by texture: see PictureRenderer.
     std::ranges::stable_sort(list_.pieces[tile], {},
                              [](const TilePiece& p) { return p.slot / kSlotsPerTexture; });
   }
@@ -218,7 +221,7 @@ void PictureContent::addPiece(const TilePlace& leaf, std::vector<TilePiece>& pie
   pieces.push_back(piece);
 }
 
-// Flat pieces of the surface, with their places in the texture of `source`.
+// Adds flat pieces of the surface, with their coordinates in the texture of `source`.
 void PictureContent::addMesh(const PixelRect& rect, const TilePlace& source) {
   const int n = surface_->pieces(rect);
   const double scale = std::ldexp(1.0, -source.level);
@@ -246,8 +249,8 @@ void PictureContent::addMesh(const PixelRect& rect, const TilePlace& source) {
   }
 }
 
-// Coarse ones first, so that something sharper comes soon everywhere; of one level those in the
-// middle of a view first.
+// Asks for the missing tiles: coarse ones first, so that something sharper soon appears everywhere;
+// within a level, those nearest to the middle of a view first.
 void PictureContent::askForMissing(std::span<const ContentView> views) {
   const Levels levels = picture_->file->levels();
   std::vector<Wanted> wanted;

@@ -1,7 +1,7 @@
 // PictureContent: shows one picture of any size at a time, as a plane or as a panorama: chooses
 // tiles of its pyramid for each view, asks for those that are missing, and draws the nearest
-// coarser ones until they are there. Another picture takes its place between two frames, without
-// OpenGL work.
+// coarser ones until they are loaded. It can be replaced by another picture between two frames,
+// without OpenGL work.
 #pragma once
 
 #include <cstddef>
@@ -40,19 +40,19 @@ class PictureDetail final : public DetailAxis {
 };
 
 struct PictureMemory {
-  // Of tiles, in memory and in textures, at most; 0: as much as full detail of the wall takes, and
-  // at least 192 MiB, so that what was seen just now is still there.
+  // Maximum size of the tiles, in memory and in textures together; 0: as much as full detail of the
+  // wall takes, and at least 192 MiB, so that tiles that were seen recently are kept.
   std::size_t bytes = 0;
-  std::size_t contexts = 1;  // that draw
+  std::size_t contexts = 1;  // number of OpenGL contexts that draw
 };
 
-// How many tiles may be there at once, for a wall of so many pixels.
+// Returns how many tiles can be kept at once, for a wall of this many pixels.
 std::size_t pictureSlots(const PictureMemory& memory, std::size_t wall_px) noexcept;
 
 // What the renderers draw: a part of the picture, from one slot of the textures.
 struct TilePiece {
   std::size_t slot = 0;
-  std::uint32_t first = 0, count = 0;  // of the index buffer's values
+  std::uint32_t first = 0, count = 0;  // range in the index buffer
 };
 struct PictureVertex {
   float x = 0, y = 0, z = 0;  // content coordinates [m]
@@ -73,7 +73,7 @@ class PictureContent final : public Content {
                  std::size_t wall_px, const PictureMemory& memory);
 
   // Shows another picture from the next choose() on. To be called between frames, on the wall's
-  // thread. Microseconds for each tile of its coarsest level.
+  // thread. Takes some microseconds per tile of its coarsest level.
   void show(std::shared_ptr<const Picture> picture);
   const Picture& picture() const noexcept { return *picture_; }
   void setBackground(const std::array<float, 3>& rgb) noexcept { list_.background = rgb; }
@@ -93,7 +93,7 @@ class PictureContent final : public Content {
   // A tile that a view needs, and the view in which it is largest.
   struct Wanted {
     image::TilePlace place;
-    double distance = 0;  // from the middle of the view, in halves of its size
+    double distance = 0;  // from the middle of the view, in units of half its size
   };
   void takeLoaded(std::size_t held);
   void chooseLeaves(double texel_px, std::span<const ContentView> views);
@@ -108,7 +108,7 @@ class PictureContent final : public Content {
   TileSource& tiles_;
   double radius_m_;
   PictureDetail detail_;
-  std::unique_ptr<TileCache> cache_;  // attach() lets renderers join it
+  std::unique_ptr<TileCache> cache_;  // not const: attach() lets renderers join it
   std::unique_ptr<const Surface> surface_;
   bool moving_ = false, all_there_ = false;
   std::vector<std::vector<image::TilePlace>> leaves_;  // by view

@@ -98,7 +98,7 @@ void PictureRenderer::beginView(std::size_t tile, int width, int height) {
   gl_.UniformMatrix4fv(clip_location_, 1, GL_FALSE, clip.data());
 }
 
-// Binds a texture, which is made where it is not there yet.
+// Binds a texture; creates it first if it does not exist yet.
 void PictureRenderer::bindTexture(std::size_t texture) {
   if (textures_[texture] != 0) return gl_.BindTexture(GL_TEXTURE_2D_ARRAY, textures_[texture]);
   gl_.GenTextures(1, &textures_[texture]);

@@ -1,6 +1,6 @@
 // PictureRenderer: draws what PictureContent chose in one OpenGL context, from textures that hold
-// its tiles: each texture is an array of kSlotsPerTexture slots of the cache, made when one of them
-// is first filled.
+// its tiles: each texture is an array of kSlotsPerTexture slots of the cache, and is created when
+// one of its slots is first filled.
 #pragma once
 
 #include <memory>
@@ -44,7 +44,7 @@ class PictureRenderer final : public ContentRenderer {
   GLuint program_, array_ = 0, vertices_ = 0, indices_ = 0;
   GLint clip_location_ = -1, layer_location_ = -1;
   std::vector<GLuint> textures_;
-  std::size_t looked_at_ = 0;  // slots that were looked at in this frame
+  std::size_t looked_at_ = 0;  // slots that were checked in this frame
 };
 
 }  // namespace merlin::render::content

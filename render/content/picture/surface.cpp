@@ -78,7 +78,7 @@ class Panorama final : public Surface {
             -level_m * std::cos(longitude)};
   }
 
-  // A sphere about the middle of the rectangle, which encloses it, against each edge of the view.
+  // Tests a sphere that encloses the rectangle against each edge of the view.
   bool maySee(const PictureView& view, const PixelRect& rect) const override {
     const Eigen::Vector3d middle = at((rect.left + rect.right) / 2, (rect.top + rect.bottom) / 2);
     const double half_angle = std::min((angleAcross(rect) + angleDown(rect)) / 2, kPi);
@@ -96,7 +96,7 @@ class Panorama final : public Surface {
     return true;
   }
 
-  // By its height, since a pixel's width shrinks towards the poles.
+  // Uses the height of the pixels, since their width shrinks towards the poles.
   double pixelSize(const PictureView& view, const PixelRect& rect) const override {
     constexpr double kTooLarge = kPi / 4;
     if (std::max(angleAcross(rect), angleDown(rect)) > kTooLarge) return kInfinite;
@@ -114,7 +114,7 @@ class Panorama final : public Surface {
     return size > 0 ? size : kInfinite;
   }
 
-  // About 1.5 degrees each, so that flat pieces are off by less than 1e-4 radians.
+  // Each piece spans about 1.5 degrees, so that flat pieces are off by less than 1e-4 radians.
   int pieces(const PixelRect& rect) const override {
     constexpr double kPiece = 1.5 * kPi / 180;
     const double angle = std::max(angleAcross(rect), angleDown(rect));

@@ -31,9 +31,9 @@ class Surface {
   // Whether any part of the rectangle may be visible; true in doubt.
   virtual bool maySee(const PictureView& view, const PixelRect& rect) const = 0;
   // The largest size of a picture's pixel in the view, within the rectangle [px of the tile].
-  // Infinite where the rectangle reaches behind the eye or is too large to say.
+  // Infinite if the rectangle reaches behind the eye or is too large for an estimate.
   virtual double pixelSize(const PictureView& view, const PixelRect& rect) const = 0;
-  // Number of flat pieces, in each direction, that the rectangle is drawn in.
+  // Number of flat pieces, in each direction, into which the rectangle is divided for drawing.
   virtual int pieces(const PixelRect& rect) const = 0;
   // Whether the right edge joins the left one.
   virtual bool joins() const = 0;
@@ -44,7 +44,7 @@ class Surface {
 std::unique_ptr<const Surface> makePlane(double width, double height, double radius_m);
 
 // A sphere about the origin; its inside shows the picture by its longitude and latitude
-// (equirectangular): the middle lies at -z, the upper edge at +y. Same requirements.
+// (equirectangular): the middle lies at -z, the upper edge at +y. REQUIRES: width, height > 0 [px].
 std::unique_ptr<const Surface> makePanorama(double width, double height, double radius_m);
 
 }  // namespace merlin::render::content

@@ -109,7 +109,7 @@ const TileSlot* TileCache::neighbour(const TilePlace& place, int right, int down
   return found == by_place_.end() ? nullptr : &slots_[found->second];
 }
 
-// The borders of a new tile and of its neighbours.
+// Refreshes the borders of a new tile and of its neighbours.
 void TileCache::refreshBorders(const TilePlace& place) {
   for (int down = -1; down <= 1; ++down) {
     for (int right = -1; right <= 1; ++right) {

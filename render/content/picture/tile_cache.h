@@ -45,21 +45,21 @@ struct UploadedVersions {
 // threads while a frame is drawn.
 class TileCache {
  public:
-  // REQUIRES: slots is a multiple of kSlotsPerTexture, so more than the 16 tiles that a coarsest
-  // level has at most.
+  // REQUIRES: slots is a multiple of kSlotsPerTexture, so that it exceeds the 16 tiles that a
+  // coarsest level has at most.
   explicit TileCache(std::size_t slots);
 
   // Largest number of slots whose textures take at most `bytes` in all `contexts` together.
   static std::size_t slotsWithin(std::size_t bytes, std::size_t contexts) noexcept;
 
-  // Forgets all tiles. Those of the coarsest level are put at once and are never replaced.
+  // Forgets all tiles and puts those of this picture's coarsest level, which are never replaced.
   void show(const Picture& picture);
 
   void beginFrame() noexcept { ++frame_; }
-  // The slot of a tile, which counts as used in this frame; nothing if the tile is not there.
+  // Returns a tile's slot and marks it as used in this frame; nothing if the cache lacks the tile.
   std::optional<std::size_t> use(const image::TilePlace& place);
-  // Puts a tile in the place of the one that was used longest ago. False, and nothing is changed,
-  // if all of them are used in this frame, or if the tile is there already.
+  // Puts a tile in the place of the one that was used longest ago. Returns false and changes
+  // nothing if all tiles are used in this frame or if the cache has the tile already.
   bool put(const image::TilePlace& place, TilePixels pixels);
   // Frees the pixels that all contexts have uploaded; returns how many slots still hold theirs.
   std::size_t freeUploaded();
@@ -68,7 +68,7 @@ class TileCache {
   std::size_t used() const noexcept { return by_place_.size(); }
   const TileSlot& slot(std::size_t i) const noexcept { return slots_[i]; }
 
-  // A context begins or ceases to draw from this cache. Thread-safe.
+  // Called when a context begins or ceases to draw from this cache. Thread-safe.
   UploadedVersions& join();
   void leave(const UploadedVersions& who);
 

@@ -20,9 +20,9 @@ PixelRect rectOf(Levels levels, const image::TilePlace& place);
 // The tile of the next coarser level that covers it. REQUIRES: place.level + 1 < levels.size().
 image::TilePlace parentOf(Levels levels, const image::TilePlace& place);
 
-// Adds the tiles that cover all that the view may show of the picture, each once, such that no
-// pixel of theirs is larger in the view than `pixel_px`, unless it is one of the finest level.
-// Returns false if there are more than `most`: then some are missing. O(tiles * levels).
+// Adds the tiles that cover the part of the picture that the view may show, each once, such that
+// none of their pixels is larger in the view than `pixel_px`, unless the tile is of the finest
+// level. Returns false if there are more than `most`; then some are missing. O(tiles * levels).
 bool chooseTiles(Levels levels, const Surface& surface, const PictureView& view, double pixel_px,
                  std::size_t most, std::vector<image::TilePlace>& tiles);
 

@@ -81,7 +81,8 @@ void TileLoader::run(const std::stop_token& stop, Progress& progress) {
   }
 }
 
-// Those of another call come first: they may well be readable.
+// Appends unreadable tiles again after kTryAgain. Other tiles that were asked for come first, since
+// they may well be readable.
 void TileLoader::tryAgain() {
   const Timestamp now = clock_.now();
   std::erase_if(again_, [&](const image::TilePlace& place) {
@@ -117,7 +118,7 @@ void TileLoader::load(std::unique_lock<std::mutex>& lock,
     loaded_.push_back(std::move(tile));
     return;
   }
-  // The wall draws without it; told of it once, it does not draw the same again and again.
+  // The wall draws without this tile. It is told so only once, since it draws again each time.
   if (unreadable_.count(place) == 0) loaded_.push_back({picture, place, {}});
   noteFault(place, fault);
   if (unreadable_.count(place) > 0) again_.push_back(place);

@@ -1,4 +1,4 @@
-// TileLoader: reads and decodes the tiles that are asked for, on a thread of its own.
+// TileLoader: reads and decodes tiles on request, on its own thread.
 #pragma once
 
 #include <condition_variable>
@@ -24,16 +24,16 @@ struct LoadedTile {
   TilePixels pixels;  // empty: the tile cannot be read
 };
 
-// Port (an interface) to whoever loads. Called on the wall's thread, and never waits.
+// Port (an interface): loads tiles. Called on the wall's thread; never waits.
 class TileSource {
  public:
   virtual ~TileSource() = default;
 
   // Asks for tiles of a picture, the most urgent first, instead of those that were asked for
-  // before. A tile that could not be read is tried again after some time while it is among them.
+  // before. A tile that could not be read is tried again after some time if it is still asked for.
   virtual void ask(const std::shared_ptr<const Picture>& picture,
                    std::span<const image::TilePlace> places) = 0;
-  // A tile that was loaded, if there is one; tiles that nobody asks for any more may be among them.
+  // Returns a tile that was loaded, if there is one. It may be one that nobody asks for any more.
   virtual std::optional<LoadedTile> take() = 0;
   // Whether take() would return a tile.
   virtual bool hasLoaded() const = 0;
@@ -42,7 +42,7 @@ class TileSource {
   virtual bool isLoading() const = 0;
 };
 
-// All are for the wall's thread, takeFaults() is thread-safe.
+// Thread-bound to the wall's thread, except takeFaults(), which is thread-safe.
 class TileLoader final : public TileSource {
  public:
   // `watch` and `clock` must outlive this object. Memory: kMostLoaded tiles, and a reader.
@@ -61,7 +61,8 @@ class TileLoader final : public TileSource {
   std::vector<std::string> takeFaults();
 
   static constexpr std::size_t kMostLoaded = 32;  // tiles that wait for take()
-  // A file server that does not answer for a moment leaves no part of a picture coarse for good.
+  // After this time an unreadable tile is tried again, so that no part of a picture stays coarse
+  // because a file server did not answer for a moment.
   static constexpr Duration kTryAgain = std::chrono::seconds(10);
 
  private:
@@ -77,10 +78,10 @@ class TileLoader final : public TileSource {
   std::shared_ptr<const Picture> picture_;
   std::deque<image::TilePlace> places_;      // still to load
   std::vector<image::TilePlace> again_;      // asked for, and to be tried again
-  std::optional<image::TilePlace> loading_;  // by the thread, now; of picture_
+  std::optional<image::TilePlace> loading_;  // the tile of picture_ that the thread loads now
   std::deque<LoadedTile> loaded_;
   std::map<image::TilePlace, Timestamp> unreadable_;  // of picture_: when each was tried last
-  bool said_ = false;                                 // of picture_: that a tile cannot be read
+  bool said_ = false;  // a tile of picture_ was reported as unreadable
   std::vector<std::string> faults_;
   WatchedThread thread_;
 };

@@ -28,7 +28,7 @@ class ShaderPass final : public CorrectionPass {
   // From now on run() draws in `context`, which must be current and outlive end(). Errors:
   // kUnsupported (the shader does not compile), with OpenGL's message.
   Result<Ok> begin(const gl::GlContext& context);
-  // Off again. To be called before the context is destroyed.
+  // Switches the pass off again. Call it before the context is destroyed.
   void end();
 
   // The first call with a map creates its textures: 24 bytes for each pixel. The textures of maps
@@ -55,8 +55,8 @@ class ShaderPass final : public CorrectionPass {
   const gl::GlApi* gl_ = nullptr;  // null: off
   GLuint program_ = 0, vertices_ = 0;
   std::list<Tables> tables_;
-  std::list<std::weak_ptr<const CorrectionMap>> refused_;  // maps that it cannot do
-  mutable std::mutex mutex_;                               // of fault_
+  std::list<std::weak_ptr<const CorrectionMap>> refused_;  // maps that it cannot compute
+  mutable std::mutex mutex_;                               // guards fault_
   std::string fault_;
 };
 

@@ -1,4 +1,4 @@
-// From a float map of an MPCDI file to a warp, and what no warp can be. Pure.
+// Converts a float map of an MPCDI file to a warp, and rejects invalid maps. Pure.
 #pragma once
 
 #include <string>

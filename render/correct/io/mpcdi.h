@@ -23,8 +23,8 @@ struct MpcdiRegion {
   std::string buffer, id;
   int width = 0, height = 0;  // [px]
   double gamma = 0;           // of its colours; 0: not in the file
-  // Which part of its buffer's picture its warp's 0..1 is, as its attributes say it ("x 0.5, y 0,
-  // xSize 0.5, ySize 1"); empty: the whole. It is not used: see README.md.
+  // The part of the buffer's picture that the warp's range 0..1 stands for, as the region's
+  // attributes say ("x 0.5, y 0, xSize 0.5, ySize 1"); empty: the whole. Not used: see README.md.
   std::string part{};
 };
 

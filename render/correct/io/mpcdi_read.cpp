@@ -77,7 +77,7 @@ std::optional<double> numberIn(const std::string& text, double low, double high)
   return value;
 }
 
-// The same for a number of pixels, which may be written as "640" or "640.0".
+// Parses a number of pixels, 1 to kMostResolution, which may be written as "640" or "640.0".
 std::optional<int> pixelsIn(const std::string& text) {
   const auto value = numberIn(text, 1, kMostResolution);
   if (!value || *value != std::floor(*value)) return std::nullopt;

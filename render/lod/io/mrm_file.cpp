@@ -103,7 +103,7 @@ class MrmReader {
   }
 
   Result<Ok> readSection(const SectionEntry& e) {
-    if (nameOf(e.kind) == nullptr) {  // the size of its values is not known
+    if (nameOf(e.kind) == nullptr) {  // it cannot be read, since the size of its values is unknown
       if (e.kind >= kFirstOptional) return Ok{};
       return Error{Errc::kUnsupported,
                    fmt::format("{}: section kind {} is not known", path_, e.kind)};

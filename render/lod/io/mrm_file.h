@@ -21,11 +21,11 @@ Result<Dendrogram> readMrm(const std::string& path);
 // if not null, receives the stamp of the file that was read. Errors: also kIo if the file changed
 // while it was read, or does not fit into memory.
 Result<Dendrogram> readMrmCopy(const std::string& path, FileStamp* stamp = nullptr);
-// The same of a file that is open. `path`: for messages.
+// As above, for an open file. `path`: used only in messages.
 Result<Dendrogram> readMrmCopy(int fd, const std::string& path, FileStamp* stamp = nullptr);
 
-// Checks that the names of features stay different in an .mrm file, which keeps the whole
-// characters within the first 31 bytes of each; call it before long work. Errors: kUnsupported,
+// Checks that the names of features stay different in an .mrm file, which keeps only the complete
+// characters within the first 31 bytes of a name; call it before long work. Errors: kUnsupported,
 // without the file's name.
 Result<Ok> checkNames(const mesh::Mesh& mesh);
 

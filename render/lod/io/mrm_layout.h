@@ -12,12 +12,12 @@ inline constexpr std::uint32_t kVersion = 1;
 inline constexpr std::uint64_t kAlignment = 64;  // of each section's start
 
 enum class Kind : std::uint32_t {
-  kPositions = 1,  // f32 x 3, a node
-  kFeature = 2,    // f32 x dimension, a node; name = the feature's
-  kParents = 3,    // u32, a collapse
-  kTriangles = 4,  // u32 x 3, a triangle
-  kAlive = 5,      // u32, a level
-  kError = 6,      // f32, a level
+  kPositions = 1,  // per node: f32 x 3
+  kFeature = 2,    // per node: f32 x dimension; the section has the name of the feature
+  kParents = 3,    // per collapse: u32
+  kTriangles = 4,  // per triangle: u32 x 3
+  kAlive = 5,      // per level: u32
+  kError = 6,      // per level: f32
   kAbout = 7,      // u8: "key=value" lines of UTF-8 text
   // Kinds from 1000 (kFirstOptional) on are optional: a reader skips those it does not know. An
   // unknown kind below is an error.

@@ -57,7 +57,7 @@ struct Model {
     sections.push_back(std::move(s));
   }
 
-  // A section whose rows are already in memory in the layout of the file.
+  // Adds a section whose rows are already in memory in the layout of the file.
   template <typename T>
   void add(Kind kind, std::span<const T> values, std::size_t dimension,
            std::string_view name = "") {
@@ -84,7 +84,7 @@ Model modelOf(const Dendrogram& d) {
   return model;
 }
 
-// Rows of one value each, `value_of(row)`.
+// Returns a function that writes rows of one value each, value_of(row).
 template <typename T, typename ValueOf>
 Rows each(ValueOf value_of) {
   return [value_of](std::size_t first, std::size_t end, std::byte* to) {
@@ -95,7 +95,7 @@ Rows each(ValueOf value_of) {
   };
 }
 
-// Values of the nodes, in the order of the dendrogram.
+// Returns a function that writes the nodes' values in the order of the dendrogram.
 Rows gathered(const std::vector<float>& leaves, const std::vector<float>& inner,
               std::size_t dimension, const RemovalOrder& order) {
   return [&leaves, &inner, dimension, &order](std::size_t first, std::size_t end, std::byte* to) {
@@ -107,7 +107,7 @@ Rows gathered(const std::vector<float>& leaves, const std::vector<float>& inner,
   };
 }
 
-// The triangles' corners, in the order of the dendrogram.
+// Returns a function that writes the triangles' corners in the order of the dendrogram.
 Rows corners(const mesh::Mesh& mesh, const RemovalOrder& order) {
   return [&](std::size_t first, std::size_t end, std::byte* to) {
     for (std::size_t i = first; i < end; ++i, to += 3 * sizeof(std::uint32_t)) {

@@ -42,7 +42,8 @@ std::array<std::int32_t, 2> shiftOf(const Range& range, const SurfaceTexture& te
   return shift;
 }
 
-// Whether moved coordinates stay within `most` of the picture's sides, to either side.
+// Whether the coordinates, moved back by `shift`, lie between -most and most, in sides of the
+// picture.
 bool spans(const Range& range, const std::array<std::int32_t, 2>& shift, int most) {
   for (std::size_t k = 0; k < 2; ++k) {
     const double low = static_cast<double>(range.low[k]) - shift[k];
@@ -70,7 +71,7 @@ class Connected {
   std::vector<std::uint32_t> parent_;
 };
 
-// The colour with so many bits for each component.
+// Returns the colour rounded to `bits` bits per component.
 Colour rounded(const Colour& colour, int bits) {
   Colour result{};
   const int steps = (1 << bits) - 1;
@@ -123,7 +124,7 @@ class ChartFinder {
     regions_.resize(charts_.charts.size());
   }
 
-  // A vertex that triangles of two textures share connects them all the same.
+  // A vertex also connects the triangles of two textures that share it.
   void joinTriangles() {
     connected_ = Connected(mesh_.vertexCount());
     for (std::size_t t = 0; t < mesh_.triangleCount(); ++t) {
@@ -175,7 +176,7 @@ class ChartFinder {
     }
   }
 
-  // Charts of whole texels; those that no triangle uses go.
+  // Rounds the regions to charts of whole texels; removes charts that no triangle uses.
   void roundRegions() {
     std::vector<Chart> used;
     std::vector<std::uint32_t> number(charts_.charts.size(), kNoTexture);
@@ -218,7 +219,8 @@ class ChartFinder {
     return found->second;
   }
 
-  // Gives each colour a number. Where there are too many, they are rounded until they are few.
+  // Gives each colour a number. If there are too many colours, rounds them until they are few
+  // enough.
   void numberColours() {
     for (int bits = 8;; --bits) {
       charts_.colours.clear();

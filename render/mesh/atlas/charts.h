@@ -1,5 +1,5 @@
-// Which part of which picture a mesh's triangles use: the rectangles of an atlas before they are
-// packed. Private to render/mesh/atlas.
+// Finds the parts of the texture images that a mesh's triangles use: the rectangles of an atlas
+// before they are packed. Private to render/mesh/atlas.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace merlin::render::mesh {
 
-// A part of a picture and of its repeats, in the picture's texels: x to the right from its left
-// edge, y downwards from its upper one. Pixels beyond the picture are those of its wrapping.
+// A rectangle of a texture image and its repeats, in texels of the image: x to the right from its
+// left edge, y downwards from its upper edge. Texels outside the image follow from its wrap mode.
 struct Chart {
   SurfaceTexture texture;
   std::int64_t x = 0, y = 0;
@@ -20,11 +20,11 @@ struct Chart {
 
 using Colour = std::array<std::uint8_t, 3>;  // red, green, blue
 
-// What a triangle has in the atlas.
+// The chart or the plain colour that a triangle has in the atlas.
 struct TrianglePlace {
-  std::uint32_t chart = kNoTexture;  // index of a chart; kNoTexture: a colour
-  std::uint32_t colour = 0;          // index of a colour
-  // Subtracted from the texture coordinates: whole periods of the picture.
+  std::uint32_t chart = kNoTexture;  // index of a chart; kNoTexture: plain colour
+  std::uint32_t colour = 0;          // index of a colour, if there is no chart
+  // Whole periods of the image, to be subtracted from the texture coordinates.
   std::array<std::int32_t, 2> shift{};
   bool operator==(const TrianglePlace&) const = default;
 };
@@ -32,19 +32,20 @@ struct TrianglePlace {
 struct Charts {
   std::vector<Chart> charts;
   std::vector<Colour> colours;
-  std::vector<TrianglePlace> places;  // of each triangle
+  std::vector<TrianglePlace> places;  // one per triangle
   std::size_t mean_coloured = 0, rounded_colours = 0;
 };
 
 // The mean of all pixels.
 Colour meanOf(const image::ImageFile& picture) noexcept;
 
-// Texture coordinates as texels of the picture.
+// Converts texture coordinates to texels of the image.
 std::array<double, 2> texelsOf(const image::ImageFile& picture, double u, double v) noexcept;
 
-// Triangles that are connected by vertices are moved by whole periods to [0, 1) together, so that
-// no seam arises between them; where they span more than kTogether periods, each is moved for
-// itself. REQUIRES: as joinTextures().
+// Finds the charts and colours of all triangles. The texture coordinates of triangles that share
+// vertices are shifted together, by whole periods, such that their minimum is in the first period;
+// so no seam arises between them. If together they extend more than kTogether (charts.cpp) periods,
+// each triangle is shifted on its own. REQUIRES: as joinTextures().
 Charts findCharts(const Mesh& mesh, const SurfaceTextures& textures, const AtlasLimits& limits);
 
 }  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-// Gives vertices the texture coordinates that a file has at the corners of its triangles. Pure.
+// Converts a file's texture coordinates at triangle corners to a feature of the vertices. Pure.
 #pragma once
 
 #include <array>
@@ -8,9 +8,10 @@
 
 namespace merlin::render::mesh {
 
-// Sets "texcoord" (2). A vertex whose corners have different coordinates is split: its corners with
-// the first ones keep it, and further vertices follow all others, in the order of the corners.
-// O(n log n). REQUIRES: validate(mesh) but for "texcoord"; an entry for each corner.
+// Sets "texcoord" (2). A vertex whose corners have different coordinates is split: corners with the
+// coordinates of its first corner keep the vertex; the others get new vertices, which are appended
+// in the order of the corners. O(n log n). REQUIRES: validate(mesh) but for "texcoord"; an entry
+// for each corner.
 void setCornerCoordinates(Mesh& mesh, const std::vector<std::array<float, 2>>& corners);
 
 }  // namespace merlin::render::mesh

@@ -34,13 +34,13 @@ const image::ImageFile* onlyPicture(const SurfaceTextures& textures) {
   return only && repeats(first) && !first.picture->file.empty() ? first.picture : nullptr;
 }
 
-// Gives each triangle corners of its own place in the atlas.
+// Splits vertices so that each triangle has corners with its own place in the atlas.
 class Splitter {
  public:
   Splitter(Mesh& mesh, const Charts& charts) : mesh_(mesh), charts_(charts) {}
 
-  // Returns a triangle of each vertex, which says where in the atlas the vertex is; kNoTexture: no
-  // triangle has it.
+  // Returns for each vertex one of its triangles, which tells where in the atlas the vertex is;
+  // kNoTexture if it has no triangle.
   std::vector<std::uint32_t> split() {
     triangle_of_.assign(mesh_.vertexCount(), kNoTexture);
     for (std::uint32_t t = 0; t < charts_.places.size(); ++t) {
@@ -97,8 +97,8 @@ void setCoordinates(const Charts& charts, const Layout& layout,
   }
 }
 
-// The mean colour of an atlas, each chart by its area: what is between the charts has it, so that
-// little changes where the mipmaps mix them.
+// Returns the mean colour of an atlas, with each chart weighted by its area. The space between the
+// charts gets it, so that little changes where mipmaps mix them.
 Colour meanOfAll(const Charts& charts, const Layout& layout) {
   std::array<double, 3> sum{};
   double all = 0;

@@ -18,7 +18,8 @@ int scaled(int size, double scale) {
   return std::max(1, static_cast<int>(std::floor(size * scale + 0.5)));
 }
 
-// A chart with many repeats is scaled for itself, so that it does not make the others small.
+// Returns the scale of a single chart: one with many repeats is reduced, so that it does not make
+// the others small.
 double ownScale(const Chart& chart, const AtlasLimits& limits) {
   const image::ImageFile& picture = *chart.texture.picture;
   const int most = std::max({limits.most_chart_side, picture.width, picture.height});
@@ -45,7 +46,7 @@ RectangleSize sizeOfColours(std::size_t colours) {
   return {kGutter * static_cast<int>(columns), kGutter * static_cast<int>(rows)};
 }
 
-// In units of kGutter, so that all cells begin at a multiple of it.
+// Packs in units of kGutter, so that all cells begin at a multiple of it.
 std::optional<Layout> tryToLayOut(const Charts& charts, double scale, const AtlasLimits& limits) {
   Layout layout;
   layout.cells = cellsOf(charts, scale, limits);

@@ -79,7 +79,8 @@ Packing packInto(int width, std::span<const RectangleSize> sizes,
   return packing;
 }
 
-// The shorter its longer side the better, then the smaller.
+// Whether a is better than b: its longer side is shorter, or, if these are equal, its area is
+// smaller.
 bool isBetter(RectangleSize a, RectangleSize b) {
   const int longer = std::max(a.width, a.height), other = std::max(b.width, b.height);
   return longer != other ? longer < other

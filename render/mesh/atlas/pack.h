@@ -1,4 +1,4 @@
-// Packs rectangles into one, without turning them. Pure.
+// Packs rectangles into one larger rectangle, without rotating them. Pure.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ struct Packing {
   struct Place {
     int x = 0, y = 0;
   };
-  std::vector<Place> places{};  // of each rectangle, in the given order
+  std::vector<Place> places{};  // one per rectangle, in the given order
 };
 
-// Places the rectangles beside each other in one whose sides are at most `most`; nothing if that
-// does not succeed. Several widths are tried, and the result with the shortest longer side is
-// taken. Ties are broken by the order of the rectangles. O(n * most / smallest width). REQUIRES:
-// every side is at least 1.
+// Packs the rectangles without overlap into a rectangle whose width and height are at most `most`;
+// returns nothing if they do not fit. Tries several widths and takes the result whose longer side
+// is shortest. Ties are broken by the order of the rectangles. O(n * most / smallest width).
+// REQUIRES: every side is at least 1.
 // Source: J. Jylänki, "A Thousand Ways to Pack the Bin", 2010, the bottom-left skyline.
 std::optional<Packing> pack(std::span<const RectangleSize> sizes, int most);
 

@@ -15,7 +15,7 @@ struct Tap {
   float share;
 };
 
-// The pixels of each texel of a row or a column of a cell.
+// The columns or the rows of a cell, and the chart's pixels that they show.
 struct Axis {
   std::int64_t first;  // the chart's first pixel
   int size, inner, cell;

@@ -1,5 +1,5 @@
-// Draws a part of a picture, with what its wrapping puts beside it, into an atlas. Private to
-// render/mesh/atlas.
+// Draws a part of a texture image into an atlas, with a margin that continues the image by its wrap
+// mode. Private to render/mesh/atlas.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,15 @@ struct AtlasPixels {
   std::vector<std::uint8_t> pixels{};
 };
 
-// A rectangle of the atlas, and the part of it that shows a chart; around that the picture goes on.
+// A rectangle of the atlas with a chart inside; in the margin around the chart the image continues.
 struct ChartCell {
   int x = 0, y = 0, width = 0, height = 0;  // the rectangle [texels]
-  int inner_width = 0, inner_height = 0;    // of the chart, kGutter texels inside the rectangle
+  int inner_width = 0, inner_height = 0;    // of the chart, which begins kGutter texels inside
 };
 
-// Each texel is the mean of the pixels that it covers, by area; where the chart is not scaled, its
-// pixels are copied. O(texels + pixels). REQUIRES: the cell lies in the atlas.
+// Fills the cell. Each texel is the area-weighted mean of the image's pixels that it covers; if the
+// chart is not scaled, its pixels are copied. O(texels + pixels). REQUIRES: the cell lies in the
+// atlas.
 void paintChart(const Chart& chart, const ChartCell& cell, AtlasPixels& atlas);
 
 void paintColour(const Colour& colour, int x, int y, int width, int height, AtlasPixels& atlas);

@@ -1,5 +1,5 @@
-// Colours of a file whose format does not say whether they are fractions or bytes. Private to
-// render/mesh/io.
+// Converts colours of files whose format does not say whether they are fractions or bytes. Private
+// to render/mesh/io.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,9 @@
 
 namespace merlin::render::mesh {
 
-// Makes fractions of the colours of a whole file if they are bytes, 0 to 255. Fractions reach 1, or
-// somewhat more where something is brighter than white; bytes that reach no more than 2 are black.
+// Converts all colours of a file to fractions if they are bytes, 0 to 255. They count as bytes if
+// any is above 2: fractions hardly exceed 1, even where something is brighter than white, and a
+// file whose bytes are all at most 2 would be practically black.
 inline void makeFractions(std::vector<float>& colours) {
   constexpr float kMostFraction = 2, kMostByte = 255;
   float most = 0;
@@ -20,11 +21,12 @@ inline void makeFractions(std::vector<float>& colours) {
   for (float& c : colours) c /= kMostByte;
 }
 
-// Of a triangle to which the file gives no colour.
+// Marks a triangle to which the file gives no colour.
 inline constexpr float kNoColour = std::numeric_limits<float>::quiet_NaN();
 
-// Completes the colours of a file's facets, of which those behind the last coloured one are
-// missing: fractions, and white for those that have none. `colours` stays empty if it is.
+// Completes the colours of a file's facets: converts them to fractions and sets facets without a
+// colour to white, including those after the last coloured one, for which `colours` has no entries.
+// Empty `colours` stay empty.
 inline void completeFacetColours(std::size_t triangles, std::vector<float>& colours) {
   if (colours.empty()) return;
   makeFractions(colours);

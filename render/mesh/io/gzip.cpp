@@ -23,7 +23,7 @@ class Gunzip {
   Gunzip(const Gunzip&) = delete;
   Gunzip& operator=(const Gunzip&) = delete;
 
-  // Appends up to a block. Returns why that failed; nothing if it did not.
+  // Appends up to a block. Returns why that failed; an empty text if it did not.
   std::string appendTo(std::string& text) {
     feed();
     const std::size_t before = text.size();
@@ -43,7 +43,7 @@ class Gunzip {
   bool ended() const noexcept { return ended_; }
 
  private:
-  // zlib counts in 32 bits.
+  // Gives zlib more bytes, in portions, since zlib counts in 32 bits.
   void feed() {
     if (stream_.avail_in > 0) return;
     const std::size_t n = std::min<std::size_t>(left_.size(), std::numeric_limits<uInt>::max());

@@ -1,4 +1,4 @@
-// Unpacks files that gzip packed (RFC 1952), as Open Inventor and VRML files often are.
+// Unpacks gzip files (RFC 1952); Open Inventor and VRML files are often compressed like this.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,17 @@ namespace merlin::render::mesh {
 
 bool isGzip(std::string_view bytes) noexcept;
 
-// The first bytes of what is packed, at most `most`; empty if there is nothing, or it is damaged.
+// Returns at most the first `most` bytes of the unpacked content; empty if it is empty or damaged.
 std::string gunzipBeginning(std::string_view bytes, std::size_t most);
 
-// All that is packed. Memory is taken as it is filled, whatever the file says of its size. Errors,
-// without the file's name: kMalformed (damaged or cut), kUnsupported (more than `most` bytes).
+// Returns the whole unpacked content. Memory grows with what is unpacked; the size that the file
+// states is not trusted. Errors, without the file's name: kMalformed (damaged or truncated),
+// kUnsupported (more than `most` bytes).
 Result<std::string> gunzip(std::string_view bytes, std::size_t most);
 
-// Why a packed file is refused where none is unpacked, without its name: kMalformed (damaged, with
-// the place, or cut), else kUnsupported with the way out. Unpacks up to 1 GiB, but keeps nothing.
-// REQUIRES: isGzip(bytes).
+// Returns the error with which a reader that does not unpack files refuses a packed one, without
+// the file's name: kMalformed (damaged, with the position, or truncated), else kUnsupported, which
+// says what to do instead. Unpacks up to 1 GiB, but keeps nothing. REQUIRES: isGzip(bytes).
 Error packedFileError(std::string_view bytes);
 
 }  // namespace merlin::render::mesh

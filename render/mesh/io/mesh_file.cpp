@@ -44,8 +44,8 @@ std::string noteOf(const Origin& origin) {
       origin[0], origin[1], origin[2]);
 }
 
-// What floats so far from 0 lose of a mesh of this size; empty if they keep 16,384 steps and more
-// along its diagonal.
+// Returns a note if floats, so far from 0, are too coarse for a mesh of this size; empty if they
+// resolve at least 16,384 steps along its diagonal.
 std::string noteOfSteps(const Mesh& mesh) {
   constexpr double kFewSteps = 16384;
   const Box box = boundingBox(mesh.positions);
@@ -81,7 +81,7 @@ const MeshReader* readerFor(const std::string& path) {
   return nullptr;
 }
 
-// The reader for what the file begins with; nullptr: none knows it.
+// Returns the reader that recognises the beginning of the file; nullptr if none does.
 const MeshReader* readerForContent(const std::string& path) {
   const auto file = MappedFile::open(path);
   if (!file) return nullptr;
@@ -91,7 +91,7 @@ const MeshReader* readerForContent(const std::string& path) {
   return found == kReaders.end() ? nullptr : *found;
 }
 
-// ".ply, .obj and .stl".
+// Returns the endings as a list such as ".ply, .obj and .stl".
 template <typename Rows>
 std::string endingsOf(const Rows& rows) {
   std::string list;

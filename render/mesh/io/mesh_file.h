@@ -2,7 +2,7 @@
 //
 //   read     .ply   ASCII and binary, both byte orders; every scalar vertex property becomes a
 //                   feature; the texture image that a comment "TextureFile" names
-//            .obj   colours of the vertices, or where they have none, those of the texture images
+//            .obj   colours of the vertices, or if they have none, those of the texture images
 //                   (PNG, JPEG) of its materials; texture coordinates
 //            .off   ASCII only: normals, colours of vertices or faces, texture coordinates
 //            .om, .stl   through OpenMesh: normals, colours, texture coordinates; faces that
@@ -13,15 +13,16 @@
 //            .glb, .gltf   normal, colour, texcoord, any other feature of 1 to 4 dimensions
 //            .iv    Open Inventor 2.1 ASCII: normal, colour, texcoord
 //            .stl   binary: triangles only
-//            Coordinates that lie at an origin are doubles in .ply, decimals in .obj, and the
-//            translation of the node in .glb and .gltf; those of .iv and .stl are floats.
+//            If the mesh has an origin, it is added to the coordinates in .ply (as doubles) and
+//            .obj (as decimals), and becomes the translation of the node in .glb and .gltf; .iv
+//            and .stl hold floats only, so it is left out.
 //            .glb and .gltf contain the texture image. For .ply, .obj and .iv it is a companion
 //            file in the same folder: for a.obj, a.obj.png (or .jpg) and a.obj.mtl. Unusual
 //            characters of the name are escaped (plainName() in companion_files.h).
 //
-// Coordinates of a .ply whose x, y or z is a double, of an .obj and of an .off are kept relative to
-// originNear() of the first vertex, which a note says; LoadedMesh::origin is what was subtracted.
-// Of other files, whose coordinates are read as floats, a note says if these are coarse for the
+// The coordinates of an .obj, an .off and a .ply whose x, y or z is a double are kept relative to
+// originNear() of the first vertex. LoadedMesh::origin is what was subtracted, and a note says so.
+// The coordinates of other files are read as floats; a note warns if floats are too coarse for the
 // mesh's size.
 //
 // A returned mesh has passed validate(), tidy() and splitNonManifold(). Nothing throws, nothing is
@@ -45,23 +46,25 @@ struct LoadedMesh {
   TidyReport tidied;
   SplitReport split;
   std::vector<std::string> notes;  // for the user: data left out, a missing texture image
-  Origin origin{};                 // of the file's coordinates; positions are relative to it
+  Origin origin{};                 // what was subtracted from the file's coordinates
   // Colours of the triangles, triangles x 3, each 0..1, if the file gives colours to facets and not
-  // to vertices. The functions below turn them into colours of vertices and return this empty.
+  // to vertices. Set only by a format's parser: the functions below convert these colours to
+  // colours of vertices and return this vector empty.
   std::vector<float> facet_colours{};
 };
 
 // Size of a mesh in a file.
 struct MeshFileSize {
   MeshSize mesh;                        // normals are not counted
-  std::size_t meanwhile = 0;            // that reading takes besides [bytes], without the images
-  std::vector<std::string> pictures{};  // paths of the texture images; each once
+  std::size_t meanwhile = 0;            // temporary memory of reading [bytes], without the images
+  std::vector<std::string> pictures{};  // paths of the texture images, each once
 };
 
-// How large the mesh in the file is, before any of it is kept: of .ply and .off as the header
-// declares it, and where faces of .ply may have more than three corners, as the file's size allows;
-// of .obj and ASCII .stl as their lines are counted. Nothing if the file cannot be opened, is
-// damaged, or declares more elements than the file has bytes. Reads the header only, or all lines.
+// Returns how large the mesh in the file is, without loading it. For .ply and .off it is what the
+// header declares; if faces of a .ply may have more than three corners, it is the most that fits
+// into the file's size. For .obj and ASCII .stl the lines are counted. Nothing if the file cannot
+// be opened, is damaged, or declares more elements than it has bytes. Reads only the header, or all
+// lines.
 std::optional<MeshFileSize> meshFileSize(const std::string& path);
 
 // File endings that readMesh() supports, for messages and help: ".ply, .obj and .stl".
@@ -70,11 +73,12 @@ std::string readableEndings();
 // Whether readMesh() supports the ending.
 bool isReadable(const std::string& path);
 
-// Whether the file begins as one of these formats does, whatever its name. False if it cannot be
-// opened. Reads its beginning only.
+// Whether the file's content begins like one of these formats, whatever its name. False if it
+// cannot be opened. Reads only its beginning.
 bool isMeshFile(const std::string& path);
 
-// As readMesh(), by the file's content; its name's ending counts where the content tells nothing.
+// As readMesh(), but selects the format by the file's content; the name's ending is used only if
+// the content does not show the format.
 Result<LoadedMesh> readMeshByContent(const std::string& path);
 
 // Errors, each with the file's name and the place in it: kNotFound, kIo, kMalformed (truncated,
@@ -86,8 +90,8 @@ struct WrittenMesh {
   std::string format;                   // the ending, in lower case
   std::vector<std::string> left_out;    // names of features; "the texture image"
   std::vector<std::string> companions;  // paths of the companion files
-  // What is missing from the file's coordinates: the origin, if the format's numbers are floats,
-  // which would round it; else 0 0 0.
+  // The offset that is missing from the file's coordinates: the origin, if the format holds only
+  // floats, which would round the sums; else 0 0 0.
   Origin relative_to{};
 };
 

@@ -1,4 +1,4 @@
-// MeshReader: reads one mesh file format; a row of the table of readers in mesh_file.cpp. Private
+// MeshReader: reads one mesh file format; one row of the table of readers in mesh_file.cpp. Private
 // to render/mesh/io.
 #pragma once
 
@@ -20,19 +20,19 @@ struct MeshReader {
   // files are looked for. The mesh need not be valid or tidy. Errors: kMalformed, kUnsupported,
   // without the file's name.
   Result<LoadedMesh> (*read)(std::string_view content, const std::string& folder) = nullptr;
-  // Size of the mesh (not checked), so that it is known before any of it is kept; nothing if it
-  // cannot be told. May be null.
+  // Size of the mesh (not checked), which is needed before the mesh is loaded; nothing if it cannot
+  // be determined. May be null.
   std::optional<MeshFileSize> (*size)(std::string_view content,
                                       const std::string& folder) = nullptr;
-  // Whether a file that begins like this is of the format; damage behind that is found by read().
-  // Null: only the name's ending tells.
+  // Whether `content`, the beginning of a file, is of this format; read() finds damage after the
+  // beginning. Null: only the name's ending shows the format.
   bool (*is)(std::string_view content) = nullptr;
 };
 
 extern const MeshReader kPlyReader, kObjReader, kOffReader, kOmReader, kStlReader;
 
-// Features' values that are no numbers become 0, which a note counts, as in a cloud of points.
-// Done by readMeshAs(), and before by a reader that needs a valid mesh.
+// Sets feature values that are not numbers to 0 and adds a note with their count. readMeshAs()
+// calls it after reading; a reader that needs a valid mesh earlier calls it itself.
 void replaceNonNumbers(LoadedMesh& loaded);
 
 // As readMesh(), but with `reader`, whatever the file's ending.

@@ -1,4 +1,4 @@
-// Reads the texture images of one model, up to a limit of their sizes together. Private to
+// Reads the texture images of one model, up to a limit of their total size. Private to
 // render/mesh/io.
 #pragma once
 
@@ -12,13 +12,13 @@ namespace merlin::render::mesh {
 
 class TexturePictures {
  public:
-  // As many pixels as one image may have.
+  // Bytes of 2^28 RGB pixels: as many pixels as a single image may have.
   static constexpr std::size_t kMostBytes = std::size_t{3} << 28;
 
   explicit TexturePictures(std::size_t most_bytes = kMostBytes) : left_(most_bytes) {}
 
-  // Errors: those of readImage(); kUnsupported if it and those before it have more pixels than the
-  // limit allows, before memory is taken for it.
+  // Errors: those of readImage(); kUnsupported if this image and those read before it together
+  // exceed the limit; this is checked before memory is allocated for the image.
   Result<image::ImageFile> read(const std::string& path);
 
  private:

@@ -1,5 +1,5 @@
-// MeshWriter: writes one mesh file format; a row of the table of writers in mesh_file.cpp. Private
-// to render/mesh/io.
+// MeshWriter: writes one mesh file format; one row of the table of writers in mesh_file.cpp.
+// Private to render/mesh/io.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct MeshWriter {
   bool (*carries)(const Mesh&,
                   const Feature&) = nullptr;  // whether the format can hold the feature
   // Returns false if a write failed. `name`: name prefix of the companion files (plainName()).
-  // `origin`: is added to the positions; 0 0 0 unless `exact`.
+  // `origin`: added to the positions; 0 0 0 unless `exact` is true.
   bool (*write)(const Mesh&, const Origin& origin, const std::string& name,
                 const WriteBytes&) = nullptr;
   PicturePlace picture = PicturePlace::kNone;
@@ -35,8 +35,8 @@ struct MeshWriter {
 extern const MeshWriter kPlyWriter, kObjWriter, kGlbWriter, kGltfWriter, kStlWriter,
     kInventorWriter;
 
-// Whether `f` is "normal", "colour" or "texcoord" in its usual dimension: formats have names for
-// these.
+// Whether `f` is "normal", "colour" or "texcoord" in its usual dimension; file formats have names
+// of their own for these three.
 bool isUsual(const Feature& f);
 
 // Whether the mesh has a texture image and texture coordinates.

@@ -11,7 +11,8 @@ std::optional<std::size_t> BufferTurns::find(State state) const {
   return static_cast<std::size_t>(found - states_.begin());
 }
 
-// An abandoned write (its display was replaced meanwhile) is begun anew.
+// If no buffer is ready or free, takes the one of an abandoned write, whose display was replaced
+// meanwhile.
 BufferTurns::Write BufferTurns::beginWrite() {
   const auto waiting = ready();
   auto buffer = waiting ? waiting : find(State::kFree);

@@ -24,10 +24,11 @@ class BufferTurns {
 
   // The buffer with the picture that waits to be committed.
   std::optional<std::size_t> ready() const { return find(State::kReady); }
-  // Between these two the picture is on its way. REQUIRES for commit(): ready() is one.
+  // Between commit() and flipped() the picture is on its way to the display. commit() REQUIRES:
+  // ready() returns a buffer.
   void commit() { states_[*ready()] = State::kPending; }
   void flipped();
-  // The commit did not happen: the picture waits again, unless a newer one does.
+  // Undoes a commit() that failed: the picture waits again, or is dropped if a newer one waits.
   void uncommit();
 
   // Drops the picture that waits.

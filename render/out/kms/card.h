@@ -15,12 +15,12 @@
 
 namespace merlin::render::out::kms {
 
-using Id = std::uint32_t;  // the kernel's number of an object; 0: none
+using Id = std::uint32_t;  // the kernel's id of an object; 0: none
 
 struct Mode {
   int width = 0, height = 0;  // [px]
   double refresh_hz = 0;
-  bool preferred = false;   // by the display
+  bool preferred = false;   // the display prefers it
   bool interlaced = false;  // never chosen unless named
   int index = 0;            // in the kernel's list of the connector's modes
 
@@ -43,7 +43,7 @@ struct Connector {
 struct CardContents {
   std::vector<Connector> connectors;
   std::vector<Id> crtcs;
-  std::vector<Id> primary_planes;  // of the same CRTC in `crtcs`; 0: none takes XRGB
+  std::vector<Id> primary_planes;  // of each CRTC in `crtcs`; 0: none takes XRGB
 };
 
 // A buffer that a CRTC can scan out: bytes B, G, R, unused; rows from top to bottom.
@@ -64,7 +64,7 @@ struct Lit {
 
 enum class Committed {
   kDone,
-  kBusy,       // an earlier flip is not finished: to be tried again
+  kBusy,       // an earlier flip is not finished: try again later
   kNotMaster,  // another program has the displays
   kRefused,    // the card cannot do this
   kGone,       // the card is not there any more
@@ -72,32 +72,32 @@ enum class Committed {
 
 struct CommitResult {
   Committed outcome = Committed::kDone;
-  std::string why{};  // of kRefused and kGone
+  std::string why{};  // the reason for kRefused and kGone
 };
 
-// A buffer is on a display since `when`.
+// A page flip: the CRTC's display shows the committed buffer since `when`.
 struct Flip {
   Id crtc = 0;
   Timestamp when{};
 };
 
-// What a CRTC scans out, as the kernel says it.
+// What a CRTC scans out, as the kernel reports it.
 struct ScannedOut {
   bool is_on = false;    // it has a mode, is active, and its plane has a buffer
   bool covered = false;  // another plane is shown on it as well
-  Id buffer = 0;         // of its plane
+  Id buffer = 0;         // the buffer of its plane
   bool operator==(const ScannedOut&) const = default;
 };
 
-// Looks at what a card's displays are sent, past the wall's own books. Thread-bound to one thread,
-// which need not be the card's; may outlive the card.
+// Reads from the kernel what a card's displays are really sent, independently of the wall's own
+// records. Thread-bound to one thread, which need not be the card's; may outlive the card.
 class Scanout {
  public:
   virtual ~Scanout() = default;
   // Errors: kIo: the card is not there any more.
   virtual Result<ScannedOut> look(Id crtc, Id plane) = 0;
-  // Of the picture in the middle of a buffer of the wall's, by a mapping of its own. Errors: kIo:
-  // another program is DRM master, or the card is not there any more.
+  // Returns the digest of the picture in the middle of one of the wall's buffers, which it maps
+  // separately. Errors: kIo: another program is DRM master, or the card is not there any more.
   virtual Result<PictureDigest> read(Id buffer, int picture_width, int picture_height) = 0;
   // Programs that have the card open besides this one, "Xorg (812)"; empty if none is seen.
   virtual std::vector<std::string> others() const = 0;
@@ -118,22 +118,23 @@ class Card {
   virtual Result<std::shared_ptr<Buffer>> makeBuffer(int width, int height) = 0;
 
   // Only one program at a time, the DRM master, may change what a card shows. Returns whether this
-  // one is or has become it. To be called before the first commit, also if isMaster(): it notes
-  // what the displays show until then.
+  // one is or has become it. Call it before the first commit, even if isMaster(): it saves what the
+  // displays show, to be restored at the end.
   virtual bool becomeMaster() = 0;
   virtual bool isMaster() const = 0;
   // Programs that have the card open besides this one, "Xorg (812)"; empty if none is seen.
   virtual std::vector<std::string> others() const = 0;
 
   // Changes all these displays in one atomic commit and does not wait; a Flip follows for each.
-  // `test_only`: nothing is changed, only looked whether the card can do it.
+  // `test_only`: only checks whether the card can do it and changes nothing.
   virtual CommitResult commit(std::span<const Lit> lit, bool test_only) = 0;
 
   // Waits for flips until one arrives, `longest` is over or wake() is called.
   virtual std::vector<Flip> wait(Duration longest) = 0;
   virtual void wake() = 0;  // thread-safe
 
-  // Null if it cannot be looked at. To be made anew each time this one becomes master.
+  // Null if what the displays are sent cannot be read. Create a new one each time this program
+  // becomes DRM master.
   virtual std::shared_ptr<Scanout> scanout() { return nullptr; }
 
   // True if this CRTC counts vertical blanks, so that the times of its flips are those of its

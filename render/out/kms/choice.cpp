@@ -12,7 +12,7 @@
 namespace merlin::render::out::kms {
 namespace {
 
-constexpr double kSameRate = 0.5;  // [Hz] 59.94 is meant by 60
+constexpr double kSameRate = 0.5;  // [Hz] a mode named with 60 also means 59.94
 constexpr std::size_t kListed = 5;
 
 std::string nameOf(const Mode& mode) {
@@ -20,7 +20,7 @@ std::string nameOf(const Mode& mode) {
                      mode.interlaced ? "i" : "");
 }
 
-// The best one of the modes that `fits` accepts: the preferred one, otherwise the fastest.
+// Returns the best of the modes that `fits` accepts: the preferred one, otherwise the fastest.
 std::optional<std::size_t> best(std::span<const Mode> modes,
                                 const std::function<bool(const Mode&)>& fits) {
   std::optional<std::size_t> found;
@@ -60,8 +60,8 @@ std::optional<std::size_t> unnamed(std::span<const Mode> modes, int width, int h
   return 0;
 }
 
-// Words of a number that is known: the compiler makes vector instructions of them, and a buffer may
-// be memory that is slow to write in bytes.
+// Converts whole pixels, and a fixed number of them, so that the compiler uses vector instructions;
+// writing single bytes to a buffer may be slow.
 template <std::size_t kPixels>
 void swapRedAndBlue(const std::uint8_t* from, std::uint8_t* to) {
   std::uint32_t pixels[kPixels];
@@ -107,8 +107,8 @@ Result<std::size_t> chooseConnector(std::span<const Connector> connectors,
                fmt::format("{} has no connector {}; it has {}", card, wanted, listOf(connectors))};
 }
 
-// Augmenting paths (Kuhn): where no CRTC is free, a connector may push an earlier one to another
-// CRTC, so none goes without if there is a way. At most 32 CRTCs.
+// Augmenting paths (Kuhn): if no CRTC is free, a connector may move an earlier one to another CRTC,
+// so that as many connectors as possible get one. At most 32 CRTCs.
 std::vector<std::optional<std::size_t>> assignCrtcs(std::span<const std::uint32_t> masks,
                                                     std::uint32_t usable) {
   constexpr std::size_t kMostCrtcs = 32;

@@ -12,21 +12,23 @@
 
 namespace merlin::render::out::kms {
 
-// Index of the mode for a picture of this size. `wanted` empty: a mode of the picture's size, the
-// preferred or else the fastest one; otherwise the display's preferred mode. Named without a rate:
-// the preferred or else the fastest one of that size; with a rate: the nearest one within 0.5 Hz.
-// Errors: kNotFound with the modes there are; kInvalidArgument: the picture is larger.
+// Returns the index of the mode for a picture of this size. If `wanted` is empty, this is a mode of
+// the picture's size (the preferred one, or else the fastest), or if there is none, the display's
+// preferred mode. If `wanted` has no rate: the preferred or else the fastest mode of the wanted
+// size. If it has a rate: the mode of that size whose rate is nearest, within 0.5 Hz. Errors:
+// kNotFound, with a list of the modes; kInvalidArgument: the picture is larger than the mode.
 Result<std::size_t> chooseMode(const Connector& connector, const std::string& wanted,
                                int picture_width, int picture_height);
 
 // Index of the connector named `wanted`; empty: the first connected one, or else the first.
-// Errors: kNotFound with the connectors there are; `card` is named in it.
+// Errors: kNotFound, with the name `card` and a list of its connectors.
 Result<std::size_t> chooseConnector(std::span<const Connector> connectors,
                                     const std::string& wanted, const std::string& card);
 
-// For each of `masks`, the CRTCs (bit i: CRTC i) that can drive a connector, the index of one of
-// its own; nothing for a connector that gets none. `usable`: bit i: CRTC i has a primary plane.
-// As many as possible get one; earlier ones first.
+// Assigns each connector a CRTC of its own. `masks`: for each connector, the CRTCs that can drive
+// it (bit i: CRTC i). `usable`: the CRTCs that have a primary plane (bit i: CRTC i). Returns a
+// CRTC's index for each connector, nothing for one that gets none.
+// As many connectors as possible get one; earlier ones first.
 std::vector<std::optional<std::size_t>> assignCrtcs(std::span<const std::uint32_t> masks,
                                                     std::uint32_t usable);
 

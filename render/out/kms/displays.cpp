@@ -28,7 +28,8 @@ std::vector<Lit> litOf(const auto& shares) {
 
 Displays::Displays(OpenCard open, const Clock& clock) : open_(std::move(open)), clock_(clock) {}
 
-// The card restores what its displays showed while the buffers that are shown now still exist.
+// Closes the card first: it restores what its displays showed before, while the buffers that they
+// show now still exist.
 Displays::~Displays() { card_.reset(); }
 
 std::size_t Displays::add(const KmsSettings& settings, int picture_width, int picture_height) {
@@ -78,7 +79,7 @@ std::string Displays::fault(std::size_t i) const {
   return faultOf(i);
 }
 
-// What concerns several displays alike is said once.
+// Returns the faults of the output's displays; a fault that several displays share appears once.
 std::string Displays::faultOf(std::size_t output) const {
   std::set<std::string> faults;
   for (const Screen& screen : screens_)
@@ -152,7 +153,7 @@ void Displays::closeCard(const std::string& why) {
   darkenAll(why);
 }
 
-// Nothing is lit without being master, so nothing is looked for either.
+// Looks for displays only as DRM master, since only the master can light them.
 void Displays::look(Timestamp now) {
   next_look_ = now + kLookEvery;
   if (!holdMaster()) return;
@@ -165,7 +166,8 @@ void Displays::look(Timestamp now) {
 bool Displays::holdMaster() {
   const bool is = card_->isMaster();
   if (is && master_) return true;
-  // Who takes the displays from us needs a moment between both steps: only the next look tries.
+  // A program that takes the displays from us needs a moment between our losing master and its
+  // becoming master, so only the next look tries to become master again.
   const bool lost = master_ && !is;
   const bool became = !lost && card_->becomeMaster();
   const std::string taken = became ? std::string() : takenMessage();
@@ -194,7 +196,8 @@ std::string Displays::takenMessage() const {
                      more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-// A display that was plugged in since the last look, and whose modes are not known yet.
+// Returns whether a display was plugged in since the last look, so that its modes are not known
+// yet.
 bool Displays::hasNewDisplay(const CardContents& contents) {
   std::set<Id> connected;
   for (const Connector& connector : contents.connectors)
@@ -204,9 +207,9 @@ bool Displays::hasNewDisplay(const CardContents& contents) {
   return has;
 }
 
-// The number of a connector for each screen. An output of every connector takes those that no other
-// output names in the card's order, whether they have a display or not: none changes its screen
-// when another one is pulled.
+// Returns the index of a connector for each screen. An output of all connectors takes those that no
+// other output names, in the card's order, whether they have a display or not: so no display
+// changes its screen when another one is unplugged.
 std::vector<Result<std::size_t>> Displays::chooseConnectors(const CardContents& contents) const {
   std::set<std::string> named;
   for (const Screen& screen : screens_) named.insert(screen.settings.connector);
@@ -221,7 +224,7 @@ std::vector<Result<std::size_t>> Displays::chooseConnectors(const CardContents& 
     } else if (*screen.nth < free.size()) {
       chosen.emplace_back(free[*screen.nth]);
     } else {
-      chosen.emplace_back(Error{Errc::kNotFound, ""});  // nothing is missing
+      chosen.emplace_back(Error{Errc::kNotFound, ""});  // an empty text: this is no fault
     }
   }
   return chosen;
@@ -232,8 +235,8 @@ void Displays::arrange(const CardContents& contents, Timestamp now) {
   std::vector<std::uint32_t> masks;
   for (std::size_t i = 0; i < screens_.size(); ++i) {
     const Connector* const c = chosen[i] ? &contents.connectors[*chosen[i]] : nullptr;
-    // Of every connector, one without a display needs no CRTC; one that had a display keeps its
-    // own.
+    // In an output of all connectors, one without a display needs no CRTC; one that had a display
+    // keeps its CRTC.
     const bool needs_none = c && screens_[i].nth && !c->connected && !screens_[i].place;
     masks.push_back(c && !needs_none ? c->crtcs : 0);
   }
@@ -259,7 +262,7 @@ void Displays::arrange(const CardContents& contents, Timestamp now) {
 // Finds the mode and makes the buffers, which stay as long as the mode does.
 Result<Ok> Displays::place(Screen& screen, const CardContents& contents, const Connector& connector,
                            std::optional<std::size_t> crtc) {
-  if (!connector.connected && screen.nth) return Error{Errc::kNotFound, ""};  // nothing is missing
+  if (!connector.connected && screen.nth) return Error{Errc::kNotFound, ""};  // no fault
   if (!connector.connected) {
     return Error{Errc::kNotFound,
                  fmt::format("nothing is plugged in at {} of {}", connector.name, card_->path())};
@@ -277,7 +280,7 @@ Result<Ok> Displays::place(Screen& screen, const CardContents& contents, const C
                     had->mode.sameTiming(mode);
   if (same) {
     const std::lock_guard lock(mutex_);
-    screen.place->mode = mode;  // its number in the list may be another one
+    screen.place->mode = mode;  // its index in the list may have changed
     if (!screen.lit || connector.link_bad) lightAgain(screen);
     return Ok{};
   }
@@ -298,14 +301,14 @@ Result<Ok> Displays::place(Screen& screen, const CardContents& contents, const C
 }
 
 void Displays::lightAgain(Screen& screen) {
-  screen.place->turns.drop();  // it is of another time
+  screen.place->turns.drop();  // a frame that waits is outdated
   screen.lit = true;
   screen.sets_mode = true;
   screen.fault.clear();
   screen.wants_frame = true;
 }
 
-// What the display last showed is left on its CRTC: it costs nothing, and a projector that is
+// Leaves on the CRTC what the display last showed: that costs nothing, and a projector that is
 // switched on again shows it at once.
 void Displays::darken(Screen& screen, const std::string& fault) {
   screen.lit = false;
@@ -318,7 +321,7 @@ void Displays::darkenAll(const std::string& fault) {
   for (Screen& screen : screens_) darken(screen, fault);
 }
 
-// One commit at a time, of all displays together, so that they change in one frame.
+// Commits all displays together, one commit at a time, so that they change in the same frame.
 void Displays::commit(Timestamp now) {
   std::vector<Share> shares;
   {
@@ -389,13 +392,13 @@ void Displays::refuse(std::vector<Share>& shares, const std::string& why, Timest
     accepted.pop_back();
     refused.push_back({share.screen, !takes({&share.lit, 1})});
   }
-  // The card took back its refusal, or refuses what it promised: all are lit anew later.
+  // No test found the reason for the refusal, so all displays are dropped and lit again later.
   if (refused.empty())
     for (const Share& share : shares) refused.push_back({share.screen, false});
   const std::lock_guard lock(mutex_);
   for (const auto& [screen, alone] : refused) {
     const Place& place = *screen->place;
-    // A buffer alone is refused if another program has set another mode: the next look sets ours.
+    // If only a buffer was refused, another program has set another mode: the next look sets ours.
     if (screen->sets_mode) screen->retry_at = now + kRetryRefused;
     darken(*screen, fmt::format("the card refuses {}x{}@{:.0f} at {}{}: {}", place.mode.width,
                                 place.mode.height, place.mode.refresh_hz, place.name,

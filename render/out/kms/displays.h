@@ -24,10 +24,9 @@
 namespace merlin::render::out::kms {
 
 // The wall's thread calls present(), one thread step(), and one readBack(), for the object's whole
-// life; the rest
-// is thread-safe. Nothing that can go wrong ends it: a card, connector or mode that is not there, a
-// display that is unplugged, another program that has the displays. Each is the error of present()
-// of those that it concerns, and is looked at again once a second.
+// life; the rest is thread-safe. No fault ends it: neither a missing card, connector or mode, nor
+// an unplugged display, nor another program that has the displays. present() returns the fault as
+// an error for the outputs that it concerns, and the fault is checked again once a second.
 class Displays {
  public:
   using OpenCard = std::function<Result<std::unique_ptr<Card>>()>;
@@ -40,13 +39,13 @@ class Displays {
 
   // Adds an output and returns its number. To be called before the first present() and step(). An
   // output with the connector "*" (KmsSettings::isEvery()) is shown on each connector that has a
-  // display and that no other output names, up to kMostOfEvery. That there is no such connector, or
-  // no card, is not a fault of the output.
+  // display and that no other output names, up to kMostOfEvery. It is no fault of such an output if
+  // there is no such connector, or no card.
   std::size_t add(const KmsSettings& settings, int picture_width, int picture_height);
   static constexpr std::size_t kMostOfEvery = 16;
 
   // Writes the picture (RGBA, rows from top to bottom without padding) of frame `sequence` into a
-  // buffer of each display of output i. A frame is committed when the last output has its picture
+  // buffer of each display of output i. A frame is committed when all outputs have their pictures
   // of it. Never waits for a display. Cost: one pass over the pixels for each. Returns when the
   // picture was handed over; nothing if it replaced one that was not committed yet, or if the card
   // was not looked at yet. Errors: why the output shows no picture.
@@ -63,13 +62,13 @@ class Displays {
   struct Reading {
     std::string connector;
     FoundPicture found;
-    std::string programs{};  // of a foreign picture: those that have the card open as well
+    std::string programs{};  // if the picture is foreign: other programs that have the card open
   };
-  // Reads what each display of output i shows that shows its frames: as the kernel says, not as
-  // these books do. Takes milliseconds; no frame waits for it. Errors: the first reason why a
-  // display cannot be read.
+  // Reads from the kernel, and not from this object's records, what is shown by each display of
+  // output i that shows its frames. Takes milliseconds; no frame waits for it. Errors: the first
+  // reason why a display cannot be read.
   Result<std::vector<Reading>> readBack(std::size_t i);
-  // Sets the modes of output i anew with its next frame, and asks for that frame.
+  // Sets the modes of output i's displays again with its next frame, and asks for that frame.
   void showAgain(std::size_t i);
 
   // The last vertical blank of the first display that counts them, and the time between two.
@@ -83,11 +82,11 @@ class Displays {
   // `longest` for something to do.
   void step(Duration longest);
   void wake();
-  // Waits until step() has looked at the card, or for one, but at most `longest`.
+  // Waits until step() has looked for the card for the first time, but at most `longest`.
   void awaitFirstLook(Duration longest);
 
  private:
-  // What an output is shown on.
+  // The display on which a screen is shown, with its buffers.
   struct Place {
     Id connector = 0, crtc = 0, plane = 0;
     Mode mode{};
@@ -98,16 +97,16 @@ class Displays {
   struct Screen {
     KmsSettings settings{};
     std::size_t output = 0;
-    std::optional<std::size_t> nth{};  // of an output of every connector: of those that are free
+    std::optional<std::size_t> nth{};  // connector "*": which of the free connectors
     int width = 0, height = 0;         // of the picture [px]
     // Shared with present(), which may still write when a display gets another mode.
     std::shared_ptr<Place> place{};
     bool lit = false;                     // takes part in commits
     bool sets_mode = false;               // in the next commit
     std::string fault{};                  // why no picture is shown; empty: one is
-    std::optional<Timestamp> retry_at{};  // after the card refused it
+    std::optional<Timestamp> retry_at{};  // when to try again after the card refused it
     std::atomic<bool> wants_frame{false};
-    bool again = false;  // asked for by showAgain()
+    bool again = false;  // showAgain() was called
   };
   // A display that is to be read back.
   struct Target {
@@ -151,12 +150,12 @@ class Displays {
   std::shared_ptr<Scanout> scanout_;  // of card_, since it became master; shared with readBack()
   std::deque<Screen> screens_;        // by output; a deque, since a Screen cannot be moved
   std::size_t outputs_ = 0;
-  bool looked_ = false;  // at a card, or for one, at least once
+  bool looked_ = false;  // step() has looked for a card at least once
   bool master_ = false;
   bool whole_ = false;  // every output has its picture of the frame `sequence_`
   bool busy_ = false;   // the last commit is to be tried again
   std::uint64_t sequence_ = 0;
-  // These two are used by step() alone.
+  // These three are used by step() alone.
   std::set<Id> connected_;  // connectors with a display at the last look
   Timestamp next_look_{};
   Timestamp committed_{};

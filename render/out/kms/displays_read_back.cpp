@@ -21,7 +21,7 @@ Result<std::vector<Displays::Reading>> Displays::readBack(std::size_t i) {
     const std::lock_guard lock(mutex_);
     scanout = scanout_;
     for (const Screen& screen : screens_) {
-      // While its mode is to be set, it still shows what was there before.
+      // A screen whose mode is still to be set shows what was there before.
       const bool shows = screen.output == i && screen.lit && !screen.sets_mode;
       if (shows) targets.push_back({screen.place, screen.width, screen.height});
     }
@@ -36,8 +36,8 @@ Result<std::vector<Displays::Reading>> Displays::readBack(std::size_t i) {
   return readings;
 }
 
-// A flip during the reading leaves the buffer to the wall, which may write to it at once: such a
-// reading counts for nothing and is repeated.
+// A flip during the reading frees the buffer for the wall, which may write to it at once; the
+// reading is then discarded and repeated.
 Result<Displays::Reading> Displays::readOne(Scanout& scanout, const Target& target) {
   const Place& place = *target.place;
   for (int i = 0; i < kTries; ++i) {

@@ -28,7 +28,7 @@ class DumbBuffer final : public Buffer {
   std::span<std::uint8_t> bytes() override { return bytes_; }
   std::size_t pitch() const override { return pitch_; }
 
-  // False with errno if the card has no memory for it.
+  // Returns false, with errno set, if the card has no memory for the buffer.
   bool create(std::uint32_t width, std::uint32_t height) {
     const int fd = file_->get();
     std::uint64_t size = 0;
@@ -39,9 +39,8 @@ class DumbBuffer final : public Buffer {
     const bool made = drmModeAddFB2(fd, width, height, DRM_FORMAT_XRGB8888, handles, pitches,
                                     offsets, &id_, 0) == 0 &&
                       map(handle, static_cast<std::size_t>(size));
-    // The frame buffer and the mapping have the memory for as long as they need it. Frame buffers
-    // can be listed, and so be removed by the process after this one if this one is killed; a
-    // handle could not.
+    // The handle is no longer needed, since the frame buffer and the mapping keep the memory. If
+    // this process is killed, the next one can list and remove its frame buffers, but not a handle.
     const int error = errno;
     drmModeDestroyDumbBuffer(fd, handle);
     errno = error;

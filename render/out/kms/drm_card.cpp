@@ -51,14 +51,15 @@ Mode modeOf(const drmModeModeInfo& info, int index) {
           interlaced,    index};
 }
 
-// systemd takes no name with a colon, as paths of /dev/dri/by-path have them.
+// Returns the name by which systemd keeps the card's file: it has no colon, which systemd does not
+// allow and which paths in /dev/dri/by-path contain.
 std::string keptName(const std::string& path) {
   struct stat file {};
   if (::stat(path.c_str(), &file) != 0) return "card";
   return fmt::format("card {}-{}", major(file.st_rdev), minor(file.st_rdev));
 }
 
-// The file of this card that the process before this one kept; null if there is none.
+// Returns this card's file that the previous process kept; null if there is none.
 DrmFile takeKept(const std::string& path, KeptFiles& kept_files) {
   auto file = std::make_shared<DeviceFile>(kept_files.take(keptName(path)));
   struct stat kept {
@@ -80,7 +81,7 @@ class DrmCard final : public Card {
   DrmCard& operator=(const DrmCard&) = delete;
 
   static Result<DrmFile> openFile(const std::string& path);
-  // Goes on with the file of the process before this one.
+  // Continues with the file and the frame buffers of the previous process.
   void inherit();
 
   const std::string& path() const override { return path_; }
@@ -115,7 +116,8 @@ class DrmCard final : public Card {
   Id primaryPlane(std::size_t crtc, const std::set<Id>& used);
   Connector describe(const drmModeConnector& found);
   std::vector<Setting> settingsOf(const Lit& lit, std::uint32_t blob) const;
-  // Everything that is on and is not of the wall: a CRTC has one connector of the wall alone.
+  // Returns the settings that switch off all that is not the wall's, also other connectors at a
+  // CRTC that the wall uses.
   std::vector<Setting> offSettings(std::span<const Lit> lit);
   std::uint32_t blobOf(const Lit& lit);
   void readEvents();
@@ -129,9 +131,9 @@ class DrmCard final : public Card {
   bool was_master_ = false;
   const std::string kept_name_ = keptName(path_);
   bool is_kept_ = false;       // file_, in kept_files_
-  bool is_inherited_ = false;  // file_ was opened by the process before this one
-  bool is_gone_ = false;       // the card
-  // Frame buffers of the process before this one, until no display shows them any more.
+  bool is_inherited_ = false;  // file_ was opened by the previous process
+  bool is_gone_ = false;       // the card no longer exists
+  // Frame buffers of the previous process, until no display shows them any more.
   std::vector<Id> inherited_;
   std::vector<Id> crtcs_, connectors_, planes_;
   std::map<Id, std::vector<drmModeModeInfo>> modes_;  // by connector
@@ -140,8 +142,8 @@ class DrmCard final : public Card {
   std::vector<Flip> flips_;  // filled by readEvents()
 };
 
-// As long as the file is kept, somebody has the card open, and it shows the last picture. When
-// nobody has, the kernel restores its console.
+// While systemd keeps the file, the card stays open and shows the last picture. Once nobody has the
+// card open, the kernel restores its console.
 DrmCard::~DrmCard() {
   if (is_kept_ && is_gone_) kept_files_.forget(kept_name_);
   file_->stays_shown = is_kept_;
@@ -155,10 +157,11 @@ void DrmCard::inherit() {
   if (resources) inherited_.assign(resources->fbs, resources->fbs + resources->count_fbs);
   is_kept_ = true;
   is_inherited_ = true;
-  was_master_ = isMaster();  // what the displays showed before both processes is not known
+  // Saves nothing: what the displays showed before both processes is unknown.
+  was_master_ = isMaster();
 }
 
-// The kernel switches a display off whose frame buffer is removed.
+// Removes only frame buffers that no display shows: the kernel would switch that display off.
 void DrmCard::dropInherited() {
   if (inherited_.empty()) return;
   std::set<Id> shown;
@@ -189,9 +192,9 @@ Result<DrmFile> DrmCard::openFile(const std::string& path) {
   return file;
 }
 
-// Whoever opens a card that has no master becomes it; who never was it, or whose file another
-// process opened, may not ask for it unless root. So that one opens the card again. Buffers stay
-// with the file by which they were made.
+// A process that opens a card without a master becomes its master. Without root, a file that was
+// never master, or that another process opened, may not ask to become it (EACCES): then the card is
+// opened again. Buffers stay with the file through which they were made.
 bool DrmCard::becomeMaster() {
   if (!isMaster()) dropMasterElsewhere(path_, fd());
   if (!isMaster() && drmSetMaster(fd()) != 0) {
@@ -350,7 +353,7 @@ CommitResult DrmCard::commit(std::span<const Lit> lit, bool test_only) {
   std::uint32_t flags = sets_mode ? DRM_MODE_ATOMIC_ALLOW_MODESET : 0;
   flags |=
       test_only ? DRM_MODE_ATOMIC_TEST_ONLY : DRM_MODE_ATOMIC_NONBLOCK | DRM_MODE_PAGE_FLIP_EVENT;
-  // An event that says something else answers a commit of the process before this one.
+  // Marks our events: those with another value answer a commit of the previous process.
   void* const ours = reinterpret_cast<void*>(static_cast<std::uintptr_t>(::getpid()));
   const int rc = drmModeAtomicCommit(fd(), request.get(), flags, ours);
   const int error = rc != 0 ? errno : 0;
@@ -398,7 +401,7 @@ std::vector<Flip> DrmCard::wait(Duration longest) {
   return std::exchange(flips_, {});
 }
 
-// The numbers in the names are in the order in which the kernel found the cards.
+// Returns the cards in the order of the numbers in their names, in which the kernel found them.
 std::vector<std::string> cardPaths() {
   std::map<int, std::string> paths;
   std::error_code ignored;
@@ -421,7 +424,7 @@ bool hasConnectors(int fd) {
   return resources && resources->count_connectors > 0;
 }
 
-// `kept`: the file is that of the process before this one.
+// `kept`: the previous process kept this file.
 Result<std::unique_ptr<Card>> makeCard(const std::string& path, DrmFile file, bool kept,
                                        KeptFiles& kept_files) {
   UniqueFd wake(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));

@@ -1,4 +1,4 @@
-// What libdrm's adapters share: its objects with an owner, and errors as text.
+// Shared by the classes that use libdrm: owning pointers to its objects, and errno as text.
 #pragma once
 
 #include <cstring>

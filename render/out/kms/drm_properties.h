@@ -1,4 +1,4 @@
-// DrmProperties: the numbers of the properties of a card's objects, by their names.
+// DrmProperties: the ids of the properties of a card's objects, by name.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace merlin::render::out::kms {
 
-// Thread-bound. The kernel numbers properties once and for all, so each object is asked once.
+// Thread-bound. The kernel never changes a property's id, so each object is queried only once.
 class DrmProperties {
  public:
-  // 0: the object has no property of this name.
+  // idOf() returns 0, and valueOf() nothing, if the object has no property of this name.
   std::uint32_t idOf(int fd, std::uint32_t object, std::uint32_t type, const std::string& name);
   std::optional<std::uint64_t> valueOf(int fd, std::uint32_t object, std::uint32_t type,
                                        const std::string& name);

@@ -18,13 +18,13 @@
 namespace merlin::render::out::kms {
 namespace {
 
-// The memory of a frame buffer of the card, mapped by what the kernel says of it.
+// The memory of one of the card's frame buffers, mapped according to the kernel's description.
 class MappedBuffer {
  public:
   MappedBuffer(int fd, Id buffer) : fd_(fd), info_(drmModeGetFB2(fd, buffer), drmModeFreeFB2) {
     if (!info_) return;
     if (info_->handles[0] != 0) map();
-    closeHandles();  // at once: the file may outlive this process
+    closeHandles();  // at once: they belong to the file, which may outlive this process
   }
   ~MappedBuffer() {
     if (at_) ::munmap(const_cast<std::uint8_t*>(at_), size_);
@@ -51,7 +51,7 @@ class MappedBuffer {
     void* const at = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, fd_, static_cast<off_t>(offset));
     if (at != MAP_FAILED) at_ = static_cast<const std::uint8_t*>(at);
   }
-  // The kernel made handles for this reading alone; several planes may share one.
+  // The kernel made these handles for this reading only; several planes may share one.
   void closeHandles() const {
     for (std::size_t i = 0; i < std::size(info_->handles); ++i) {
       const std::uint32_t handle = info_->handles[i];

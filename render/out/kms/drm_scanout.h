@@ -9,7 +9,8 @@
 
 namespace merlin::render::out::kms {
 
-// `file`: that of the card at `path` whose DRM master is to read its buffers.
+// `file`: the open device file of the card at `path`. Buffers can be read only while it is DRM
+// master.
 std::shared_ptr<Scanout> makeDrmScanout(DrmFile file, std::string path);
 
 }  // namespace merlin::render::out::kms

@@ -6,8 +6,8 @@
 
 namespace merlin::render::out::kms {
 
-// Programs besides this one that have the file open, "Xorg (812)"; only those that this process may
-// see, which are all only for root.
+// Programs that have the file open, "Xorg (812)", except this one and its parent. A process that is
+// not root's may not see all of them.
 std::vector<std::string> programsWith(const std::string& path);
 
 // Gives up being DRM master on this process's other descriptors of the card. Mesa's software

@@ -12,7 +12,8 @@ inline constexpr const char* kEveryConnector = "*";
 
 struct KmsSettings {
   std::string card{};  // its device file; empty: the first card that has connectors
-  // Its name, "HDMI-A-1"; empty: the first one with a display; kEveryConnector: all of the card.
+  // Name of the connector, "HDMI-A-1"; empty: the first one with a display; kEveryConnector: all
+  // connectors of the card.
   std::string connector{};
   std::string mode{};  // "1920x1080" or "1920x1080@60"; empty: see chooseMode()
 
@@ -29,8 +30,8 @@ struct WantedMode {
 std::optional<WantedMode> parseMode(const std::string& name);
 
 // Checks for: a card that is not the path of a device file, a mode's name that parseMode() cannot
-// read, a connector's name with characters that no connector has. Whether they exist is known when
-// the wall runs. Pure.
+// read, a connector's name with characters that no connector has. Whether these exist is found out
+// only when the wall runs. Pure.
 SettingFaults validate(const KmsSettings& settings);
 
 }  // namespace merlin::render::out::kms

@@ -11,7 +11,7 @@ static_assert(std::endian::native == std::endian::little, "pixels are read as li
 
 constexpr std::size_t kPixel = 4;
 
-// Red in the lowest byte, whatever the order in memory; the fourth byte is 0.
+// Returns a pixel with red in the lowest byte, whatever the order in memory; the fourth byte is 0.
 template <PixelOrder order>
 std::uint32_t pixelAt(const std::uint8_t* at) noexcept {
   std::uint32_t word = 0;

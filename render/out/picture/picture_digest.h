@@ -8,14 +8,14 @@
 
 namespace merlin::render::out {
 
-// A checksum of each of 32 pieces of 24 rows, which are evenly spread over the picture. What
-// differs only in the rows between them is not noticed. Trivial, so that a SeqSlot holds it: begin
-// with PictureDigest{}.
+// Checksums of 24 rows that are evenly spread over the picture, each row in 32 pieces. Differences
+// only in the rows between them are not noticed. Trivial, so that a SeqSlot holds it: begin with
+// PictureDigest{}.
 struct PictureDigest {
   static constexpr std::size_t kRows = 24, kColumns = 32, kCells = kRows * kColumns;
 
   std::array<std::uint32_t, kCells> cells;
-  std::uint32_t lit_bits;  // all these rows' pixels or-ed: red, green, blue from bit 0 on
+  std::uint32_t lit_bits;  // bitwise OR of these rows' pixels: red, green, blue from bit 0
 
   // True if no channel of any pixel read reaches 8 of 255.
   bool isBlack() const noexcept { return (lit_bits & 0xF8F8F8U) == 0; }
@@ -33,8 +33,8 @@ struct PixelRows {
   PixelOrder order = PixelOrder::kRgba;
 };
 
-// The same for a picture in either order of bytes. REQUIRES: `pixels` holds all rows. Cost: one
-// pass over 24 rows. Reentrant.
+// Returns the same digest for the same picture in either order of bytes. REQUIRES: `pixels` holds
+// all rows. Cost: one pass over 24 rows. Reentrant.
 PictureDigest digestOf(const PixelRows& picture) noexcept;
 
 }  // namespace merlin::render::out

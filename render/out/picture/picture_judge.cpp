@@ -6,7 +6,7 @@
 namespace merlin::render::out {
 namespace {
 
-// Each cell is that of one of these two frames.
+// Returns whether each cell equals that of one of the two frames.
 bool isMixOf(const PictureDigest& found, const PictureDigest& a, const PictureDigest& b) {
   for (std::size_t i = 0; i < PictureDigest::kCells; ++i) {
     if (found.cells[i] != a.cells[i] && found.cells[i] != b.cells[i]) return false;
@@ -22,8 +22,8 @@ bool isTorn(std::span<const MeantPicture> meant, const PictureDigest& found) {
   return false;
 }
 
-// The frames that may be shown: the newest, and those that it or another one has replaced only
-// lately.
+// Returns the frames that may be shown: the newest, and those that were replaced less than
+// kLongestLag before `began`.
 std::span<const MeantPicture> showable(std::span<const MeantPicture> meant, Timestamp began) {
   std::size_t oldest = meant.size() - 1;
   while (oldest > 0 && meant[oldest].handed_over > began - kLongestLag) --oldest;

@@ -1,4 +1,5 @@
-// Judges what an output was found to show by what it was meant to show. Pure: times are passed in.
+// Compares what an output was found to show with what it was meant to show. Pure: times are passed
+// in.
 #pragma once
 
 #include <optional>
@@ -13,7 +14,7 @@ namespace merlin::render::out {
 enum class PictureVerdict {
   kUnchecked,  // nothing was read back
   kRight,
-  kBlack,    // dark, where something was meant
+  kBlack,    // black, although no black frame was meant
   kFrozen,   // an older frame, although newer ones were handed over long ago
   kTorn,     // parts of two frames
   kForeign,  // another program's picture, or one that the wall never made
@@ -47,14 +48,14 @@ struct FoundPicture {
 // An output may still show a frame this long after the next one was handed over.
 inline constexpr Duration kLongestLag = std::chrono::seconds(1);
 
-// `meant`: the last frames, oldest first, no two in a row alike. `last_right`: what was
-// found when it was right last. `began`: when reading began. kUnchecked if nothing was meant yet.
-// Cost: at most one comparison of digests for each two of `meant`.
+// `meant`: the last frames, oldest first, each different from the one before. `last_right`: what
+// was found when the verdict was last kRight. `began`: when reading began. kUnchecked if nothing
+// was meant yet. Cost: at most one comparison of digests for each pair of frames in `meant`.
 PictureVerdict judgePicture(std::span<const MeantPicture> meant, const FoundPicture& found,
                             const std::optional<PictureDigest>& last_right, Timestamp began);
 
-// What verdicts settle on: one reading that disagrees does not count. Two in a row that say
-// "wrong", whatever they say is wrong, do; two that say "right" end it. kUnchecked counts at once.
+// Debounces verdicts: the current one changes between right and wrong only after two readings in a
+// row that agree on this, whichever faults they name. kUnchecked takes effect at once.
 class SteadyVerdict {
  public:
   PictureVerdict update(PictureVerdict reading);

@@ -15,7 +15,7 @@ struct PixelRectangle {
   bool operator==(const PixelRectangle&) const = default;
 };
 
-// The rectangle of the window that the whole picture covers, in the middle of it. `scaled`: the
+// Returns the rectangle that the whole picture covers, in the middle of the window. `scaled`: the
 // largest one that fits and has the picture's proportions; otherwise the picture's own size, which
 // may be larger than the window. REQUIRES: all sizes are positive.
 inline PixelRectangle fit(const PixelSize& picture, const PixelSize& window, bool scaled) {

@@ -38,7 +38,8 @@ void leaveStandardStreams() {
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
 }
 
-// Shows the frame that merlind has announced, if any. Returns false at merlind's end.
+// Shows the frame that merlind has announced, if any. Returns false if merlind has ended or the
+// frame cannot be shown.
 bool showAnnounced(int socket, SdlWindow& window, const PictureSlots& pictures) {
   FrameReady frame;
   const ssize_t n = ::recv(socket, &frame, sizeof frame, MSG_DONTWAIT);

@@ -1,9 +1,9 @@
 // Messages between a window's output in merlind and its program, merlin-window. Each is one packet
 // of a socket pair (SOCK_SEQPACKET), of fixed size; both programs are of one build.
 //
-// merlind sends WindowForm once, then a FrameReady at a time; the program answers each with a
-// WindowEvent of kind kShown, and sends the other kinds whenever they happen. The pictures lie in
-// memory that both map: PictureSlots.
+// merlind sends WindowForm once, then one FrameReady at a time. The program answers each FrameReady
+// with a WindowEvent of kind kShown, and sends the other kinds when they happen. The pictures lie
+// in memory that both map: PictureSlots.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,11 @@ struct WindowForm {
   std::int32_t monitor = 0, x = -1, y = -1, width = 0, height = 0;  // as in WindowSettings
   std::uint8_t fullscreen = 0, border = 1, fit = 1, input = 1;
   std::int32_t picture_width = 0, picture_height = 0;  // [px]
-  PanelPointer::Place panel{};  // in the picture; width 0: it does not show it
+  PanelPointer::Place panel{};  // its place in the picture; width 0: not shown
 };
 
 struct FrameReady {
-  std::uint32_t slot = 0;  // of PictureSlots; not written to until it is answered
+  std::uint32_t slot = 0;  // of PictureSlots; not written to until kShown arrives
 };
 
 struct WindowEvent {

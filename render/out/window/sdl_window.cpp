@@ -13,7 +13,7 @@ Error sdlError(const char* what) {
   return {Errc::kIo, fmt::format("{}: {}", what, SDL_GetError())};
 }
 
-// The environment's display, as a person would look for it.
+// Returns the environment's display in words, for a message.
 std::string displayName() {
   for (const char* name : {"WAYLAND_DISPLAY", "DISPLAY"}) {
     const char* const value = std::getenv(name);
@@ -23,8 +23,8 @@ std::string displayName() {
 }
 
 void setHints() {
-  // Others of SDL's drivers would take a console's display, or show nothing. Without that folder
-  // there is no Wayland, and its library would write so at each attempt.
+  // SDL's other drivers would take over a console's display, or show nothing. Without
+  // XDG_RUNTIME_DIR there is no Wayland, and its library would print a message at each attempt.
   SDL_SetHint(SDL_HINT_VIDEODRIVER, std::getenv("XDG_RUNTIME_DIR") ? "x11,wayland" : "x11");
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");  // llvmpipe would take the wall's processors
@@ -40,7 +40,7 @@ std::uint32_t flagsOf(const WindowForm& form) {
   return flags;
 }
 
-// Where the window is when it is not fullscreen.
+// Returns where the window is when it is not fullscreen.
 SDL_Rect normalPlaceOf(const WindowForm& form, const SDL_Rect& monitor) {
   const auto middle =
       static_cast<int>(SDL_WINDOWPOS_CENTERED_DISPLAY(static_cast<std::uint32_t>(form.monitor)));
@@ -49,13 +49,13 @@ SDL_Rect normalPlaceOf(const WindowForm& form, const SDL_Rect& monitor) {
           form.height > 0 ? form.height : form.picture_height};
 }
 
-// A display without a window manager leaves a window where it was put, also if it is to cover the
-// monitor.
+// Returns where to put the window. Without a window manager, a window stays where it was put even
+// if it should cover the monitor.
 SDL_Rect placeOf(const WindowForm& form, const SDL_Rect& monitor) {
   return form.fullscreen ? monitor : normalPlaceOf(form, monitor);
 }
 
-// Picture without alpha: the window's pixels are opaque.
+// Wraps the picture without alpha, since the window's pixels are opaque.
 SDL_Surface* wrap(std::span<const std::uint8_t> pixels, const WindowForm& form) {
   SDL_Surface* const surface = SDL_CreateRGBSurfaceWithFormatFrom(
       const_cast<std::uint8_t*>(pixels.data()), form.picture_width, form.picture_height, 32,
@@ -141,7 +141,7 @@ bool SdlWindow::handle(const SDL_Event& event) {
   if (event.type == SDL_WINDOWEVENT) {
     const auto what = event.window.event;
     if (what == SDL_WINDOWEVENT_CLOSE) return false;
-    // The next frame tells if there is a fault.
+    // A fault shows at the next frame, which reports it.
     if (what == SDL_WINDOWEVENT_EXPOSED || what == SDL_WINDOWEVENT_SIZE_CHANGED)
       static_cast<void>(draw().ok());
   }
@@ -198,7 +198,7 @@ void SdlWindow::act(const SDL_Event& event) {
 
 void SdlWindow::press(const SDL_KeyboardEvent& event) {
   const int with = event.keysym.mod;
-  if ((with & (KMOD_ALT | KMOD_GUI)) != 0) return;  // the desktop's
+  if ((with & (KMOD_ALT | KMOD_GUI)) != 0) return;  // a shortcut of the desktop
   const bool repeats = event.repeat != 0;
   if (event.keysym.sym == SDLK_F11) {
     if (!repeats) toggleFullscreen();

@@ -13,7 +13,8 @@ namespace merlin::render::out {
 enum class WindowScale { kFit, kNone };
 inline constexpr const char* kWindowScaleNames[] = {"fit", "none"};
 
-// What becomes of merlind when a person closes the window. In the order of kOnCloseNames.
+// What happens when a person closes the window: kHealth: merlind goes on, and the output has a
+// fault; kStop: merlind stops. In the order of kOnCloseNames.
 enum class OnClose { kHealth, kStop };
 inline constexpr const char* kOnCloseNames[] = {"health", "stop"};
 
@@ -34,8 +35,8 @@ struct WindowSettings {
 // Longest title [bytes].
 inline constexpr std::size_t kLongestTitle = 127;
 
-// Finds a title that is too long; one of width and height without the other; a place or a size of a
-// window that covers its monitor. Pure.
+// Checks for: a title that is too long; a width without a height, or the reverse; a position or a
+// size of a fullscreen window. Pure.
 SettingFaults validate(const WindowSettings& window);
 
 }  // namespace merlin::render::out

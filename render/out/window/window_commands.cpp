@@ -13,7 +13,7 @@ namespace {
 
 // The largest motion of one command: see `move`.
 constexpr double kMostRadii = 10, kMostDegrees = 360;
-// As merlin-rfb has them.
+// The same values as in merlin-rfb.
 constexpr double kDegreesPerHeight = 180, kRadiiPerHeight = 1.5;
 constexpr double kRadiiPerNotch = 0.1;
 constexpr double kDegreesPerKey = 5, kRadiiPerKey = 0.05;

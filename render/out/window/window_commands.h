@@ -27,12 +27,12 @@ class WindowCommands {
   // README.md lists the keys. A held key repeats motions only.
   void press(const PressedKey& key);
 
-  // The commands since the last call, "NAME ARGUMENT", in the order of the keys; motions come last
-  // and are one command.
+  // Returns the commands since the last call, "NAME ARGUMENT", in the order in which keys were
+  // pressed; all motions together are one command, the last.
   std::vector<std::string> take();
 
  private:
-  // As the command `move` takes them: radii of the content, and degrees.
+  // The arguments of the command `move`: shifts in radii of the content, rotations in degrees.
   struct Motion {
     double right = 0, up = 0, nearer = 0, about_x_deg = 0, about_y_deg = 0;
   };

@@ -180,7 +180,7 @@ void WindowLink::execute(std::string_view command) const {
   if (!done) logWarning("a command that was given in a window: {}", done.error().what);
 }
 
-// One frame at a time, so that the program always gets the newest one next.
+// Sends one frame at a time, so that the program always gets the newest one next.
 void WindowLink::sendNewest() {
   if (!process_ || owed_since_) return;
   FrameReady frame;

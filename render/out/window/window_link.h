@@ -1,4 +1,4 @@
-// WindowLink: hands pictures to a window on a desktop, which a program of its own shows.
+// WindowLink: hands pictures to a separate program, which shows them in a window on a desktop.
 //
 // The window belongs to the program merlin-window, because the libraries of a desktop end their
 // process when the X server goes away, handle signals and may wait without limit. A thread here
@@ -25,7 +25,7 @@ namespace merlin::render::out {
 
 // What merlind does for the person at a window. Called on the threads of the outputs.
 struct WindowActs {
-  // Executes a command of daemon/base/commands.h. Errors: why not.
+  // Executes a command of daemon/base/commands.h. Errors: why it was not executed.
   std::function<Result<std::string>(const std::string& name, const std::string& argument)> command =
       [](const std::string&, const std::string&) -> Result<std::string> { return std::string(); };
   // Stops merlind. `why`: a sentence for the log.
@@ -34,7 +34,7 @@ struct WindowActs {
   std::optional<PanelPointer::Place> panel{};
 };
 
-// show(), fault() and isClosed() are thread-safe, except that one thread calls show().
+// fault() and isClosed() are thread-safe; show() is called by one thread only.
 class WindowLink {
  public:
   static constexpr Duration kRetry = std::chrono::seconds(1);
@@ -84,7 +84,7 @@ class WindowLink {
   std::optional<PictureSlots> slots_;  // from the first frame on; slots are written without mutex_
   std::uint32_t newest_ = 0;           // slot of the newest frame
   std::uint32_t in_flight_ = 0;        // slot of the frame that the program was sent last
-  std::uint64_t frames_ = 0, sent_ = 0;  // number of the newest frame, and of that one
+  std::uint64_t frames_ = 0, sent_ = 0;  // number of the newest frame; of the one sent last
   bool opened_ = false;                  // there is a window
   bool closed_ = false;                  // a person closed it
   std::string fault_;                    // empty: none is known

@@ -6,7 +6,7 @@
 //   XYZ    text: x y z, with an intensity, a colour or a normal
 //   E57    is refused, with the command that converts it
 //
-// Everything in a file is hostile until it has been checked. Nothing throws, nothing is printed.
+// Nothing in a file is trusted before it has been checked. Nothing throws, nothing is printed.
 // Reentrant.
 #pragma once
 
@@ -19,11 +19,13 @@
 
 namespace merlin::render::points {
 
-// The format of a cloud that begins like this: "LAS", "PCD", ...; E57 as well, which is refused
-// with the way out when it is read. Nothing for any other file.
+// Returns the format of a point cloud whose file begins with `bytes`: "LAS", "PCD", ...; also
+// "E57", although parseCloud() refuses it with an error that says how to convert the file. Nothing
+// for any other file.
 std::optional<std::string> cloudFormatOf(std::string_view bytes);
 
-// Of a text without any mark, which other readers are asked about first: "XYZ", or nothing.
+// Returns "XYZ" if `bytes` look like a text file of points, else nothing. Such a file has no
+// identifying mark, so readers of other formats should be asked first.
 std::optional<std::string> textCloudFormatOf(std::string_view bytes);
 
 // The formats, for messages and help.

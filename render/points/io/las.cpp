@@ -87,7 +87,7 @@ Result<Ok> checkScale(const LasHeader& h) {
   return Ok{};
 }
 
-// The count of points and the place of the first, against the file's size.
+// Reads the number of points and the offset of the first, and checks them against the file's size.
 Result<Ok> checkRoom(const LasBytes& b, std::size_t size, LasHeader& h) {
   h.start = b.u32(96);
   h.points = h.minor >= 4 ? b.u64(247) : b.u32(107);

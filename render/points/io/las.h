@@ -1,4 +1,5 @@
-// LAS files of laser scanners: versions 1.2, 1.3 and 1.4, point formats 0 to 10, not compressed.
+// Reads LAS files of laser scanners: versions 1.2, 1.3 and 1.4, point formats 0 to 10,
+// uncompressed.
 // Format: ASPRS, "LAS Specification 1.4 - R15", 2019, tables 1 to 17; versions 1.2 and 1.3
 // likewise.
 #pragma once
@@ -12,11 +13,11 @@ namespace merlin::render::points {
 
 bool isLas(std::string_view bytes) noexcept;
 
-// The points with the features "intensity" (raw counts), "label" (the class) and "colour", where a
-// point has one, and the projection. Left out, as a note says: withheld points, points of the noise
-// classes 7 and 18, the GPS time, return numbers, scan angles, near infrared, waveforms and extra
-// bytes where there are any. Errors, with the field of the header: kMalformed; kUnsupported (LAZ,
-// any other version), each with the command that converts.
+// Returns the points with the features "intensity" (raw counts), "label" (the class) and, if the
+// points have one, "colour", and the projection. The following is left out, and a note says so:
+// withheld points, points of the noise classes 7 and 18, GPS times, return numbers, scan angles,
+// near infrared, waveforms and extra bytes. Errors, with the field of the header: kMalformed;
+// kUnsupported (LAZ, any other version), with the command that converts the file.
 Result<PointCloud> parseLas(std::string_view bytes);
 
 }  // namespace merlin::render::points

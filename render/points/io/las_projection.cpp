@@ -26,8 +26,8 @@ struct Records {
   std::string_view wkt, keys, names;
 };
 
-// A row of records: `head` is the length of each one's header, whose field of the length has
-// `length_bytes`.
+// Searches `count` records from `at` on. `head`: length of each record's header [bytes], in which
+// the field of the record's length has `length_bytes` bytes.
 void findIn(std::string_view bytes, std::uint64_t at, std::uint64_t count, std::size_t head,
             std::size_t length_bytes, Records& found) {
   constexpr std::size_t kUser = 2, kRecord = 18, kLength = 20;
@@ -46,7 +46,7 @@ void findIn(std::string_view bytes, std::uint64_t at, std::uint64_t count, std::
   }
 }
 
-// The keys of GeoTIFF: rows of four 16-bit numbers, of which the first counts the others.
+// The keys of GeoTIFF: rows of four 16-bit numbers. The first row counts the others.
 class GeoKeys {
  public:
   GeoKeys(std::string_view keys, std::string_view names) : keys_(keys), names_(names) {}

@@ -1,4 +1,4 @@
-// The projection of a LAS file, from its variable length records: WKT, or the keys of GeoTIFF.
+// Reads the projection of a LAS file from its variable length records: WKT, or the keys of GeoTIFF.
 // Format: ASPRS, "LAS Specification 1.4 - R15", 2019, chapter 3; OGC 19-008, "GeoTIFF Standard",
 // 2019, section 7. Private to render/points/io.
 #pragma once
@@ -9,12 +9,12 @@
 namespace merlin::render::points {
 
 struct LasProjection {
-  std::string text;  // WKT; or EPSG:N of the keys, EPSG:N+M with heights; or the keys' own name
-  std::string note;  // for the user, where there is a record that gives no text; else empty
+  std::string text;  // WKT; or by the keys: EPSG:N, EPSG:N+M (with heights), or a plain name
+  std::string note;  // for the user, if there is a record but `text` is empty; else empty
 };
 
-// `bytes` is a whole file with a header of at least 227 bytes (375 of version 1.4); records that
-// are cut count for nothing.
+// `bytes` is a whole file with a header of at least 227 bytes (375 in version 1.4); truncated
+// records are ignored.
 LasProjection lasProjection(std::string_view bytes);
 
 }  // namespace merlin::render::points

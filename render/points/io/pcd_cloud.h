@@ -1,5 +1,5 @@
-// PCD files whose points are in no rows and columns, as a point cloud; the header and the numbers
-// are read by render/range/io/pcd_body.
+// Converts PCD files whose points are not in rows and columns to point clouds;
+// render/range/io/pcd_body reads the header and the numbers.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace merlin::render::points {
 
-// Whether the bytes begin a PCD file of HEIGHT 1.
+// Whether the bytes are the beginning of a PCD file of HEIGHT 1.
 bool isPcdCloud(std::string_view bytes);
 
 // rgb or rgba becomes the feature "colour"; normal_x, normal_y and normal_z become "normal"; any

@@ -89,7 +89,8 @@ bool isPlyCloud(std::string_view bytes) {
 
 Result<PointCloud> parsePlyCloud(std::string_view bytes) {
   auto loaded = mesh::ply::parse(bytes);
-  if (!loaded) return Error{loaded.error().code, oneLine(loaded.error().what)};  // it quotes
+  // It quotes the file.
+  if (!loaded) return Error{loaded.error().code, oneLine(loaded.error().what)};
   PointCloud cloud;
   cloud.format = "PLY without faces";
   cloud.positions = std::move(loaded->mesh.positions);

@@ -1,4 +1,4 @@
-// PLY files without faces, as a point cloud; they are parsed by render/mesh/io/ply.
+// Converts PLY files without faces to point clouds; render/mesh/io/ply parses them.
 #pragma once
 
 #include <string_view>
@@ -8,10 +8,11 @@
 
 namespace merlin::render::points {
 
-// Whether the bytes begin a PLY file with vertices, without faces, strips and range_grid.
+// Whether the bytes are the beginning of a PLY file with vertices, but without faces, strips and
+// range_grid.
 bool isPlyCloud(std::string_view bytes);
 
-// Each scalar vertex property becomes a feature, as of a mesh. Coordinates are read as doubles and
+// Each scalar vertex property becomes a feature, as in a mesh. Coordinates are read as doubles and
 // kept relative to mesh::originNear() of the first point. Errors: those of ply::parse().
 Result<PointCloud> parsePlyCloud(std::string_view bytes);
 

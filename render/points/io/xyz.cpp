@@ -83,7 +83,7 @@ class XyzReader {
     return Ok{};
   }
 
-  // `width` of the columns after x, y and z, from `first` on.
+  // Returns a feature of `width` columns, counted from `first` after x, y and z.
   mesh::Feature columnsOf(const char* name, std::size_t first, std::size_t width) const {
     mesh::Feature feature{name, width, {}};
     feature.values.reserve(cloud_.size() * width);

@@ -1,7 +1,7 @@
-// Text files of points, a line each: x y z, then nothing, an intensity, a colour (three whole
-// numbers of 0 to 255), a unit normal, or an intensity and a colour. Columns are parted by blanks,
-// commas or semicolons. Lines that begin with # or // are comments; a first line with nothing but
-// the number of points (PTS) is passed over.
+// Reads text files of points, one line per point: x y z, then nothing, an intensity, a colour
+// (three integers of 0 to 255), a unit normal, or an intensity and a colour. Columns are separated
+// by blanks, commas or semicolons. Lines that begin with # or // are comments; a first line with
+// nothing but the number of points (PTS) is skipped.
 #pragma once
 
 #include <string_view>
@@ -11,12 +11,12 @@
 
 namespace merlin::render::points {
 
-// Whether the first 4096 bytes are three lines of points at least, all of 3, 4, 6 or 7 numbers, and
-// nothing else.
+// Whether the first 4096 bytes are at least three lines of points, all with 3, 4, 6 or 7 numbers,
+// and otherwise only comments.
 bool isXyz(std::string_view bytes);
 
-// Errors, with the line: kMalformed (another number of columns, a word that is no number, six
-// columns that are neither a colour nor a normal).
+// Errors, with the line: kMalformed (another number of columns, a word that is not a number, six
+// columns whose last three are neither a colour nor a normal).
 Result<PointCloud> parseXyz(std::string_view bytes);
 
 }  // namespace merlin::render::points

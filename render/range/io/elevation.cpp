@@ -30,7 +30,7 @@ std::optional<Corner> cornerOf(std::string_view name) {
 
 constexpr std::size_t kTileSides[] = {1201, 3601};
 
-// EPSG:4326, of the tiles' corners, longitude first as `origin` has it.
+// EPSG:4326, the system of the tiles' corners; `origin` has the longitude first.
 constexpr const char* kWgs84 =
     "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563,"
     "AUTHORITY[\"EPSG\",\"7030\"]],AUTHORITY[\"EPSG\",\"6326\"]],"
@@ -50,7 +50,7 @@ struct GridHeader {
   std::optional<double> west_middle, south_middle;  // of the lower left cell, not its corner
 };
 
-// Reads a line of the header; false if its key is none.
+// Reads a line of the header; false if its key is unknown.
 bool readKey(const std::string& key, double value, GridHeader& header) {
   struct Key {
     const char* name;
@@ -100,10 +100,11 @@ Result<std::size_t> countOf(const char* key, const std::optional<double>& value)
                      : fmt::format("{} is missing", key)};
 }
 
-// Whether a text of a .prj file is of degrees: WKT, or ArcInfo's lines such as "Units DD".
+// Whether the text of a .prj file declares degrees: WKT, or ArcInfo's lines such as "Units DD".
 bool saysDegrees(std::string_view projection) {
   const std::string text = lowerCase(projection);
-  if (text.find("projc") != std::string::npos) return false;  // it has a geographic one inside
+  // A projected system contains a geographic one.
+  if (text.find("projc") != std::string::npos) return false;
   if (text.find("geogcs") != std::string::npos || text.find("geogcrs") != std::string::npos)
     return true;
   for (std::string_view rest = text; !rest.empty();) {
@@ -115,7 +116,7 @@ bool saysDegrees(std::string_view projection) {
   return false;
 }
 
-// The middle of the lower left cell; nothing if the header lacks it.
+// Returns a coordinate of the middle of the lower left cell; nothing if the header lacks it.
 std::optional<double> middleOf(const std::optional<double>& corner,
                                const std::optional<double>& middle, double cell) {
   return corner ? *corner + cell / 2 : middle;
@@ -142,7 +143,7 @@ std::string inOneLine(std::string_view text) {
   return line;
 }
 
-// The distances of columns and rows, in metres if they are in degrees.
+// Sets the distances of columns and rows; converts degrees to metres.
 void setCells(const GridHeader& header, std::string_view projection, StoredImage& image) {
   double dx = header.dx.value_or(header.cell.value_or(0));
   double dy = header.dy.value_or(header.cell.value_or(0));
@@ -165,7 +166,8 @@ void setCells(const GridHeader& header, std::string_view projection, StoredImage
   image.header.cell = {dx * metres[0], dy * metres[1]};
 }
 
-// Reads a number as a float: infinite if it is beyond those, as voids of doubles are.
+// Reads a number as a float. A number beyond the range of floats, such as a void written as a
+// double, becomes infinite; one that is too small becomes 0.
 bool readFloat(std::string_view word, float& value) {
   if (readNumber(word, value)) return true;
   double wide = 0;

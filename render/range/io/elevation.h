@@ -14,18 +14,19 @@ namespace merlin::render::range {
 // [metres].
 std::array<double, 2> metresPerDegree(double latitude_deg);
 
-// A tile of 1201 x 1201 or 3601 x 3601 heights, big-endian 16 bits, void where -32768; `name` is
-// the file's, whose beginning (N44W072) says where it lies: the origin, in EPSG:4326, which becomes
-// the projection. Errors: kMalformed (another size); without such a name the cells are left to the
-// caller.
+// Parses an HGT tile: 1201 x 1201 or 3601 x 3601 heights of 16 bits, big-endian; -32768 marks a
+// missing height. The beginning of `name`, the file's name (N44W072), gives the position of the
+// tile: it becomes the origin, with EPSG:4326 as projection, and determines the cells' size in
+// metres. Without such a name all three are left to the caller. Errors: kMalformed (another size).
 Result<StoredImage> parseHgt(std::string_view bytes, std::string_view name);
 bool isHgt(std::string_view bytes, std::string_view name) noexcept;
 
-// ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize (or dx and dy),
-// NODATA_value, then the heights. `projection`: the text of the .prj file beside it (WKT or
-// ArcInfo's lines), or empty; cells in degrees, which it or, where it is empty, the corner and the
-// cells tell, become metres at the map's middle. The origin is the middle of the lower left cell.
-// Errors, with the line or the value's number: kMalformed, kUnsupported (too many cells).
+// Parses an ESRI ASCII grid: ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize
+// (or dx and dy), NODATA_value, then the heights. `projection`: the text of the .prj file in the
+// same folder (WKT or ArcInfo's lines), or empty. Cells in degrees are converted to metres at the
+// map's middle; the projection says whether they are in degrees or, if it is empty, the position of
+// the corner and the cell size do. The origin is the middle of the lower left cell. Errors, with
+// the line or the value's number: kMalformed, kUnsupported (too many cells).
 Result<StoredImage> parseEsriGrid(std::string_view text, std::string_view projection);
 bool isEsriGrid(std::string_view text) noexcept;
 

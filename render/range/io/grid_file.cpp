@@ -21,7 +21,7 @@ std::string textOf(std::string_view value) {
   return oneLine(wholeCharacters(value.substr(0, kMostNote)));
 }
 
-// Sets what the line says. Returns what is wrong with it; empty if nothing is.
+// Applies a line of the head. Returns what is wrong with it; empty if nothing is.
 std::string setGridKey(std::string_view line, GridHead& head) {
   const std::size_t colon = std::min(line.find(':'), line.size());
   const std::string_view key = line.substr(0, colon);
@@ -71,7 +71,7 @@ Result<GridHead> parseHead(std::string_view& bytes) {
   return Error{Errc::kMalformed, "has no line values, which ends the head"};
 }
 
-// Cells in degrees become metres.
+// Converts cells in degrees to metres.
 void setMetres(const GridHead& head, StoredImage& image) {
   if (!head.latitude_deg || !image.header.cell) return;
   auto& cell = *image.header.cell;

@@ -1,5 +1,5 @@
-// The form in which merlin-import hands range images and elevation maps of other programs' formats
-// to merlin:
+// The file format in which merlin-import passes range images and elevation maps, read from the
+// formats of other programs, to merlin:
 //
 //   MERLIN grid 1
 //   size: 344 403
@@ -29,7 +29,7 @@ struct GridHead {
   std::size_t width = 0, height = 0;
   std::string format{};                  // "FITS", one line
   ImageHeader header{};                  // without beams' columns
-  std::optional<double> latitude_deg{};  // of the middle; then header.cell is in degrees
+  std::optional<double> latitude_deg{};  // of the map's middle; if set, header.cell is in degrees
   std::vector<std::string> notes{};      // one line each
 };
 
@@ -40,15 +40,15 @@ struct ParsedGrid {
   std::string format;
 };
 
-// Everything is checked: the file is from a program that read a hostile file. Errors, with the
-// line: kMalformed.
+// Checks everything, since the file comes from a program that has read an untrusted file. Errors,
+// with the line: kMalformed.
 Result<ParsedGrid> parseGrid(std::string_view bytes);
 
-// Sets the values of a row; false ends the writing.
+// Callback that sets the values of a row; if it returns false, writeGrid() stops.
 using ReadRow = std::function<bool(std::size_t row, std::span<float> values)>;
 
-// Writes the head and all rows. False if `write` or `read` did. REQUIRES: width and height are at
-// least 1, their product at most kMostPixels.
+// Writes the head and all rows. Returns false if `write` or `read` returned false. REQUIRES: width
+// and height are at least 1, their product at most kMostPixels.
 bool writeGrid(const GridHead& head, const WriteBytes& write, const ReadRow& read);
 
 }  // namespace merlin::render::range

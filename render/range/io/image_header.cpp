@@ -61,7 +61,7 @@ Error keyFault(std::string_view key, std::string_view found, std::string_view al
           fmt::format("{}: found \"{}\", allowed: {}", key, oneLine(excerpt(found)), allowed)};
 }
 
-// "NAME=FILE"; the file may not lie elsewhere, since the header comes from outside.
+// Adds "NAME=FILE"; the file must be in the same folder, since the header comes from outside.
 Result<Ok> addFeature(std::string_view value, ImageHeader& header) {
   const std::size_t equals = value.find('=');
   const std::string_view name = value.substr(0, equals);

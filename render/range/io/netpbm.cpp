@@ -150,7 +150,7 @@ bool writePgm(const RangeImage& image, int bits, const WriteBytes& write,
   const double largest = bits == 8 ? 255 : 65535;
   const Ends ends = endsOf(image.range);
   ImageHeader header = headerOf(image);
-  // Without a unit, ranges between a minimum and a maximum would be read as metres.
+  // Without a unit, a reader would take ranges between a minimum and a maximum for metres.
   if (header.unit.empty() && image.geometry.scanner != Scanner::kElevation) header.unit = "unknown";
   // The nearest range is stored as 1, since 0 is no return.
   const double span = std::max(double{ends.high} - ends.low, 1e-6 * std::abs(ends.high) + 1e-30);

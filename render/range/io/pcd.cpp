@@ -62,9 +62,9 @@ PointBox boxOf(const PcdValues& x, const PcdValues& y, const PcdValues& z) {
   return box;
 }
 
-// Where the points are seen from: the file's viewpoint; or, where that cannot be the scanner's
-// place because the points have the coordinates of a map and it has not, a place above them. Ranges
-// from 0 0 0 there would have fewer digits than the points.
+// Returns where the points are seen from. This is the file's viewpoint, unless that cannot be the
+// scanner's place because only the points have the coordinates of a map: then it is a place above
+// the points, since ranges from 0 0 0 would have fewer digits than the points.
 Place viewpointFor(const PointBox& box, const PcdHeader& header, std::vector<std::string>& notes) {
   constexpr double kFar = 100, kAbove = 10;  // diagonals
   const auto& v = header.viewpoint;
@@ -80,7 +80,7 @@ Place viewpointFor(const PointBox& box, const PcdHeader& header, std::vector<std
   return {middle[0], middle[1], box.high[2] + kAbove * box.diagonal()};
 }
 
-// Points to rays and ranges from the viewpoint.
+// Converts points to rays and ranges from the viewpoint.
 void addPoints(const PcdValues& x, const PcdValues& y, const PcdValues& z, const Place& viewpoint,
                RangeImage& image) {
   Geometry& g = image.geometry;

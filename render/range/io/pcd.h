@@ -13,16 +13,16 @@ namespace merlin::render::range {
 bool isPcd(std::string_view bytes) noexcept;
 
 struct PcdImage {
-  RangeImage image;  // of kRays, from the file's viewpoint or from above
+  RangeImage image;  // kRays, seen from the file's viewpoint or from above
   std::vector<std::string> notes;
 };
 
-// The fields x, y, z become ranges and rays, rgb or rgba the plane "colour", each other field one
-// of its name; normals are left out, since they are computed anew. Points that are not finite are
-// no return. A viewpoint that is 10^4 units and 100 diagonals of the points away from them, such as
-// the 0 0 0 of a file with the coordinates of a map, is none: they are seen from above, which a
-// note says. Errors, with the line of the header or the number of the point: kMalformed,
-// kUnsupported (not organised).
+// The fields x, y, z become ranges and rays, rgb or rgba becomes the plane "colour", and each other
+// field a plane of its name; normals are left out, since they are computed anew. Points that are
+// not finite count as no return. A viewpoint whose distance from the points is 10^4 units and 100
+// diagonals of their box, such as the default 0 0 0 in a file with map coordinates, is ignored: the
+// points are then seen from above, which a note says. Errors, with the line of the header or the
+// number of the point: kMalformed, kUnsupported (not organised).
 Result<PcdImage> parsePcd(std::string_view bytes);
 
 }  // namespace merlin::render::range

@@ -144,7 +144,7 @@ Error tooFew(const PcdHeader& header, std::size_t there, std::size_t needed) {
                       header.height, needed, header.data == "ascii" ? " at least" : "")};
 }
 
-// A number of a text; a packed colour may be written as a float whose bits it is.
+// Reads a number of a text. A packed colour may be written as the float that has the same bits.
 bool readWord(std::string_view word, const PcdField& field, double& value) {
   if (!readNumber(word, value)) return false;
   if (!isPackedColour(field)) return true;
@@ -182,8 +182,8 @@ Result<std::vector<PcdValues>> readAscii(std::string_view text, const PcdHeader&
   return values;
 }
 
-// `stride`: from point to point of one field; 0: the fields' numbers follow one another, each
-// field's for all points.
+// `by_field`: all numbers of the first field come first, then those of the next one; otherwise all
+// fields of a point are together.
 std::vector<PcdValues> readNumbers(const std::uint8_t* bytes, const PcdHeader& header,
                                    bool by_field) {
   std::vector<PcdValues> values = emptyValues(header);

@@ -1,4 +1,4 @@
-// The header and the numbers of a PCD file. Private to render/range/io and render/points/io.
+// Reads the header and the numbers of a PCD file. Private to render/range/io and render/points/io.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace merlin::render::range {
 
 struct PcdField {
   std::string name;
-  std::size_t size = 4, count = 1;  // bytes of a number, numbers of a point
+  std::size_t size = 4, count = 1;  // bytes per number, numbers per point
   char type = 'F';                  // I, U, F
 };
 
@@ -34,10 +34,11 @@ Result<PcdHeader> parsePcdHeader(std::string_view bytes);
 // 24 bits are red, green and blue, whatever the field's type.
 using PcdValues = std::vector<double>;
 
-// All fields' numbers. Errors: kMalformed, with the number of the point.
+// Reads the numbers of all fields. Errors: kMalformed, with the number of the point.
 Result<std::vector<PcdValues>> readPcdBody(std::string_view bytes, const PcdHeader& header);
 
-// The numbers of the field of this name with one number a point; nullptr if there is none.
+// Finds the numbers of the field that has this name and one number per point; nullptr if there is
+// none.
 const PcdValues* findField(const PcdHeader& header, const std::vector<PcdValues>& values,
                            std::string_view name);
 

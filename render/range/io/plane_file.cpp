@@ -30,7 +30,7 @@ std::optional<Error> sizeFault(const std::string& path, std::size_t width, std::
                            height, image.width, image.height)};
 }
 
-// One value per pixel three times, as grey.
+// Repeats the one value of each pixel three times, as grey.
 void spread(Plane& plane) {
   std::vector<float> grey;
   grey.reserve(3 * plane.values.size());
@@ -82,8 +82,8 @@ Plane planeOf(const std::string& name, const image::ImageFile& picture) {
   return plane;
 }
 
-// A PNG of 16 bits a channel: figures, of which a reader of pictures would keep the upper half,
-// bent by a gamma.
+// Whether the file is a PNG with 16 bits per channel. These are measured values; a reader of
+// pictures would keep only the upper 8 bits, after a gamma correction.
 bool isPng16(std::span<const std::byte> file) {
   constexpr std::size_t kDepthAt = 24;  // behind the mark, the chunk's head, width and height
   constexpr std::string_view kMark = "\x89PNG";
@@ -92,7 +92,7 @@ bool isPng16(std::span<const std::byte> file) {
                     [](char c, std::byte b) { return std::byte(c) == b; });
 }
 
-// One channel if red, green and blue are equal everywhere, as of a PGM of 16 bits.
+// Returns one channel if red, green and blue are equal everywhere, as for a 16-bit PGM.
 StoredImage storedOf(const image::Levels& levels) {
   StoredImage stored;
   stored.width = static_cast<std::size_t>(levels.width);
@@ -115,7 +115,7 @@ Result<Plane> readPng16(const std::string& name, const std::string& path,
   return planeOf(name, std::move(stored));
 }
 
-// The values that the stored 0 and the largest stored value stand for, and the latter.
+// The values that are stored as 0 (`minimum`) and as `largest` (`maximum`).
 struct StoredScale {
   double minimum = 0, maximum = kLargest, largest = kLargest;
   double step() const { return (maximum - minimum) / largest; }

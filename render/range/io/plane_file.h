@@ -1,4 +1,4 @@
-// Registered images of other modalities, in files of their own.
+// Reads and writes registered images of other modalities, each in a file of its own.
 #pragma once
 
 #include <string>
@@ -16,14 +16,14 @@ namespace merlin::render::range {
 // kInvalidArgument (another size: both are named).
 Result<Plane> readPlane(const std::string& name, const std::string& path, const RangeImage& image);
 
-// The ending of the files in which writePlane() writes the plane: ".png" for colours, else ".pgm".
+// The ending of the file that writePlane() writes for the plane: ".png" for colours, else ".pgm".
 const char* endingOf(const Plane& plane);
 
 // Writes a plane so that readPlane() gives it back: colours (dimension 3, each 0..1) as PNG with 8
 // bits; one value per pixel as PGM with 16 bits, whose header has the unit and the scale: the
-// plane's range, widened to its values. Whole numbers that lie within 65535 of one another are kept
-// exactly, unless the range has ends that are not whole. Only pixels with a return count;
-// the others are written as the lowest value. Errors: those of writeFile(). REQUIRES: dimension 1
+// plane's range, widened to include its values. Whole numbers that differ by at most 65535 are kept
+// exactly, unless an end of the range is not a whole number. Only pixels with a return count; the
+// others are written as the lowest value. Errors: those of writeFile(). REQUIRES: dimension 1
 // or 3, finite values.
 Result<Ok> writePlane(const std::string& path, const Plane& plane, const RangeImage& image);
 

@@ -109,7 +109,8 @@ Geometry geometryOf(const ImageHeader& header, const RangeOptions& options, std:
   return g;
 }
 
-// Stored values become ranges: the header's scale, and no return where there is none.
+// Converts stored values to ranges by the header's scale; values that mean no return become
+// kNoReturn.
 void setRanges(const StoredImage& stored, RangeImage& image) {
   const ImageHeader& header = stored.header;
   const bool elevation = image.geometry.scanner == Scanner::kElevation;
@@ -239,7 +240,7 @@ std::string emptyFault(const RangeImage& image) {
       image.width, image.height, kFarthest);
 }
 
-// What was read of the file `path`, if points can be made of it, else why not.
+// Returns what was read from `path` if points can be made of it; otherwise the reason.
 Result<LoadedRange> checked(const std::string& path, const RangeOptions& options,
                             Result<LoadedRange> loaded) {
   // Errors of the file system and of the table of angles name their file.

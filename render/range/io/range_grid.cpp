@@ -49,7 +49,7 @@ struct Size {
   std::size_t width = 0, height = 0;
 };
 
-// "obj_info num_cols 512" of the header's lines.
+// Reads the size from the header's lines such as "obj_info num_cols 512".
 Result<Size> sizeOf(std::string_view head) {
   Size size;
   for (std::size_t line = 1; !head.empty(); ++line) {
@@ -212,7 +212,7 @@ Result<Points> readPoints(const ply::Header& header, std::string_view bytes, con
   ply::Body body(bytes, header.form);
   bool vertices = false, pixels = false;
   for (const ply::Element& element : header.elements) {
-    // A word of a text takes two bytes, but for the last one.
+    // In a text, each word takes two bytes or more, except the last one.
     const std::size_t least = element.leastBytes(header.form);
     if (least > 0 && element.count > (body.left() + 1) / least) return tooMany(element);
     const bool vertex = element.name == "vertex", pixel = element.name == "range_grid";
@@ -254,8 +254,8 @@ double unevenness(std::vector<double> steps) {
   return median > 0 ? medianOfSteps(steps) / median : std::numeric_limits<double>::infinity();
 }
 
-// Whether neighbours in a row are at more even steps of angle as seen from the origin, than of
-// length as seen from far along z. Of up to 4096 pairs.
+// Whether steps between neighbours in a row are more even as angles seen from the origin than as
+// lengths seen from far along z. Samples at most 8192 pairs.
 bool isSeenFromTheOrigin(const Points& points, const Size& size) {
   std::vector<double> angles, lengths;
   const std::size_t pixels = size.width * size.height;
@@ -275,7 +275,7 @@ bool isSeenFromTheOrigin(const Points& points, const Size& size) {
   return unevenness(std::move(angles)) < unevenness(std::move(lengths));
 }
 
-// A point ten times as far from the middle of the points, along z, as the farthest of them.
+// Returns a point above the middle of the points, along z: ten diagonals of their box above it.
 std::array<double, 3> distantPoint(const Points& points) {
   const std::vector<float>& xyz = points.xyz;
   const mesh::Origin& o = points.origin;
@@ -291,7 +291,7 @@ std::array<double, 3> distantPoint(const Points& points) {
           o[2] + high[2] + 10 * diagonal};
 }
 
-// The vertices as ranges and rays from `viewpoint`.
+// Stores the vertices as ranges and rays from `viewpoint`.
 void placePoints(const Points& points, const std::array<double, 3>& viewpoint, RangeImage& image) {
   Geometry& g = image.geometry;
   g.scanner = Scanner::kRays;

@@ -1,5 +1,5 @@
-// PLY files whose points lie on a grid of rows and columns: those with an element range_grid, as
-// the Stanford 3D Scanning Repository has them.
+// Reads PLY files whose points lie on a grid of rows and columns: files with an element range_grid,
+// such as those of the Stanford 3D Scanning Repository.
 #pragma once
 
 #include <string>
@@ -15,16 +15,17 @@ namespace merlin::render::range {
 bool isRangeGrid(std::string_view bytes) noexcept;
 
 struct RangeGrid {
-  RangeImage image;  // of kRays
+  RangeImage image;  // kRays
   std::vector<std::string> notes;
 };
 
-// num_cols and num_rows of the header's obj_info are the size; each pixel has a list of one vertex,
-// or of none where there is no return. x, y, z become ranges and rays, colours (0 to 255 of
-// integers, else 0 to 1) the plane "colour", each other property of the vertices one of its name.
-// The scanner's place is not in such a file: of the origin and a distant point in the direction of
-// z, the one is taken from which the columns have the more even steps. Errors, with the line of the
-// header or the number of the vertex or pixel: kMalformed, kUnsupported (too many pixels).
+// num_cols and num_rows of the header's obj_info give the size. Each pixel has a list of one
+// vertex, or an empty list if there is no return. x, y, z become ranges and rays; colours (integers
+// of 0 to 255, else 0 to 1) become the plane "colour"; each other property of the vertices becomes
+// a plane of its name. Such a file does not say where the scanner was: it is taken to be at the
+// origin or at a distant point in the direction of z, whichever sees the columns at more even
+// steps. Errors, with the line of the header or the number of the vertex or pixel: kMalformed,
+// kUnsupported (too many pixels).
 Result<RangeGrid> parseRangeGrid(std::string_view bytes);
 
 }  // namespace merlin::render::range

@@ -39,7 +39,8 @@ Error layoutFault(std::string_view text, std::string_view why) {
                       oneLine(excerpt(text)), why)};
 }
 
-// Removes the text up to `end` and that sign from `text`; the whole text if there is none.
+// Returns the text before `end`, and removes it and `end` from `text`; the whole text if there is
+// no `end`.
 std::string_view takeUntil(std::string_view& text, char end) {
   const std::size_t at = std::min(text.find(end), text.size());
   const std::string_view taken = text.substr(0, at);

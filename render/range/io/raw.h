@@ -1,5 +1,5 @@
-// Raw binary images, described by a text: how files of scanners are read whose layout only their
-// makers know, such as those of Coleman.
+// Reads raw binary images whose layout the user describes by a text. This is for files of scanners
+// whose layout only their makers know, such as those of Coleman.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +29,8 @@ struct RawLayout {
   std::vector<RawPlane> planes{};
 };
 
-// Parses "335x181:range=u16be,confidence=u8"; types: u8, i8, and u16, i16, u32, i32, f32, f64 with
-// le or be behind. Exactly one plane is named range. Errors: kInvalidArgument.
+// Parses "335x181:range=u16be,confidence=u8"; types: u8, i8, and u16, i16, u32, i32, f32, f64
+// followed by le or be. Exactly one plane must be named range. Errors: kInvalidArgument.
 Result<RawLayout> parseRawLayout(std::string_view text);
 
 // The names of the types, "u8, i8, u16le, ...".

@@ -1,5 +1,5 @@
-// Words and numbers of the text parts of range files; line feeds are blanks. Private to
-// render/range/io.
+// Splits the text parts of range files into words and numbers; line feeds count as blanks. Private
+// to render/range/io.
 #pragma once
 
 #include <cmath>
@@ -18,8 +18,8 @@ inline constexpr std::string_view kSpaces = " \t\r\n\v\f";
 inline std::string_view takeWord(std::string_view& text) { return merlin::takeWord(text, kSpaces); }
 inline std::string_view trimmed(std::string_view text) { return merlin::trimmed(text, kSpaces); }
 
-// The words of `text` as finite numbers of up to 1e30 in size; empty if one of them is none, or if
-// there are more than `most`.
+// Returns the words of `text` as numbers. Empty if a word is not a number with a magnitude of at
+// most 1e30, or if there are more than `most` words.
 inline std::vector<double> numbersOf(std::string_view text, std::size_t most) {
   std::vector<double> numbers;
   for (std::string_view word = takeWord(text); !word.empty(); word = takeWord(text)) {

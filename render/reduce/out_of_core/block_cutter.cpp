@@ -67,7 +67,8 @@ class BlockCutter::Piece {
   std::size_t begin_;
   std::vector<std::uint32_t> numbers_;  // by place: number in the block
   std::vector<bool> border_;
-  std::unordered_map<std::uint32_t, std::uint32_t> guests_;  // numbers of third corners; few
+  // Numbers of the few vertices outside the piece.
+  std::unordered_map<std::uint32_t, std::uint32_t> guests_;
 };
 
 BlockCutter::BlockCutter(const mesh::Mesh& mesh, const std::vector<bool>& locked, Threads threads)

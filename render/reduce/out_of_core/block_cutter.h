@@ -14,7 +14,7 @@ namespace merlin::render::reduce {
 struct Block {
   mesh::Mesh mesh;
   std::vector<std::uint32_t> vertices;  // by vertex: its index in the whole mesh
-  std::vector<bool> locked;             // by vertex: whether it has to stay where it is
+  std::vector<bool> locked;             // by vertex: whether it must keep its position
 };
 
 // Pieces as ranges of vertices along the curve: [k stride, k stride + size) for k = first .. last.
@@ -30,9 +30,10 @@ class BlockCutter {
   BlockCutter(const mesh::Mesh& mesh, const std::vector<bool>& locked, Threads threads);
 
   // Cuts out all pieces in one pass over the triangles. A triangle belongs to the piece that
-  // contains two or three of its vertices; with only those of three, an edge made inside a piece
-  // could exist outside already. Locks the vertices that `locked` names, those with a neighbour
-  // outside the piece, and third vertices of triangles, which are outside.
+  // contains two or three of its vertices; with only the triangles whose three vertices are inside,
+  // a collapse could create an edge that already exists outside the piece. Locks the vertices that
+  // `locked` names, those with a neighbour outside the piece, and those outside the piece itself
+  // (third vertices of triangles).
   std::vector<Block> cut(const Pieces& pieces) const;
 
  private:

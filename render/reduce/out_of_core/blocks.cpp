@@ -1,5 +1,6 @@
-// Reduces a mesh in blocks: pieces of the space-filling curve, one after another up to the same
-// error, with locked borders; then what the blocks leave as one mesh.
+// Reduces a mesh in blocks, which are pieces of the space-filling curve. The blocks are reduced one
+// after another, with locked borders and the same error limit; what they leave is then reduced as
+// one mesh.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -74,15 +75,15 @@ class InBlocks {
     return parts;
   }
 
-  // Returns how many triangles a block keeps at least, so that a flat block, where collapses cost
-  // nothing, is not reduced to its borders.
+  // Returns the minimum number of triangles that a block keeps, so that a flat block, where
+  // collapses cost nothing, is not reduced to its borders.
   std::size_t leastOf(const Block& block) const {
     return static_cast<std::size_t>(std::max(share_ / 2, target_) *
                                     static_cast<double>(block.mesh.triangleCount()));
   }
 
   // Returns the error limit with which all blocks together keep about the share `share_`, so that
-  // all become equally coarse. Estimated from samples along the whole curve.
+  // all become equally coarse. The limit is estimated from samples along the whole curve.
   float errorForAll(const BlockCutter& cutter) const {
     const std::size_t n = mesh_.vertexCount(), stride = (n + kSamples - 1) / kSamples;
     std::vector<float> errors;
@@ -129,13 +130,14 @@ class InBlocks {
   // Joins the logs, sorted by the largest error so far in each block, so that all blocks are
   // equally coarse at each level.
   void join(std::vector<Part>& parts) {
-    using Head = std::tuple<float, std::size_t, std::size_t>;  // error, part, collapse of it
+    using Head = std::tuple<float, std::size_t, std::size_t>;  // error, part, index of its collapse
     std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (!parts[p].log.error.empty()) heads.push({parts[p].log.error[0], p, 0});
     }
     reserve();
-    std::vector<std::vector<std::uint32_t>> nodes(parts.size());  // by collapse: its node
+    // By part and collapse: the node in the joined log.
+    std::vector<std::vector<std::uint32_t>> nodes(parts.size());
     while (!heads.empty()) {
       const auto [error, p, k] = heads.top();
       heads.pop();
@@ -178,7 +180,7 @@ class InBlocks {
 
   void reduceRest() {
     const std::size_t first = result_.log.children.size();
-    Part rest;  // `vertices` are nodes here
+    Part rest;  // its `vertices` are nodes of the joined log
     Reduction r;
     {
       std::vector<bool> locked;
@@ -189,7 +191,7 @@ class InBlocks {
           return progress_({first + p.collapses, p.triangles});
         };
       }
-      // Seams were locked in the blocks, where vertices at borders are locked too; here they may
+      // The blocks kept seams fixed, since vertices at block borders were locked; here seams may
       // shrink.
       std::vector<std::uint32_t> coincident;
       if (!locked.empty() && plan_.seams_shrink)

@@ -1,8 +1,9 @@
 // EdgeHeap: a priority queue of edges by length, shortest first, in which lengths can be updated
 // ([GOURLEY98] 4.2.2).
 //
-// A binary heap that knows the place of each edge in it. Ties go to the smaller edge number, so
-// that one input gives one order on every machine. Thread-bound.
+// A binary heap that also stores the place of each edge in it. Of edges with equal length the one
+// with the smaller number comes first, so that the order is the same on every machine.
+// Thread-bound.
 #pragma once
 
 #include <cstdint>

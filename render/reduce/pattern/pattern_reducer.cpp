@@ -74,8 +74,8 @@ PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
   return Step::kNothingLeft;
 }
 
-// False if the collapse would remove the mesh's last triangle, or, where these are preserved, the
-// last triangle of a component or change the topology.
+// Returns false if the collapse would remove the mesh's last triangle. If components or topology
+// are to be preserved: also if it would remove a component's last triangle or change the topology.
 bool PatternReducer::mayGo(const Plan& p, std::uint32_t edge) {
   const std::size_t shared = surface_.trianglesAt(edge);
   if (shared == surface_.liveTriangles()) return false;
@@ -133,7 +133,7 @@ PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
   return p;
 }
 
-// Angle by which the border turns at v [rad]: 0 (straight) to pi; 4 if v has not exactly two border
+// Angle by which the border turns at v [rad]: 0 (straight) to pi; 4 unless v has exactly two border
 // edges.
 float PatternReducer::sharpness(std::uint32_t v) const {
   Vec3 direction[2];
@@ -179,8 +179,8 @@ bool PatternReducer::flips(const Plan& p) {
   return false;
 }
 
-// Equations 4.8, 4.9: for a and b, how far each lies from the nearest plane of the new faces (all
-// of which pass through the new vertex); where no face is left, from the new vertex.
+// Equations 4.8, 4.9: returns the distances of a and b from the nearest plane of a new face (all of
+// these pass through the new vertex); if no face is left, from the new vertex.
 std::array<float, 2> PatternReducer::planeDistances(const Plan& p) const {
   std::array<float, 2> nearest{};
   for (std::size_t side = 0; side < 2; ++side) {
@@ -213,7 +213,8 @@ void PatternReducer::apply(const Plan& p, std::uint32_t edge, float error) {
   for (const std::uint32_t e : surface_.edgesOf(p.a)) heap_.update(e, lengthOf(e));
 }
 
-// Sets the new vertex' features: interpolated as its position is, the normal from the new faces.
+// Sets the new vertex' features: the normal from the new faces, the others interpolated with the
+// same weight as the position.
 void PatternReducer::mixFeatures(const Plan& p) {
   for (std::size_t f = 0; f < features_.size(); ++f) {
     float* a = &features_[f].values[p.a * features_[f].dimension];
@@ -224,7 +225,7 @@ void PatternReducer::mixFeatures(const Plan& p) {
   Vec3 sum{};
   for (std::size_t i = 0; i < new_normals_.size(); ++i) sum[i % 3] += new_normals_[i];
   const float length = std::sqrt(mesh::dot(sum.data(), sum.data()));
-  if (!(length > 0)) return;  // no face left: keep the interpolated one
+  if (!(length > 0)) return;  // no face left: keep the interpolated normal
   for (std::size_t k = 0; k < 3; ++k) features_[normal_].values[3 * p.a + k] = sum[k] / length;
 }
 

@@ -69,7 +69,8 @@ class PatternReducer {
   WorkingMesh surface_;
   const PatternSpace& space_;
   bool preserve_topology_, preserve_components_;
-  // Limit of triangles per vertex, above what useful surfaces have; the smallest number refused.
+  // Limit of triangles per vertex, higher than useful surfaces need, and the smallest number above
+  // the limit that was refused.
   static constexpr std::size_t kNoneLeftOut = std::numeric_limits<std::size_t>::max();
   std::size_t most_triangles_ = 128, smallest_left_out_ = kNoneLeftOut;
   std::vector<float> positions_;         // by vertex, present values

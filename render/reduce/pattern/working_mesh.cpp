@@ -7,7 +7,7 @@ namespace merlin::render::reduce {
 namespace {
 
 constexpr std::uint32_t kGone = ~std::uint32_t{0};  // first vertex of removed triangles and edges
-// Removed entries stay in longer lists until tidy().
+// Lists longer than this keep removed entries until tidy().
 constexpr std::size_t kLongList = 64;
 
 std::vector<WorkingMesh::Corners> cornersOf(const mesh::Mesh& mesh) {
@@ -18,7 +18,7 @@ std::vector<WorkingMesh::Corners> cornersOf(const mesh::Mesh& mesh) {
   return corners;
 }
 
-// Every edge once, sorted by its ends.
+// Returns each edge once, sorted by its two ends.
 std::vector<WorkingMesh::Ends> uniqueEdges(const std::vector<WorkingMesh::Corners>& corners) {
   std::vector<WorkingMesh::Ends> ends;
   ends.reserve(corners.size() * 3);
@@ -113,7 +113,7 @@ bool WorkingMesh::linkCondition(std::uint32_t edge) noexcept {
   for (const std::uint32_t e : spokes_[b]) common += mark_[otherEnd(e, b)] == stamp_;
   const std::size_t shared = shared_[edge];
   if (common != shared) return false;
-  if (around_[a].size() + around_[b].size() == 2 * shared) return false;  // nothing would be left
+  if (around_[a].size() + around_[b].size() == 2 * shared) return false;  // no triangle would stay
   if (shared == 2 && linksShareAnEdge(a, b)) return false;
   return shared == 1 || !(isBoundary(a) && isBoundary(b));
 }

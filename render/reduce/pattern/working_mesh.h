@@ -51,9 +51,9 @@ class WorkingMesh {
   // preserving edge contraction", 1999, with borders. REQUIRES: tidy() was called for both ends.
   bool linkCondition(std::uint32_t edge) noexcept;
 
-  // Merges b into a: removes triangles with both, and merges edges that become one. Returns the
-  // removed edges, the collapsed one among them; valid until the next call. REQUIRES: tidy() was
-  // called for a and b.
+  // Merges b into a: removes the triangles that contain both, and merges edges that coincide then.
+  // Returns the removed edges, including the collapsed one; valid until the next call. REQUIRES:
+  // tidy() was called for a and b.
   std::span<const std::uint32_t> collapse(std::uint32_t a, std::uint32_t b);
 
  private:

@@ -70,7 +70,7 @@ class BucketQueue {
     other = BucketQueue();
   }
 
-  // The bucket that the last pop() looked at, or a lower one that push() has used since.
+  // The bucket in which the last pop() looked, or a lower one into which push() has inserted since.
   std::size_t current() const noexcept { return current_; }
 
   static constexpr std::size_t kAhead = 5;

@@ -6,9 +6,9 @@
 namespace merlin::render::reduce {
 
 // Most of the time is spent waiting for memory. So the data of the next five vertices are
-// prefetched in stages: record, star, ring; each stage is two vertices ahead of the next, since a
-// dead vertex takes little time. Always inlined: GCC would drop a call that only prefetches as
-// having no effect.
+// prefetched in three stages: record, star, ring. The stages are two vertices apart, since a dead
+// vertex takes little time. Always inlined: GCC would drop a call that only prefetches as having no
+// effect.
 [[gnu::always_inline]] inline void CollapseLoop::prefetch(CollapseWorker& w) {
   const QuadricMesh& mesh = s_.mesh;
   const std::array<std::uint32_t, BucketQueue::kAhead>& next = w.queue.peek(s_.nextOf());
@@ -39,7 +39,8 @@ void CollapseLoop::tryVertex(CollapseWorker& w, std::uint32_t v) {
   const CollapseRules& rules = s_.rules;
   const std::size_t bucket = w.queue.current();
   const bool last = bucket + 1 == BucketQueue::buckets();
-  // Evaluating a large unordered star again costs more than a better order of collapses gains.
+  // A large unordered star is not requeued: evaluating it again costs more than a better order of
+  // collapses gains.
   const bool large = !rules.keepTopology() && mesh[v].degree > kManyCorners;
   const float ceiling =
       last || large ? kNoEdge : rules.tolerance() * BucketQueue::floorOf(bucket + 1);
@@ -69,7 +70,7 @@ void CollapseLoop::tryVertex(CollapseWorker& w, std::uint32_t v) {
   }
 }
 
-// Collapses the edge, and the coincident one if it is along a seam, if that is allowed. Returns
+// Collapses the edge if that is allowed; if it is along a seam, also the coincident edge. Returns
 // whether it did. REQUIRES: raise() was called for the edge.
 bool CollapseLoop::collapse(CollapseWorker& w, std::uint32_t v, std::uint32_t edge) {
   if (seams_.isAlong(w.costs, v, edge)) return collapseSeam(w, v, edge);
@@ -88,7 +89,7 @@ bool CollapseLoop::collapseSeam(CollapseWorker& w, std::uint32_t v, std::uint32_
   w.twin.z[other] = w.costs.z[edge];
   w.twin.cost[other] = w.costs.cost[edge];
   w.twin.deviation[other] = w.costs.deviation[edge];
-  w.twin.witness[other] = w.costs.staysAt(edge);  // that of the end that moves
+  w.twin.witness[other] = w.costs.staysAt(edge);  // keep the witness of the end that moves
   if (!choice_.mayCollapse(w, w.costs, v, edge) || !choice_.mayCollapse(w, w.twin, tv, other))
     return false;
   const std::uint32_t x = w.costs.neighbour[edge], tx = w.twin.neighbour[other];
@@ -96,8 +97,8 @@ bool CollapseLoop::collapseSeam(CollapseWorker& w, std::uint32_t v, std::uint32_
   if (mesh[v].degree > 0) s_.enqueue(w, v, w.costs.least());
   std::swap(w.costs, w.twin);
   collapser_.collapse(w, tv, other);
-  seams_.shareNormal(tx, x);                              // computed after both sides had moved
-  if ((mesh[tv].flags & kIdle) && mesh[tv].degree > 0) {  // else it is in the queue
+  seams_.shareNormal(tx, x);  // the normal at tx was computed after both sides had moved
+  if ((mesh[tv].flags & kIdle) && mesh[tv].degree > 0) {  // otherwise it is already in the queue
     mesh[tv].flags &= static_cast<std::uint8_t>(~kIdle);
     s_.enqueue(w, tv, w.costs.least());
   }

@@ -22,7 +22,7 @@ struct CollapseWorker {
   std::size_t collapses = 0;
   std::size_t removed = 0;  // triangles
   std::size_t flips = 0, links = 0;
-  std::size_t visited = 0;             // triangles in the stars looked at
+  std::size_t visited = 0;             // triangles in all stars that were looked at
   bool too_coarse = false;             // an edge was refused because of the error limit
   std::uint32_t refused_star = ~0U;    // triangles of the smallest star refused for its size
   std::vector<std::uint32_t> revived;  // hubs that now have few triangles

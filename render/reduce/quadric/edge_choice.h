@@ -16,9 +16,9 @@ class EdgeChoice {
       : s_(state), seams_(seams), judge_(edgeJudge()), farther_(fartherWitness()) {}
 
   // Leaves out edges whose trial would take too long, by setting their cost to kNoEdge, then finds
-  // the cheapest. Trying an edge looks at both of its stars; to avoid O(n^2) for n corners, a large
-  // star tries only a few of its edges, and no vertex tries an edge to a larger vertex above the
-  // limit.
+  // the cheapest. Trying an edge looks at the stars of both ends. To avoid O(n^2) for n corners, a
+  // vertex with a large star tries only a few of its edges, and no vertex tries an edge to a larger
+  // star of more than kMostCorners triangles.
   void leaveOut(std::uint32_t v, EdgeCosts& costs) const;
 
   // Raises the cost of `edge`, once, where the quadric underestimates the loss: at borders, seams,

@@ -11,8 +11,9 @@ namespace {
 
 using TwoCorners = simd::Vector<std::uint32_t, 16>;
 
-// Appends the corners of `star` without `other`, starting at the edge to `other`, so that two fans
-// become one. Returns the end. REQUIRES: room for all corners.
+// Appends the corners of `star`, except those that contain `other`, starting at the edge to
+// `other`, so that two fans become one. Returns the end of the output. REQUIRES: room for all
+// corners.
 Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other) {
   std::size_t first = 0;
   while (first < star.size() && star[first].b != other) ++first;
@@ -55,7 +56,7 @@ void EdgeCollapser::collapse(CollapseWorker& w, std::uint32_t v, std::uint32_t e
   if (s_.channels.count() > 0) {
     const float p[] = {w.costs.x[edge], w.costs.y[edge], w.costs.z[edge]};
     const float q[] = {p[0] - w.costs.rx[edge], p[1] - w.costs.ry[edge], p[2] - w.costs.rz[edge]};
-    // x keeps a copy, as the values of the node.
+    // x, which dies, keeps a copy as the values of the new node.
     s_.channels.mix(v, x, p, q);
   }
   mergeStars(w, v, x);
@@ -74,8 +75,8 @@ void EdgeCollapser::collapse(CollapseWorker& w, std::uint32_t v, std::uint32_t e
   if (!w.revived.empty()) reviveHubs(w, cost);
 }
 
-// Moves v to the new position and lets it take over what is to be kept of its neighbour, which
-// dies. Returns the record of the node, without error and normal.
+// Moves v to the new position and copies to it the flags, seam and witness that remain of its
+// neighbour, which dies. Returns the record of the new node, without error and normal.
 NodeRecord EdgeCollapser::mergeVertices(const EdgeCosts& costs, std::uint32_t v,
                                         std::uint32_t edge) {
   const std::uint32_t x = costs.neighbour[edge];
@@ -109,7 +110,7 @@ void EdgeCollapser::loseTriangle(CollapseWorker& w, std::uint32_t o) {
     w.revived.push_back(o);
 }
 
-// Lets hubs that have become small take part again.
+// Makes hubs that have become small normal vertices again and queues them.
 void EdgeCollapser::reviveHubs(CollapseWorker& w, float cost) {
   const EvaluateEdges set = edgeEvaluator(Evaluate::kQuadric);
   for (const std::uint32_t hub : w.revived) {
@@ -187,8 +188,8 @@ void EdgeCollapser::wakeRing(CollapseWorker& w, std::uint32_t v, float cost) {
   const auto wake = [&](std::uint32_t o) {
     QuadricVertex& ring = s_.mesh[o];
     if ((ring.flags & (kIdle | kHub)) != kIdle) return;
-    // A large star is not requeued at each change, since it would look at all its corners each
-    // time.
+    // A large star is requeued only at some of the changes, since its evaluation visits all its
+    // corners.
     const std::uint32_t rarely = ring.degree / kMostCorners;
     if (rarely > 0 && w.collapses % rarely != 0) return;
     ring.flags &= static_cast<std::uint8_t>(~kIdle);

@@ -43,7 +43,8 @@ void LogBuilder::copy(std::size_t k, lod::CollapseLog& log, std::vector<float>* 
   auto p = s_.mesh.toModel(r.position);
   for (float& x : p) x = std::clamp(x, -kFarthest, kFarthest);
   std::copy_n(p.begin(), 3, &log.positions[3 * k]);
-  log.error[k] = std::min(r.error / s_.mesh.scale(), kFarthest);  // may be infinite: tiny area
+  // The error may be infinite where areas are tiny.
+  log.error[k] = std::min(r.error / s_.mesh.scale(), kFarthest);
   const float* const n = r.normal;
   const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   for (std::size_t i = 0; normals && i < 3; ++i)

@@ -9,18 +9,19 @@
 namespace merlin::render::reduce {
 namespace {
 
-// Step of all parts, in buckets of cost: a factor of about 1.4.
+// In one step, the cost limit of all parts rises by this many buckets: a factor of about 1.4.
 constexpr std::size_t kStep = 32;
 constexpr double kStepTakes = 1.25;  // typical factor by which a step reduces the triangles
 constexpr std::size_t kMostSteps = 16;
 constexpr std::size_t kMostParts = 32;
-constexpr std::size_t kLeastPart = 30'000;  // vertices
+// Minimum number of vertices per part, if there are more than two parts.
+constexpr std::size_t kLeastPart = 30'000;
 // Factor by which parts of 200,000 vertices are reduced before they are joined.
 constexpr double kReduction = 6;
 
-// Returns the number of triangles at which `parts` parts are joined in pairs. Their borders, which
-// have to wait, are then at most a tenth of the triangles; a fourth in small meshes, where joining
-// earlier would hardly pay.
+// Returns the number of triangles at which `parts` parts are joined in pairs. The borders between
+// the parts, which cannot be reduced before, are then at most a tenth of the triangles; a fourth in
+// small meshes, where joining earlier would hardly pay.
 std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangles) {
   const double part = static_cast<double>(vertices) / static_cast<double>(parts);
   const double ratio = kReduction * std::sqrt(part / 200'000);
@@ -28,8 +29,8 @@ std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangle
                                   std::max(ratio, parts == 2 ? kReduction : 1.0));
 }
 
-// Returns how many steps the parts may take before they wait for one another: as many as are surely
-// needed to get from `left` to `keep` triangles.
+// Returns the number of steps that each part takes before it waits for the others: an estimate of
+// the steps needed to get from `left` to `keep` triangles, 1 to kMostSteps.
 std::size_t stepsAtOnce(std::size_t left, std::size_t keep) {
   const double ratio = static_cast<double>(left) / static_cast<double>(keep);
   const double steps = std::log(std::max(1.0, ratio)) / std::log(kStepTakes);
@@ -117,7 +118,8 @@ void PartsReduction::reduceInSteps(std::vector<CollapseWorker>& parts, std::size
     before += w.removed;
   }
   limit_ = std::max(limit_, first);
-  // Keeps a flat part, where collapses cost nothing, from being reduced to its borders.
+  // Largest share of its triangles that a part may lose, so that a flat part, where collapses cost
+  // nothing, is not reduced to its borders.
   const double most = 1 - 0.5 * static_cast<double>(keep) / static_cast<double>(before);
   while (s_.triangles > keep && limit_ < BucketQueue::buckets() && !s_.cancelled) {
     const std::size_t steps = stepsAtOnce(s_.triangles, keep);

@@ -17,8 +17,8 @@ namespace merlin::render::reduce {
 // the result does not depend on the number of threads.
 class PartsReduction {
  public:
-  // Returns the number of parts at first, a power of two: few, since triangles at borders have to
-  // wait; but enough for several cores. 1: the mesh is too small for parts.
+  // Returns the initial number of parts, a power of two: enough for several cores, but few, since
+  // triangles at the borders between parts have to wait. 1: the mesh is too small for parts.
   static std::size_t partsFor(std::size_t vertices);
 
   // Keeps references, which must outlive it.

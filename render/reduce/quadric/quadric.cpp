@@ -22,7 +22,8 @@ using ChannelFeature = QuadricPlan::ChannelFeature;
 constexpr float kLabelWeight = 0.005F;
 
 std::vector<ChannelFeature> channelsOf(const mesh::Mesh& mesh, const PatternSpace& space) {
-  // The ratio to the geometry's scale (weight / diagonal of the bounding box) is in model units.
+  // Weights are relative to that of the geometry, whose scale is weight / diagonal of the bounding
+  // box; so the ratio of two scales is in model units.
   const PatternFeature* geometry = space.find("geometry");
   std::vector<ChannelFeature> channels;
   std::size_t first = 0;
@@ -194,7 +195,7 @@ Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
     if (f.name == "label") continue;  // not interpolated: carryAlong()
     std::vector<float>& values = result.log.features[c.feature];
     values.resize(result.log.children.size() * f.dimension);
-    if (values.empty()) continue;  // without a collapse there is no place for k to point at
+    if (values.empty()) continue;  // without a collapse, there is no element to write to
     for (std::size_t k = 0; k < f.dimension; ++k)
       reducer.channelValues(c.first + k, c.scale, values.data() + k, f.dimension);
   }

@@ -78,8 +78,8 @@ enum class Evaluate {
   kBoth,
 };
 
-// With kQuadric or kEdges alone, many vertices may be evaluated in parallel: kQuadric reads only
-// such data of other vertices as it does not write, and kEdges writes only EdgeCosts.
+// With kQuadric or kEdges alone, many vertices may be evaluated in parallel: kQuadric does not read
+// the kind of data of other vertices that it writes, and kEdges writes only EdgeCosts.
 using EvaluateEdges = void (*)(const QuadricView&, std::uint32_t w, EdgeCosts&);
 
 // Returns the fastest implementation for this processor. All give the same bits.

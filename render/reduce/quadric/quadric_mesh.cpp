@@ -84,8 +84,8 @@ std::optional<std::uint32_t> FreshLines::claim(std::uint32_t corners) {
   return begin;
 }
 
-// Claims 64 KiB at a time, so that threads seldom contend; more if `corners` is more, and only
-// `corners` if no more is left.
+// Claims 64 KiB at a time, so that threads seldom contend; `corners` if that is more, or if there
+// is no room for 64 KiB.
 bool StarRoom::claimFresh(std::uint32_t corners) {
   if (end_ - next_ >= corners) return true;
   std::uint32_t size = std::max(kClaim, corners);
@@ -195,8 +195,8 @@ void QuadricMesh::fillStars(const mesh::Mesh& mesh, const HugeArray<std::uint32_
       }
     });
   };
-  // By vertex: first the number of its corners, then the index of its next corner. Not in the
-  // records, to stay in caches.
+  // By vertex: first the number of its corners, then the index of its next corner. Kept apart from
+  // the records, so that it stays in caches.
   HugeArray<std::uint32_t> places(vertexCount());
   forEachCorner([&](std::uint32_t v, std::uint32_t, std::uint32_t) { ++places[v]; });
   std::uint64_t total = 0;

@@ -45,7 +45,8 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   state_.rules.fast = limits.fast;
   state_.rules.keep_components = limits.preserve_topology || limits.preserve_components;
   const std::size_t keep = std::max<std::size_t>(limits.triangles, 1);
-  // Parts stop at three times the target, so that the final reduction of the whole makes it even.
+  // Parts stop at three times the target; the final reduction of the whole evens out their
+  // coarseness.
   if (PartsReduction::partsFor(state_.mesh.vertexCount()) > 1 && 3 * keep < state_.triangles)
     PartsReduction(state_, seams_, loop_).run(3 * keep, progress);
   else

@@ -45,7 +45,7 @@ class QuadricReducer {
     float error = std::numeric_limits<float>::infinity();  // maximum of a collapse, model units
     bool preserve_topology = false, preserve_components = false;
     bool by_all_rules = false;  // stop when the rules allow no more, instead of dropping one
-    bool fast = false;          // accept costs that have risen up to 4 times; no witnesses
+    bool fast = false;          // accept costs up to 4 times that of the queue; use no witnesses
     Threads threads = 1;
   };
   // Returns why it stopped: a value of ReduceReport::stopped.

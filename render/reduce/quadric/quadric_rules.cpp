@@ -37,8 +37,8 @@ MERLIN_INLINE bool linkHolds(const QuadricView& view, const QuadricVertex& a,
   return sum(common) == static_cast<std::int32_t>(shared);
 }
 
-// True if each vertex opposite the edge, which loses a triangle, keeps enough to be part of a
-// surface.
+// A collapse takes one triangle from each vertex opposite the edge. True if each of them keeps at
+// least one triangle (on a border) or three (in a closed fan).
 MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex& a, std::uint32_t x,
                                    std::uint32_t edge) {
   const Corner* star = view.corners + a.star;
@@ -237,7 +237,7 @@ void stayAtLocked(const QuadricView& view, std::uint32_t w, EdgeCosts& costs, st
   }
   const float r[] = {costs.rx[edge], costs.ry[edge], costs.rz[edge]};
   const bool here = a.flags & kLocked;
-  const float* h = here ? x.h : a.h;  // of the end that goes
+  const float* h = here ? x.h : a.h;  // quadric of the end that moves
   costs.x[edge] = here ? 0 : r[0];
   costs.y[edge] = here ? 0 : r[1];
   costs.z[edge] = here ? 0 : r[2];

@@ -80,7 +80,7 @@ MERLIN_INLINE void approachStar(const QuadricView& view, const QuadricVertex& v,
     const std::uint32_t* const corners = &view.corners[v.star + first].b;
     const std::uint32_t count = v.degree - first;
     const Ints b = firsts(corners, count);
-    Ints c = next(b);  // right for a closed fan
+    Ints c = next(b);  // valid for a closed fan; replaced below for others
     Triangles t;
     cornersFrom(view, b, to, t.b);
     if (!(v.flags & kOpen) && v.degree <= kLine) {

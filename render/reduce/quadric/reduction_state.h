@@ -18,8 +18,8 @@ inline constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
 // Maximum number of triangles in a star while the topology is kept. Useful surfaces stay below it;
 // a collapse next to a larger star would take too long.
 inline constexpr std::uint32_t kMostCorners = 128;
-// The same once the topology may change and stars are unordered: kMostUnordered at first. Of a star
-// above kManyCorners only a few edges are tried.
+// Once the topology may change, stars are unordered; the maximum is then kMostUnordered at first.
+// If a star has more than kManyCorners triangles, only a few of its edges are tried.
 inline constexpr std::uint32_t kManyCorners = 16, kMostUnordered = 32;
 
 // Which collapses are allowed at present.
@@ -28,7 +28,7 @@ struct CollapseRules {
   std::uint32_t most_corners = kMostCorners;                 // of the stars that take part
   float max_error = std::numeric_limits<float>::infinity();  // unit: mean edge length
   bool keep_components = false;
-  bool fast = false;  // accept costs that have risen up to 4 times; no witnesses
+  bool fast = false;  // accept costs up to 4 times that of the queue; use no witnesses
 
   bool keepTopology() const noexcept { return keepsTopology(stage); }
   // An edge is collapsed if its cost is below the upper end of its bucket times this factor.
@@ -53,7 +53,7 @@ struct ReductionState {
   bool hubs = false;              // some vertex is a hub
   HugeArray<std::uint32_t> next;  // links of the queues' lists; not in the records, to stay cached
   HugeArray<std::uint32_t> log;   // dead vertices, in the order of their collapses
-  CollapseWorker whole;           // of the whole mesh; while there are parts, their sums
+  CollapseWorker whole;           // worker of the whole mesh; with parts: their sums
   std::size_t triangles;          // left
   Threads threads;
   bool cancelled = false;

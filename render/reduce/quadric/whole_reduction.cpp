@@ -29,7 +29,7 @@ void WholeReduction::run(std::size_t keep, const Progress& progress) {
 // Puts all living vertices into one queue.
 void WholeReduction::requeue() {
   refreshQuadrics(s_);
-  // Stores the costs in `next`, in parallel, before it takes the links of the queue.
+  // `next` first holds the costs, which are computed in parallel, then the links of the queue.
   const EvaluateEdges edges = edgeEvaluator(Evaluate::kEdges);
   forEachLiving(s_, [&](std::uint32_t v, EdgeCosts& costs) {
     const bool hub = s_.mesh[v].flags & kHub;
@@ -44,7 +44,8 @@ void WholeReduction::requeue() {
   }
 }
 
-// Reduces until at most `keep` triangles are left or no star below the present limit allows more.
+// Reduces until at most `keep` triangles are left, or no collapse is allowed with the present limit
+// of the star size.
 void WholeReduction::reduceTo(std::size_t keep, const Progress& progress) {
   requeue();
   CollapseWorker& w = s_.whole;

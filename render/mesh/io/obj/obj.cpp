@@ -137,7 +137,7 @@ class ObjParser {
     return count;
   }
 
-  // x y z, x y z w, or x y z r g b.
+  // Reads "x y z", "x y z w", or "x y z r g b".
   Result<Ok> takeVertex(std::string_view line) {
     std::array<double, 8> n{};
     const auto count = takeNumbers(line, n);
@@ -184,7 +184,7 @@ class ObjParser {
         fmt::format("line {}: a face needs 3 corners or more, this one has {}", line_, count)};
   }
 
-  // "7", "7/1", "7//2", "-1/1/2".
+  // Reads a corner such as "7", "7/1", "7//2" or "-1/1/2".
   bool readCorner(std::string_view word, ObjCorner& corner) {
     const std::string_view vertex = word.substr(0, word.find('/'));
     int number = 0;

@@ -18,18 +18,18 @@ inline constexpr std::uint32_t kNoTexcoord = 0xFFFFFFFF;
 
 struct ObjSurface {
   Mesh mesh;        // vertices and triangles of the file; "colour" if every vertex has one
-  Origin origin{};  // of the file's coordinates; positions are relative to it
+  Origin origin{};  // what was subtracted from the file's coordinates
   std::vector<float> texcoords;  // u and v of each vt line
   // Both are empty if no corner has a texture coordinate and no face has a material.
   std::vector<std::uint32_t> corner_texcoord;  // triangles x 3: index of a vt line, or kNoTexcoord
   std::vector<std::uint32_t> triangle_material;  // triangles: index into `materials`
   std::vector<std::string> materials;            // names; the first is "": no material
   std::vector<std::string> libraries;            // names of material files (mtllib)
-  // Triangles: the number of the object and group (o, g) from 0, in the order in which they have
-  // triangles; empty if there is one.
+  // By triangle: the number of its part, i.e. of its object and group (o, g). Parts are numbered
+  // from 0 in the order of their first triangles. Empty if there is only one part.
   std::vector<std::uint32_t> triangle_part;
   std::size_t parts = 0;
-  std::vector<std::string> notes;  // what of the file is left out
+  std::vector<std::string> notes;  // what was left out of the file
 };
 
 // `content` is a whole file. Faces with more than three corners become triangles (polygon.h). The

@@ -125,7 +125,7 @@ class Library {
 
 constexpr std::size_t kMostLibraries = 64;
 
-// Returns whether all were read.
+// Reads the first kMostLibraries libraries. Returns whether these were all.
 bool readAll(const std::vector<std::string>& libraries, Library& library) {
   std::set<std::string_view> named;
   for (const std::string& name : libraries) {

@@ -25,13 +25,13 @@ struct ObjMaterial {
 
 // Reads the materials called `names` from the material files `libraries` of an OBJ file in `folder`
 // ("" or with a trailing slash); returns one entry for each name. Only files in that folder or
-// below are opened: of any other path the last component is used. Files that cannot be read are
+// below are opened; any other path is reduced to its last component. Files that cannot be read are
 // skipped, and a line in `notes` says why.
 std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
                                        const std::vector<std::string>& libraries,
                                        const std::string& folder, std::vector<std::string>& notes);
 
-// The paths of the images that readMaterials() would read, each once; none is opened.
+// The paths of the images that readMaterials() would read, each once. Opens no image.
 std::vector<std::string> picturesOf(const std::vector<std::string>& names,
                                     const std::vector<std::string>& libraries,
                                     const std::string& folder);

@@ -1,5 +1,5 @@
-// Objects and groups of an OBJ file (o, g) as the feature "label" of its vertices. Private to
-// render/mesh/io.
+// Converts the objects and groups (o, g) of an OBJ file to the feature "label" of its vertices.
+// Private to render/mesh/io.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace merlin::render::mesh {
 
-// Adds "label" (1). A vertex has one label, the lowest of its triangles' parts; so the part of a
-// triangle is the highest label at its corners, as after weldParts(). Where that would be another
-// part's, one corner becomes a vertex of the part's own, at the same place. The surface stays
-// connected everywhere else. O(n log n).
-// part_of  triangles: the number of each one's part
+// Adds "label" (1): for each vertex the lowest part number of its triangles. So the part of a
+// triangle is the highest label of its corners, as after weldParts(). If no corner of a triangle
+// has the label of its part, the first corner is replaced by a copy, at the same position, that has
+// this label. The surface stays connected everywhere else. O(n log n).
+// part_of  by triangle: the number of its part
 void labelParts(const std::vector<std::uint32_t>& part_of, Mesh& mesh);
 
 }  // namespace merlin::render::mesh

@@ -48,8 +48,8 @@ class ObjCounts {
     while (!content.empty()) count(takeLine(content));
   }
 
-  // The corners of the triangles are kept twice meanwhile, and vectors grow to twice their size;
-  // vertices become several at the seams of a texture.
+  // Estimates the memory. While reading, the triangles' corners are kept twice, and vectors grow to
+  // twice their size; a vertex at a seam of a texture becomes several.
   MeshFileSize size(const std::string& folder) const {
     const bool dressed = texcoords_ > 0 || names_.size() > 1;
     MeshFileSize size;
@@ -89,14 +89,15 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
   return ObjCounts(content).size(folder);
 }
 
-// Whether a line of a file can stand in an OBJ file, as far as its first word tells.
+// Whether a line can belong to an OBJ file, judged by its first word.
 bool canBeObjLine(std::string_view word) {
   constexpr std::string_view kWords[] = {"v", "vt", "vn", "vp", "f",      "l",
                                          "p", "o",  "g",  "s",  "mtllib", "usemtl"};
   return word.empty() || std::ranges::find(kWords, word) != std::end(kWords);
 }
 
-// An OBJ file has no mark. Its first lines are such as OBJ has, and a vertex is among them.
+// OBJ files have no magic number. So the first lines have to be lines of OBJ, with a vertex among
+// them.
 bool isObj(std::string_view content) {
   constexpr std::size_t kLooked = std::size_t{1} << 16;
   const bool all = content.size() <= kLooked;

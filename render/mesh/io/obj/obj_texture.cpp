@@ -78,8 +78,8 @@ void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materia
   for (std::uint32_t& m : surface.triangle_material) m = same[m];
 }
 
-// The pictures, one for each material, and the triangles that show them: those whose corners all
-// have texture coordinates.
+// Returns the pictures, one for each material, and the triangles that show them: those whose
+// corners all have texture coordinates.
 SurfaceTextures texturesOf(const ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
   SurfaceTextures all;
   for (const ObjMaterial& m : materials)
@@ -111,7 +111,7 @@ class Dresser {
   }
 
   std::array<float, 3> colourOf(const Wedge& w) const {
-    if (own_) {  // they stay beside the texture, as those of a PLY file do
+    if (own_) {  // vertex colours are kept beside the texture, as from PLY files
       const float* c = &own_->values[3 * std::size_t{w.vertex}];
       return {c[0], c[1], c[2]};
     }

@@ -239,7 +239,7 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
   return MeshFileSize{file.size()};
 }
 
-// Comments may come before the first word.
+// Skips comments, which may come before the first word.
 bool isOff(std::string_view content) {
   constexpr std::size_t kLooked = 4096;
   content = content.substr(0, kLooked);

@@ -31,8 +31,8 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   using FaceHandle = OpenMesh::FaceHandle;
   using Status = OpenMesh::Attributes::StatusInfo;
 
-  // `most`: limit on the number of vertices, faces, corners and half-edges each: as many as the
-  // file can hold.
+  // `most`: upper limit for each of the numbers of vertices, faces, corners and half-edges: as many
+  // as the file can hold.
   explicit Collector(std::size_t most) : most_(most) {}
 
   // Returns the collected mesh, with polygons as triangle fans. Throws BrokenFile if the half-edges
@@ -87,7 +87,8 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_color(FaceHandle, const OpenMesh::Vec4f&) override {}
   void add_texture_information(int, std::string) override {}
 
-  // OpenMesh looks up an OM file's custom properties here; this mesh has none, so they are skipped.
+  // OpenMesh looks up an OM file's custom properties in this mesh; it has none, so they are
+  // skipped.
   OpenMesh::BaseKernel* kernel() override { return &empty_; }
   std::size_t n_vertices() const override { return vertices(); }
   std::size_t n_faces() const override { return faces(); }

@@ -219,7 +219,7 @@ std::optional<MeshFileSize> stlSize(std::string_view content, const std::string&
   return MeshFileSize{{3 * *facets, *facets, 0}, content.size()};  // readStl() copies the text
 }
 
-// Its header's third byte is the kind of mesh, its fourth the version.
+// The third byte of an OM file is the kind of mesh, the fourth the version.
 bool isOm(std::string_view content) {
   return content.size() >= kOmHeader && content.starts_with("OM") &&
          std::string_view("TQP").find(content[2]) != std::string_view::npos &&

@@ -1,5 +1,5 @@
-// Colours of the triangles of a binary STL file: OpenMesh's reader passes over the two bytes that
-// hold them. Private to render/mesh/io.
+// Reads the colours of the triangles of a binary STL file, since OpenMesh's reader skips the two
+// bytes that hold them. Private to render/mesh/io.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,8 @@
 
 namespace merlin::render::mesh {
 
-// The header with the number of triangles, and a triangle with its two bytes [bytes].
+// Sizes of the header, with the number of triangles, and of a triangle, with its two colour bytes
+// [bytes].
 inline constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
 struct StlColours {
@@ -16,14 +17,14 @@ struct StlColours {
   std::size_t unread = 0;           // triangles whose two bytes are neither 0 nor a colour
 };
 
-// STL has no standard for colours; two ways are in use, each with five bits a channel. Materialise
-// Magics writes "COLOR=" and the object's red, green, blue and opacity, a byte each, into the
-// header; a triangle has a colour of its own, red in the lowest bits, if its highest bit is 0.
-// Where all bytes of all triangles are 0, all have the object's colour: programs that write the
-// header alone leave them so. VisCAM and SolidView write nothing into the header; a triangle has a
-// colour, blue in the lowest bits, if its highest bit is 1, and is white here if it has none beside
-// others that have. Sources: M. Joppe (VisCAM) on the rapid prototyping mailing list, 5 March 2001,
-// and https://en.wikipedia.org/wiki/STL_(file_format).
+// STL has no standard for colours; two conventions are in use, each with five bits per channel.
+// Materialise Magics writes "COLOR=" and the object's red, green, blue and opacity, one byte each,
+// into the header; a triangle has its own colour, red in the lowest bits, if its highest bit is 0.
+// If the two bytes of all triangles are 0, all triangles get the object's colour, since programs
+// that write only the header leave these bytes 0. VisCAM and SolidView write nothing into the
+// header; a triangle has a colour, blue in the lowest bits, if its highest bit is 1; triangles
+// without a colour in a file with colours become white. Sources: M. Joppe (VisCAM) on the rapid
+// prototyping mailing list, 5 March 2001, and https://en.wikipedia.org/wiki/STL_(file_format).
 //   content  a whole binary STL file
 StlColours stlColours(std::string_view content);
 

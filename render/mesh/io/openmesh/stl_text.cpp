@@ -37,7 +37,7 @@ class StlText {
   }
 
  private:
-  // What is wrong with the line; empty if nothing is.
+  // Returns what is wrong with the line; empty if nothing is.
   std::string take(const std::string& word, std::string_view line) {
     ended_ = word == "endsolid";
     if (word == "vertex") return takeVertex(line);

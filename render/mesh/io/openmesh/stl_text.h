@@ -1,4 +1,4 @@
-// Checks ASCII STL, of which OpenMesh's reader passes over what it does not understand. Private to
+// Checks ASCII STL files, since OpenMesh's reader skips what it does not understand. Private to
 // render/mesh/io.
 #pragma once
 
@@ -9,11 +9,12 @@
 
 namespace merlin::render::mesh {
 
-// Whether a file that begins like this is ASCII STL. The case of letters does not matter.
+// Whether `content`, the beginning of a file, is ASCII STL. Ignores the case of letters.
 bool isStlText(std::string_view content);
 
-// The number of facets of a whole file. Each must be one loop of three vertices, each of these
-// three finite numbers, and the file must end with endsolid. Lines of other words are passed over.
+// Checks a whole file and returns its number of facets. Each facet must be one loop of three
+// vertices, each vertex three finite numbers, and the file must end with endsolid. Lines that begin
+// with other words are skipped.
 // Errors: kMalformed, with the line but without the file's name.
 Result<std::size_t> checkStlText(std::string_view content);
 

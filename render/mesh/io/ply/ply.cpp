@@ -131,7 +131,8 @@ class Reader {
  private:
   Mesh& mesh() { return loaded_.mesh; }
 
-  // In ASCII, a row with too many numbers is found where they make no sense any more, if at all.
+  // Returns a message about the first ASCII row with too many numbers; empty if there is none.
+  // Without it, such a row would be noticed only later in the file, or not at all.
   std::string longRowOfText() const {
     return header_.form == Form::kAscii ? longRow(text_, header_) : std::string();
   }
@@ -268,8 +269,8 @@ class Reader {
     return Ok{};
   }
 
-  // Coordinates that are doubles become relative to an origin near the first vertex, which has been
-  // read and is moved.
+  // Coordinates that are doubles become relative to an origin near the first vertex. The first
+  // vertex has been read already, so it is moved here.
   void setOrigin(const Element& e, const std::array<double, 3>& first,
                  std::vector<Column>& columns) {
     const Origin near = originNear(first);
@@ -341,12 +342,12 @@ class Reader {
 
   void colourFace(std::size_t first) {
     std::vector<float>& all = loaded_.facet_colours;
-    all.resize(3 * first, kNoColour);  // of faces of another element
+    all.resize(3 * first, kNoColour);  // for faces of another element
     for (std::size_t t = first; t < mesh().triangleCount(); ++t)
       all.insert(all.end(), face_colour_.begin(), face_colour_.end());
   }
 
-  // Colours of the vertices are finer, and come before those of the faces.
+  // Drops colours of faces if vertices have colours, which are finer.
   void takeFacetColours() {
     std::vector<float>& all = loaded_.facet_colours;
     if (!all.empty() && mesh().find("colour")) {
@@ -373,7 +374,7 @@ class Reader {
     const auto has = [&](FaceProperty u) { return std::ranges::find(uses, u) != uses.end(); };
     const std::size_t triangles = mesh().triangleCount() - first;
     if (has(FaceProperty::kTexnumber)) {
-      textures_->numbers.resize(first, -1);  // of faces of another element
+      textures_->numbers.resize(first, -1);  // for faces of another element
       const bool whole = std::abs(face_number_) < 1e9;
       textures_->numbers.resize(first + triangles,
                                 whole ? static_cast<std::int64_t>(face_number_) : -1);
@@ -390,7 +391,7 @@ class Reader {
     }
   }
 
-  // The strips of all rows; -1 ends one, and so does the row.
+  // Reads the strips of all rows; a strip ends at -1 or at the end of its row.
   Result<Ok> readStrips(const Element& e) {
     if (const auto room = checkRoom(e); !room) return room;
     for (std::uint64_t row = 0; row < e.count; ++row) {
@@ -456,14 +457,15 @@ class Reader {
     return Ok{};
   }
 
-  // Faces of an element without textures, and strips, may come last.
+  // Adds empty values for the last triangles if these are strips, or faces of an element without
+  // textures.
   void completeTextures() {
     if (!textures_) return;
     if (!textures_->numbers.empty()) textures_->numbers.resize(mesh().triangleCount(), -1);
     if (!textures_->corners.empty()) textures_->corners.resize(mesh().triangles.size(), kNowhere);
   }
 
-  // Faces that are not convex do not stay fans, and the coordinates at their corners move along.
+  // Cuts faces that are not convex anew; the coordinates at their corners are reordered with them.
   void cutFans() {
     fans_.cut(mesh(), [this](const Fan& fan, std::span<const std::uint32_t> order) {
       if (textures_ && !textures_->corners.empty()) reorder(fan, order, textures_->corners);

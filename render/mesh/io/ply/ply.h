@@ -14,21 +14,21 @@
 
 namespace merlin::render::mesh::ply {
 
-// What the faces of a file with texture images say of them, as MeshLab writes it.
+// What a file's faces say about its texture images, in the form that MeshLab writes.
 struct FaceTextures {
   std::vector<std::string> pictures;  // file names in the comments "TextureFile"
-  // "texcoord" of each triangle's corners; empty if the faces have none. Corners of a face whose
-  // list has another length are not numbers.
+  // Texture coordinates ("texcoord") of each triangle's corners; empty if the faces have none. NaN
+  // for the corners of a face whose list has the wrong length.
   std::vector<std::array<float, 2>> corners;
-  // "texnumber" of each triangle: an index of `pictures`, or another number for none; empty if the
-  // faces have none.
+  // Image number ("texnumber") of each triangle: an index into `pictures`; any other number means
+  // no image. Empty if the faces have none.
   std::vector<std::int64_t> numbers;
 };
 
 // `bytes` is a whole file. Faces with more than three corners become triangles (polygon.h). The
 // mesh is neither validated nor tidied; coordinates that are doubles are relative to its origin.
-// Errors: kMalformed, kUnsupported, without the file's name. textures  receives what the file says
-// of texture images; null: that is left out
+// Errors: kMalformed, kUnsupported, without the file's name.
+// textures  receives what the file says about texture images; null: this is ignored
 Result<LoadedMesh> parse(std::string_view bytes, FaceTextures* textures = nullptr);
 
 }  // namespace merlin::render::mesh::ply

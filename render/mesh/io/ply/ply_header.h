@@ -36,14 +36,14 @@ struct Element {
   std::uint64_t count = 0;
   std::vector<Property> properties;
 
-  // Least size of one such element [bytes]; limits the count that a file of a given size can hold.
+  // Minimum size of one such element [bytes]; limits how many a file of a given size can hold.
   std::size_t leastBytes(Form form) const noexcept;
 };
 
 struct Header {
   Form form = Form::kAscii;
   std::vector<Element> elements;
-  std::vector<std::string> pictures;  // in MeshLab's comments "TextureFile"; each once
+  std::vector<std::string> pictures;  // from MeshLab's comments "TextureFile"; each once
   std::size_t size = 0;               // [bytes]; the body starts there
   std::size_t lines = 0;              // lines of the header, for messages
 };

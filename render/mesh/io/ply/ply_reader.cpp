@@ -20,7 +20,7 @@
 namespace merlin::render::mesh {
 namespace {
 
-// The texture images that the file names; empty ones are left out, which a note says.
+// Reads the texture images that the file names. One that cannot be read stays empty, with a note.
 std::vector<image::ImageFile> picturesOf(const std::vector<std::string>& names,
                                          const std::string& folder,
                                          std::vector<std::string>& notes) {
@@ -45,7 +45,7 @@ bool isNumber(const std::array<float, 2>& uv) {
   return std::isfinite(uv[0]) && std::isfinite(uv[1]);
 }
 
-// Without numbers of textures, all faces have the only one.
+// Returns the texture of each triangle. Without numbers of textures, all faces have the only one.
 SurfaceTextures texturesOf(const ply::FaceTextures& faces,
                            const std::vector<image::ImageFile>& pictures, std::size_t triangles) {
   SurfaceTextures all;
@@ -61,7 +61,7 @@ SurfaceTextures texturesOf(const ply::FaceTextures& faces,
   return all;
 }
 
-// Corners without coordinates get some: no triangle with a texture has them.
+// Corners without coordinates get (0, 0); no triangle with a texture has such a corner.
 void setCoordinates(std::vector<std::array<float, 2>> corners, Mesh& mesh) {
   for (auto& uv : corners) {
     if (!isNumber(uv)) uv = {};
@@ -69,7 +69,7 @@ void setCoordinates(std::vector<std::array<float, 2>> corners, Mesh& mesh) {
   setCornerCoordinates(mesh, corners);
 }
 
-// Coordinates of the faces' corners come before those of the vertices.
+// Coordinates of the faces' corners take precedence over those of the vertices.
 Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   ply::FaceTextures faces;
   auto loaded = ply::parse(content, &faces);
@@ -105,13 +105,14 @@ bool isNormal(const std::string& property) {
   return property == "nx" || property == "ny" || property == "nz";
 }
 
-// The triangles of faces with any number of corners, or of strips: what the file has beside its
-// other numbers are the corners. Nothing where there are other lists, whose lengths are not known.
+// Estimates the triangles of faces with any number of corners, or of strips: all that the file
+// holds beside its other numbers is corners. Nothing if there are other lists, whose lengths are
+// unknown.
 std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Header& header) {
   const bool ascii = header.form == ply::Form::kAscii;
   std::size_t left =
       ascii ? wordsIn(content.substr(header.size), " \t\r\n") : content.size() - header.size;
-  std::size_t faces = 0, corner = 0;  // bytes, or one word
+  std::size_t faces = 0, corner = 0;  // corner: its bytes; in ASCII, one word
   for (const ply::Element& e : header.elements) {
     std::size_t fixed = 0;
     for (const ply::Property& p : e.properties) {
@@ -122,7 +123,7 @@ std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Head
       corner = ascii ? 1 : ply::sizeOf(p.type);
       faces = e.name == "face" ? e.count : 0;  // a list of strips has any number
     }
-    if (fixed > 0 && e.count > left / fixed) return std::nullopt;  // is cut
+    if (fixed > 0 && e.count > left / fixed) return std::nullopt;  // the file is cut short
     left -= e.count * fixed;
   }
   if (corner == 0) return std::nullopt;
@@ -153,7 +154,7 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
   if (hasFacetColours(*header))  // a vertex for each corner, if no two have the same colour
     found.mesh.vertices = std::max(found.mesh.vertices, 3 * found.mesh.triangles);
   if (header->pictures.empty()) return found;
-  constexpr std::size_t kTextured = 40;  // coordinates and the texture's number, of a triangle
+  constexpr std::size_t kTextured = 40;  // bytes per triangle: coordinates, texture number
   found.meanwhile = kTextured * found.mesh.triangles;
   for (const std::string& name : header->pictures)
     if (name.find('\0') == std::string::npos) found.pictures.push_back(pathBeside(folder, name));

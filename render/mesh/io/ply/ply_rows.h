@@ -1,4 +1,4 @@
-// Rows of ASCII PLY files. Private to render/mesh/io.
+// Finds overlong rows of ASCII PLY files. Private to render/mesh/io.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace merlin::render::mesh::ply {
 
-// The first line of a body in ASCII with more numbers than the header promises for its row, as a
-// message; empty if there is none, or the lines are not rows. Such a file is read wrongly from
-// there on, since what is read is a sequence of numbers.
+// Returns a message about the first line of an ASCII body that has more numbers than the header
+// declares for its row; empty if there is no such line, or if lines and rows do not correspond.
+// From such a line on the file is read wrongly, since the body is read as one sequence of numbers.
 std::string longRow(std::string_view body, const Header& header);
 
 }  // namespace merlin::render::mesh::ply

@@ -1,5 +1,5 @@
-// Triangle strips of PLY files ("element tristrips"), as some scanners' programs write them.
-// Private to render/mesh/io/ply.
+// Converts the triangle strips of PLY files ("element tristrips"), which the programs of some
+// scanners write. Private to render/mesh/io/ply.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace merlin::render::mesh::ply {
 
-// Makes triangles of strips: each index makes one with the two before it, every other one with two
-// corners swapped, so that all face the same way. Where an index is repeated, as strips do to turn,
-// there is no triangle.
+// Converts strips to triangles: each index forms a triangle with the two before it; every second
+// triangle has two corners swapped, so that all face the same way. An index that is repeated, which
+// strips use to turn, forms no triangle.
 class StripCutter {
  public:
-  // Ends the strip; the next index begins another one.
+  // Ends the strip; the next index begins a new one.
   void end() noexcept { length_ = 0; }
-  // Appends the triangle that the index completes, if it does.
+  // Takes the next index of the strip; appends the triangle that it completes, if any.
   void take(std::uint32_t index, std::vector<std::uint32_t>& triangles);
 
  private:
