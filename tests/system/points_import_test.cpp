@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "daemon/base/sanitizer.h"
 #include "render/mesh/io/mesh_file.h"
 #include "tests/support/clouds.h"
 #include "tests/system/merlind.h"
