@@ -48,6 +48,7 @@ class CorrectedOutputs {
   // Opens the outputs. If any is of kind kms, this must precede the creation of every drawing
   // context. Errors: those of makeOutput(), with the output's name.
   static Result<std::unique_ptr<CorrectedOutputs>> make(const CorrectedOutputsParts& parts);
+  ~CorrectedOutputs() = default;
   CorrectedOutputs(const CorrectedOutputs&) = delete;
   CorrectedOutputs& operator=(const CorrectedOutputs&) = delete;
 
