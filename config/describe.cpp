@@ -25,21 +25,24 @@ void describeServe(ServeSettings& s, SettingsVisitor& v) {
          "File with the public keys of the machines that may receive samples, one per line.");
   v.text("wall_endpoint", s.wall_endpoint,
          "Address at which the wall answers status and commands of other machines, encrypted, such "
-         "as tcp://*:7402. Empty: not at all.");
+         "as tcp://*:7402. Empty: other machines get no answer.");
   v.text("devices_endpoint", s.devices_endpoint,
-         "The same of the devices, at a port of its own, such as tcp://*:7403.");
+         "Address at which the devices' side answers status and commands of other machines, "
+         "encrypted, such as tcp://*:7403; its port is not that of wall_endpoint. Empty: other "
+         "machines get no answer.");
   v.text("wall_topics_endpoint", s.wall_topics_endpoint,
          "Address at which other machines follow the wall's topics (status, metrics, event), "
-         "encrypted, such as tcp://*:7404. Empty: not at all. Those of the devices are at "
+         "encrypted, such as tcp://*:7404. Empty: they cannot. The devices' topics are at "
          "samples_endpoint.");
   v.secretFile("commands_keys", s.commands_keys,
-               "File with this machine's key pair for these addresses, written by `merlin keys -o "
-               "FILE`.");
+               "File with this machine's key pair for wall_endpoint, devices_endpoint and "
+               "wall_topics_endpoint, written by `merlin keys -o FILE`.");
   v.path("commands_clients", s.commands_clients,
-         "File with the public keys of those who may send commands to these addresses, one per "
-         "line.");
+         "File with the public keys of those who may send commands to wall_endpoint and "
+         "devices_endpoint, one per line.");
   v.path("commands_readers", s.commands_readers,
-         "File with the public keys of those who may only read status, events and topics there, "
+         "File with the public keys of those who may read status, events and topics at "
+         "wall_endpoint, devices_endpoint and wall_topics_endpoint, but send no other command, "
          "one per line.");
 }
 
