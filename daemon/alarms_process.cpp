@@ -27,7 +27,6 @@
 namespace merlin {
 namespace {
 
-constexpr Duration kBeat = std::chrono::milliseconds(100);
 constexpr Duration kWatchdogPing = std::chrono::seconds(1);
 // A run that began longer ago has its start behind it: what it said then is not told any more.
 constexpr Duration kStartIsNews = std::chrono::minutes(10);
@@ -184,7 +183,7 @@ class AlarmsProcess {
     ::sd_notify(0, "READY=1");
     logInfo("ready");
     Asked asked = Asked::kNothing;
-    while (!ends(asked = askedBySignal(kBeat, is_valid))) {
+    while (!ends(asked = askedBySignal(kSignalBeat, is_valid))) {
       if (asked == Asked::kTest) events_.add("alarms", alarms::kTestKind, kTest);
       const Timestamp now = clock_.now();
       tend(now);

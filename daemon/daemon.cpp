@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "daemon/base/log.h"
+#include "daemon/role_signals.h"
 #include "daemon/state/state_folder.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/run_directory.h"
@@ -16,9 +17,9 @@
 namespace merlin {
 namespace {
 
-constexpr Duration kBeat = std::chrono::milliseconds(100);
+constexpr Duration kSignalWait = std::chrono::milliseconds(100);
 constexpr Duration kSummary = std::chrono::seconds(5);
-constexpr Duration kOnceASecond = std::chrono::seconds(1);
+constexpr Duration kMendInterval = std::chrono::seconds(1);
 constexpr const char* kLongWatchdog = "WATCHDOG_USEC=600000000";
 
 sigset_t takenSignals() {
@@ -26,13 +27,6 @@ sigset_t takenSignals() {
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   return set;
-}
-
-// Half of systemd's watchdog time; zero if there is no watchdog.
-Duration watchdogInterval() {
-  std::uint64_t usec = 0;
-  return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
-                                             : Duration{};
 }
 
 // The watchdog's time as the unit has it, since it is longer after a start of this program by
@@ -266,7 +260,7 @@ Result<Ok> Daemon::run() {
   tellReady();
   logInfo("ready");
   keepLastGood();
-  while (!starts_again_ && !stopAsked(kBeat)) {
+  while (!starts_again_ && !stopAsked(kSignalWait)) {
     housekeeping();
     tendReload();
     // Not before READY=1: a ping arms systemd's watchdog, and the first frame may take longer.
@@ -299,7 +293,7 @@ void Daemon::keepLastGood() {
 
 Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
   while (ready.wait_for(std::chrono::milliseconds(0)) != std::future_status::ready) {
-    if (stopAsked(kBeat)) return Error{Errc::kClosed, "stopped before the first frame"};
+    if (stopAsked(kSignalWait)) return Error{Errc::kClosed, "stopped before the first frame"};
     housekeeping();
     if (ready.wait_for(std::chrono::milliseconds(0)) == std::future_status::ready) break;
     if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
@@ -339,7 +333,7 @@ void Daemon::housekeeping() {
                  device, driver);
     }
   }
-  if (now - mended_ >= kOnceASecond) {
+  if (now - mended_ >= kMendInterval) {
     mended_ = now;
     mendSharedMemory();
     if (wall_fault_) tendLamp(now);

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/base/log.h"
+#include "daemon/base/version.h"
 #include "daemon/cli/command.h"
 #include "daemon/cli/parse_arguments.h"
 #include "daemon/cli/remote.h"
@@ -25,7 +26,7 @@ int runProgram(int argc, char** argv) {
   CLI::App app(
       "MERLIN runs a lab's display wall. This is its command-line tool; the daemon is merlind.");
   app.require_subcommand(1);
-  app.set_version_flag("--version", MERLIN_VERSION);
+  app.set_version_flag("--version", programVersion());
   cli::Run run;
   const cli::Command program(app);
   cli::RemoteOptions remote(program);

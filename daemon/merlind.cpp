@@ -17,6 +17,7 @@
 #include "daemon/alarms_process.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
+#include "daemon/base/version.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/parse_arguments.h"
 #include "daemon/configuration.h"
@@ -242,11 +243,11 @@ int runProgram(int argc, char** argv) {
                "Print the JSON Schema of configuration files, and exit");
   app.add_flag("--print-config-manual", options.print_config_manual,
                "Print the manual page of configuration files, merlin.json(5), and exit");
-  app.set_version_flag("--version", MERLIN_VERSION);
+  app.set_version_flag("--version", programVersion());
   if (const auto status = parseArguments(app, argc, argv, page())) return *status;
   initLog(LogLevel::kInfo);
   if (options.print_schema || options.print_config_manual) {
-    fmt::print("{}", options.print_schema ? settingsSchema() : settingsManual(MERLIN_VERSION));
+    fmt::print("{}", options.print_schema ? settingsSchema() : settingsManual(programVersion()));
     return kExitDone;
   }
   if (options.print_config) return printConfig(options);

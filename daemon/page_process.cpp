@@ -11,6 +11,7 @@
 
 #include "daemon/base/event_logger.h"
 #include "daemon/base/log.h"
+#include "daemon/base/version.h"
 #include "daemon/base/watched_thread.h"
 #include "daemon/net/server_keeper.h"
 #include "daemon/page/event_log.h"
@@ -26,15 +27,8 @@
 namespace merlin {
 namespace {
 
-constexpr Duration kBeat = std::chrono::milliseconds(100);
 // The wall's own threads take precedence on a machine that is busy with both.
 constexpr int kNice = 10;
-
-Duration watchdogInterval() {
-  std::uint64_t usec = 0;
-  return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
-                                             : Duration{};
-}
 
 std::uint64_t milliseconds1970(Timestamp now) {
   return static_cast<std::uint64_t>((toNanoseconds(now) + realtimeOffset().count()) / 1'000'000);
@@ -60,7 +54,7 @@ class PageProcess {
     ::sd_notify(0, "READY=1");
     logInfo("ready");
     Asked asked = Asked::kNothing;
-    while ((asked = askedBySignal(kBeat, is_valid)) == Asked::kNothing) {
+    while ((asked = askedBySignal(kSignalBeat, is_valid)) == Asked::kNothing) {
       tend();
       if (const auto ended = ended_threads_.check(clock_.now())) return *ended;
       if (watchdog_.ping(clock_.now(), threads_.threads())) ::sd_notify(0, "WATCHDOG=1");
@@ -71,7 +65,7 @@ class PageProcess {
 
  private:
   static page::PageServerSettings serverSettings(const Settings& s, const page::TokenFile& token) {
-    return {s.page,       s.instance,           MERLIN_VERSION,    token.token(),
+    return {s.page,       s.instance,           programVersion(),  token.token(),
             token.path(), pageContents(s.wall), thumbnailFolder(s)};
   }
 
@@ -119,7 +113,8 @@ Asked serveNothing(const std::function<bool()>& is_valid) {
   ::sd_notify(0, "READY=1\nSTATUS=switched off by the configuration");
   logInfo("ready: the page is switched off by the configuration, and so are the metrics");
   Asked asked = Asked::kNothing;
-  while ((asked = askedBySignal(kBeat, is_valid)) == Asked::kNothing) ::sd_notify(0, "WATCHDOG=1");
+  while ((asked = askedBySignal(kSignalBeat, is_valid)) == Asked::kNothing)
+    ::sd_notify(0, "WATCHDOG=1");
   tellEnd(asked);
   return asked;
 }

@@ -1,6 +1,7 @@
 #include "daemon/role_signals.h"
 
 #include <csignal>
+#include <cstdint>
 #include <ctime>
 
 #include <systemd/sd-daemon.h>
@@ -8,6 +9,12 @@
 #include "daemon/base/log.h"
 
 namespace merlin {
+
+Duration watchdogInterval() {
+  std::uint64_t usec = 0;
+  return ::sd_watchdog_enabled(0, &usec) > 0 ? Duration(std::chrono::microseconds(usec / 2))
+                                             : Duration{};
+}
 
 Asked askedBySignal(Duration wait, const std::function<bool()>& is_valid) {
   sigset_t set;

@@ -7,6 +7,12 @@
 
 namespace merlin {
 
+// How long a role waits for a signal before it looks after the rest of its work.
+inline constexpr Duration kSignalBeat = std::chrono::milliseconds(100);
+
+// Half of systemd's watchdog time; zero if there is no watchdog.
+Duration watchdogInterval();
+
 enum class Asked { kNothing, kStop, kStartAgain, kTest };
 
 // Waits up to `wait` for a signal. SIGTERM and SIGINT: kStop. SIGHUP: kStartAgain if `is_valid`,

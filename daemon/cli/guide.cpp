@@ -13,8 +13,9 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kMostTries = 5;  // per step, so that the program ends even if nobody takes part
-constexpr Duration kRedraw = std::chrono::milliseconds(100);
+constexpr int kMostTriesOfAStep =
+    5;  // per step, so that the program ends even if nobody takes part
+constexpr Duration kGuideRedraw = std::chrono::milliseconds(100);
 
 bool enterPressed() {
   pollfd item{STDIN_FILENO, POLLIN, 0};
@@ -33,7 +34,7 @@ class LiveLine {
     if (drawn_ != Timestamp{}) printError("\r\033[K");
   }
   void draw(const Guided& guided, Timestamp now) {
-    if (!terminal_ || now - drawn_ < kRedraw) return;
+    if (!terminal_ || now - drawn_ < kGuideRedraw) return;
     const std::string line = guided.now();
     if (line.empty()) return;
     drawn_ = now;
@@ -97,11 +98,11 @@ Result<Ok> guide(std::span<const GuidedStep> steps, const GuideTiming& timing, G
       printOut("  {}\n", measured ? *measured : "again: " + measured.error().what);
       std::fflush(stdout);
       if (measured) break;
-      if (tries == kMostTries) {
+      if (tries == kMostTriesOfAStep) {
         return Error{measured.error().code,
                      fmt::format("{}: refused {} times, the last time because {}; nothing was "
                                  "changed",
-                                 steps[step].name, kMostTries, measured.error().what)};
+                                 steps[step].name, kMostTriesOfAStep, measured.error().what)};
       }
     }
   }

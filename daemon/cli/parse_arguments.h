@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/log.h"
+#include "daemon/base/version.h"
 #include "daemon/cli/argument_faults.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/program_of.h"
@@ -22,7 +23,7 @@ inline void addManualOptions(CLI::App& app, const manual::PageSettings& page) {
   app.add_flag_callback(
       "--print-manual",
       [&] {
-        const std::string text = manPage(cli::programOf(app), page, MERLIN_VERSION);
+        const std::string text = manPage(cli::programOf(app), page, programVersion());
         throw CLI::CallForVersion(text, 0);  // handled like --version: the text is printed
       },
       "Print this program's manual page, for man -l -, and exit");

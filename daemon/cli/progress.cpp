@@ -12,8 +12,8 @@
 namespace merlin::cli {
 namespace {
 
-constexpr Duration kRedraw = std::chrono::milliseconds(100);
-constexpr int kWidth = 30;
+constexpr Duration kProgressRedraw = std::chrono::milliseconds(100);
+constexpr int kProgressWidth = 30;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ ProgressBar::ProgressBar(std::string title, std::string unit, const Clock& clock
 void ProgressBar::update(double share, std::size_t count) {
   const Timestamp now = clock_.now();
   if (terminal_) {
-    if (now - drawn_ < kRedraw) return;
+    if (now - drawn_ < kProgressRedraw) return;
     drawn_ = now;
     draw(share, count);
   } else if (static_cast<int>(10 * share) > tenths_) {
@@ -45,9 +45,9 @@ void ProgressBar::draw(double share, std::size_t count) {
   const double seconds = toSeconds(clock_.now() - began_);
   const double rate = seconds > 0 ? static_cast<double>(count) / seconds : 0;
   const double left = share > 0 ? seconds * (1 - share) / share : 0;
-  const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kWidth);
+  const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * kProgressWidth);
   printError("{}{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} {}/s  {:.1f} s left{}", terminal_ ? "\r" : "",
-             title_, "", full, "", kWidth - full, 100 * share, rate, unit_, left,
+             title_, "", full, "", kProgressWidth - full, 100 * share, rate, unit_, left,
              terminal_ ? "  " : "\n");
   std::fflush(stderr);
 }

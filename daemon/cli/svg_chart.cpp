@@ -8,8 +8,8 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kWidth = 640, kHeight = 360, kLeft = 60, kTop = 40, kPlotWidth = 560,
-              kPlotHeight = 250;
+constexpr int kChartWidth = 640, kChartHeight = 360, kPlotLeft = 60, kPlotTop = 40,
+              kPlotWidth = 560, kPlotHeight = 250;
 constexpr int kLegendStep = 15;
 
 // Position of a value on the axis: 0 at its low end, 1 at its high end.
@@ -19,8 +19,10 @@ double place(const ChartAxis& axis, double value) {
                           : (held - axis.low) / (axis.high - axis.low);
 }
 
-double across(const ChartAxis& x, double value) { return kLeft + kPlotWidth * place(x, value); }
-double down(const ChartAxis& y, double value) { return kTop + kPlotHeight * (1 - place(y, value)); }
+double across(const ChartAxis& x, double value) { return kPlotLeft + kPlotWidth * place(x, value); }
+double down(const ChartAxis& y, double value) {
+  return kPlotTop + kPlotHeight * (1 - place(y, value));
+}
 
 std::vector<double> marks(const ChartAxis& axis) {
   if (!axis.logarithmic) return {axis.low, axis.high};
@@ -42,16 +44,16 @@ std::string text(double x, double y, const std::string& attributes, const std::s
 }
 
 std::string grid(const ChartAxis& x, const ChartAxis& y) {
-  constexpr double kBottom = kTop + kPlotHeight, kRight = kLeft + kPlotWidth;
+  constexpr double kBottom = kPlotTop + kPlotHeight, kRight = kPlotLeft + kPlotWidth;
   std::string out;
   for (const double value : marks(y)) {
     const double at = down(y, value);
-    out += gridLine(kLeft, at, kRight, at) +
-           text(kLeft - 6, at + 4, "text-anchor=\"end\"", fmt::format("{:g}", value));
+    out += gridLine(kPlotLeft, at, kRight, at) +
+           text(kPlotLeft - 6, at + 4, "text-anchor=\"end\"", fmt::format("{:g}", value));
   }
   for (const double value : marks(x)) {
     const double at = across(x, value);
-    out += gridLine(at, kTop, at, kBottom) +
+    out += gridLine(at, kPlotTop, at, kBottom) +
            text(at, kBottom + 15, "text-anchor=\"middle\"", fmt::format("{:g}", value));
   }
   return out;
@@ -78,9 +80,9 @@ std::string svgChart(const std::string& title, const std::string& below, const C
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" "
       "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" "
       "fill=\"white\"/>\n",
-      kWidth, kHeight);
-  out += text(kLeft, 22, "font-size=\"14\"", title) + grid(x, y);
-  double legend = kTop;
+      kChartWidth, kChartHeight);
+  out += text(kPlotLeft, 22, "font-size=\"14\"", title) + grid(x, y);
+  double legend = kPlotTop;
   for (const ChartLine& line : lines) {
     std::string points;
     for (const auto& [px, py] : line.points) {
@@ -90,10 +92,10 @@ std::string svgChart(const std::string& title, const std::string& below, const C
     out +=
         fmt::format("<polyline fill=\"none\" stroke=\"{}\" points=\"{}\"/>\n", line.colour, points);
     legend += kLegendStep;
-    out += text(kLeft + kPlotWidth - 6, legend,
+    out += text(kPlotLeft + kPlotWidth - 6, legend,
                 fmt::format("fill=\"{}\" text-anchor=\"end\"", line.colour), line.name);
   }
-  return out + text(kLeft, kHeight - 15, "", below) + "</svg>\n";
+  return out + text(kPlotLeft, kChartHeight - 15, "", below) + "</svg>\n";
 }
 
 }  // namespace merlin::cli

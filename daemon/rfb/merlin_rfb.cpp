@@ -9,6 +9,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
+#include "daemon/base/version.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/parse_arguments.h"
 #include "daemon/cli/stop_signals.h"
@@ -122,7 +123,7 @@ int runProgram(int argc, char** argv) {
       "distributed under the GPL, version 2 or later.\n\n"
       "Example: merlin-rfb --tile left --allow-input, then vncviewer 127.0.0.1:0");
   addOptions(app, options);
-  app.set_version_flag("--version", MERLIN_VERSION);
+  app.set_version_flag("--version", programVersion());
   if (const auto status = parseArguments(app, argc, argv, page())) return *status;
   return serve(options);
 }

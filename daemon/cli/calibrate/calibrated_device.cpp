@@ -47,18 +47,18 @@ Result<Json> readConfiguration(const std::string& path) {
   return config;
 }
 
-std::string textOf(const Json& entry, const char* key) {
+std::string entryText(const Json& entry, const char* key) {
   const auto at = entry.find(key);
   return at != entry.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
 std::optional<SampleKind> kindOf(const Json& entry) {
-  const DriverEntry* const driver = findDriver(textOf(entry, "driver"));
+  const DriverEntry* const driver = findDriver(entryText(entry, "driver"));
   return driver ? std::optional(driver->kind) : std::nullopt;
 }
 
 std::string nameOf(const Json& entry) {
-  std::string name = textOf(entry, "name");
+  std::string name = entryText(entry, "name");
   const auto kind = kindOf(entry);
   return name.empty() && kind ? kindName(*kind) : name;
 }
@@ -76,7 +76,7 @@ std::string namesOf(const Json& list, SampleKind kind) {
 // The first of this kind with one of these drivers; nothing if there is none.
 std::optional<std::size_t> firstOf(const Json& list, SampleKind kind, DriverNames drivers) {
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (kindOf(list[i]) == kind && isOneOf(textOf(list[i], "driver"), drivers)) return i;
+    if (kindOf(list[i]) == kind && isOneOf(entryText(list[i], "driver"), drivers)) return i;
   }
   return std::nullopt;
 }
@@ -87,11 +87,11 @@ Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKin
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (name.empty() ? kindOf(list[i]) != kind : nameOf(list[i]) != name) continue;
     if (kindOf(list[i]) == kind) return i;
-    return Error{
-        Errc::kInvalidArgument,
-        fmt::format("{}: /devices/{} (\"{}\") has the driver \"{}\", which is not that of "
-                    "a {}; {}",
-                    path, i, name, textOf(list[i], "driver"), kindName(kind), namesOf(list, kind))};
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: /devices/{} (\"{}\") has the driver \"{}\", which is not that of "
+                             "a {}; {}",
+                             path, i, name, entryText(list[i], "driver"), kindName(kind),
+                             namesOf(list, kind))};
   }
   if (name.empty())
     return Error{
@@ -108,10 +108,10 @@ Result<CalibratedDevice> deviceAt(const Json& list, std::size_t index, const std
   CalibratedDevice device{path,
                           fmt::format("/devices/{}", index),
                           nameOf(entry),
-                          textOf(entry, "driver"),
+                          entryText(entry, "driver"),
                           Json::object(),
                           entry.value("baud", Json(0)),
-                          textOf(entry, "port")};
+                          entryText(entry, "port")};
   const auto own = entry.find(device.driver);
   if (own == entry.end()) return device;
   if (!own->is_object())

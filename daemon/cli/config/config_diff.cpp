@@ -21,7 +21,7 @@ struct DiffOptions {
 
 std::string shown(const std::string& value) { return value.empty() ? "(absent)" : value; }
 
-Json parsed(const std::string& value) {
+Json parsedValue(const std::string& value) {
   return value.empty() ? Json(nullptr) : Json::parse(value, nullptr, false);
 }
 
@@ -29,8 +29,9 @@ void print(const std::vector<SettingChange>& changes, bool json) {
   Json list = Json::array();
   for (const SettingChange& c : changes) {
     if (json)
-      list.push_back(
-          {{"pointer", c.pointer}, {"before", parsed(c.before)}, {"after", parsed(c.after)}});
+      list.push_back({{"pointer", c.pointer},
+                      {"before", parsedValue(c.before)},
+                      {"after", parsedValue(c.after)}});
     else
       printOut("{}: {} -> {}\n", c.pointer, shown(c.before), shown(c.after));
   }

@@ -13,7 +13,7 @@
 namespace merlin::cli {
 namespace {
 
-struct ShowOptions {
+struct ConfigShowOptions {
   std::string file = kUsualConfig;
   bool changed = false, json = false;
 };
@@ -31,7 +31,7 @@ std::optional<RunTimeChanges> changesOf(const Settings& settings) {
   return std::nullopt;
 }
 
-int show(const ShowOptions& options) {
+int showConfig(const ConfigShowOptions& options) {
   const auto loaded = loadPrinted(options.file);
   if (!loaded) return fail(loaded.error());
   const auto changes = changesOf(loaded->settings);
@@ -49,7 +49,7 @@ int show(const ShowOptions& options) {
 }  // namespace
 
 void addConfigShow(Command config, Run& run) {
-  const auto options = std::make_shared<ShowOptions>();
+  const auto options = std::make_shared<ConfigShowOptions>();
   Command command = config.subcommand(
       "show",
       "Show every setting in effect: its value, a star if that differs from the default, and where "
@@ -58,7 +58,7 @@ void addConfigShow(Command config, Run& run) {
   command.option("file", options->file, "The configuration").typeName("FILE").showDefault();
   command.flag("--changed", options->changed, "Only settings that differ from the default");
   command.flag("--json", options->json, "Print JSON, for programs");
-  command.callback([options, &run] { run = [options] { return show(*options); }; });
+  command.callback([options, &run] { run = [options] { return showConfig(*options); }; });
 }
 
 }  // namespace merlin::cli

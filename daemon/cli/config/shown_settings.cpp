@@ -44,7 +44,7 @@ std::string originText(const ShownSetting& s) {
   return {};
 }
 
-Json parsed(const std::string& text) {
+Json parsedSetting(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json::parse(text, nullptr, false);
 }
 
@@ -96,8 +96,8 @@ std::string settingsJson(std::span<const ShownSetting> settings) {
   Json list = Json::array();
   for (const ShownSetting& s : settings) {
     list.push_back({{"pointer", s.setting.pointer},
-                    {"value", parsed(s.setting.value)},
-                    {"default", parsed(s.setting.default_value)},
+                    {"value", parsedSetting(s.setting.value)},
+                    {"default", parsedSetting(s.setting.default_value)},
                     {"differs", s.differs()},
                     {"origin", kOriginNames[static_cast<int>(s.origin)]},
                     {"file", s.file},

@@ -20,10 +20,10 @@ namespace {
 
 constexpr Duration kHandPatience = std::chrono::seconds(3);       // longest time without a sample
 constexpr Duration kLongestGap = std::chrono::milliseconds(250);  // between two samples of a take
-constexpr int kMostTries = 5;                                     // of a take
+constexpr int kMostTriesOfATake = 5;                              // of a take
 constexpr double kBetweenFiles_s = 10;  // from the last take in the file to the first new one
 
-struct RecordOptions {
+struct GestureRecordOptions {
   std::string label, hand, output = "gestures.csv", instance = "merlin";
   std::vector<int> axes = {-2, -3, 1};
   std::size_t times = 5;
@@ -47,7 +47,7 @@ std::string handsOf(const shm::DeviceSlots& devices) {
 
 // The hand that the options name. Errors: kInvalidArgument (there is no such hand, or nothing that
 // could track it), those of LiveSamples::open().
-Result<LiveHand> openHand(const RecordOptions& options) {
+Result<LiveHand> openHand(const GestureRecordOptions& options) {
   const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
   const auto* const hand = devices ? (*devices)->hand(options.hand) : nullptr;
   if (devices && !hand)
@@ -112,7 +112,7 @@ bool isSeenThroughout(std::span<const nn::LabelledPose> take, Timestamp from, Ti
 // Errors: kTimeout: the hand was lost for a moment, as on a busy machine; those of
 // nn::checkTake(), but ordinary motion may be none.
 Result<Ok> checkTaken(std::span<const nn::LabelledPose> poses, Timestamp began,
-                      const RecordOptions& options) {
+                      const GestureRecordOptions& options) {
   if (!isSeenThroughout(poses, began, began + fromSeconds(options.seconds)))
     return Error{Errc::kTimeout,
                  "the hand was not seen all the time: `merlin status` tells of its tracker"};
@@ -121,7 +121,7 @@ Result<Ok> checkTaken(std::span<const nn::LabelledPose> poses, Timestamp began,
 }
 
 // A take that cannot be used is taken once more.
-Result<Ok> takeOne(LiveHand& hand, const RecordOptions& options, const nn::WallAxes& axes,
+Result<Ok> takeOne(LiveHand& hand, const GestureRecordOptions& options, const nn::WallAxes& axes,
                    std::uint32_t label, std::vector<nn::LabelledPose>& poses) {
   const SystemClock clock;
   for (int tries = 1;; ++tries) {
@@ -136,15 +136,15 @@ Result<Ok> takeOne(LiveHand& hand, const RecordOptions& options, const nn::WallA
       return Ok{};
     }
     const std::string& why = checked.error().what;
-    if (tries == kMostTries)
+    if (tries == kMostTriesOfATake)
       return Error{checked.error().code,
                    fmt::format("hand \"{}\": {} takes in a row are of no use; of the last one: {}",
-                               hand.name, kMostTries, why)};
+                               hand.name, kMostTriesOfATake, why)};
     printError("this take is of no use: {}\nonce more: hold the hand still ...\n", why);
   }
 }
 
-Result<nn::PathRecording> takes(const RecordOptions& options, const nn::WallAxes& axes) {
+Result<nn::PathRecording> takes(const GestureRecordOptions& options, const nn::WallAxes& axes) {
   auto hand = openHand(options);
   if (!hand) return hand.error();
   nn::PathRecording recording;
@@ -174,7 +174,7 @@ Result<Ok> addTo(nn::PathRecording& recording, const std::string& path) {
   return Ok{};
 }
 
-int record(const RecordOptions& options) {
+int recordTakes(const GestureRecordOptions& options) {
   if (options.label != nn::kNoGesture && !nn::isGestureName(options.label))
     return fail({Errc::kInvalidArgument,
                  fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
@@ -202,7 +202,7 @@ int record(const RecordOptions& options) {
 }  // namespace
 
 void addGestureRecord(Command gesture, Run& run) {
-  const auto options = std::make_shared<RecordOptions>();
+  const auto options = std::make_shared<GestureRecordOptions>();
   Command command = gesture.subcommand(
       "record",
       "Record takes of one gesture from the tracked hand of a running merlind and append them to a "
@@ -235,7 +235,7 @@ void addGestureRecord(Command gesture, Run& run) {
       .expected(3)
       .showDefault();
   addInstance(command, options->instance);
-  command.callback([options, &run] { run = [options] { return record(*options); }; });
+  command.callback([options, &run] { run = [options] { return recordTakes(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -17,6 +17,8 @@
 namespace merlin::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // People on whom the shipped gestures were not trained.
 const SyntheticMovers kUnseenMovers{
     .first = 1001, .people = 20, .times = 5, .ordinary_s = 600, .kind_s = 0, .seed = 2};
@@ -48,7 +50,6 @@ Result<Tested> evaluate(const nn::GestureModel& model, const std::string& data) 
 }
 
 nlohmann::ordered_json toJson(const Tested& tested) {
-  using Json = nlohmann::ordered_json;
   const nn::GestureEvaluation& e = tested.evaluation;
   Json gestures = Json::array(), confusion = Json::array();
   for (const auto& [name, score] : e.of)

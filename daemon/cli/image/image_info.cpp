@@ -12,12 +12,12 @@
 namespace merlin::cli {
 namespace {
 
-struct InfoOptions {
+struct ImageInfoOptions {
   std::string file;
   bool json = false;
 };
 
-int info(const InfoOptions& options) {
+int imageInfo(const ImageInfoOptions& options) {
   const auto file = render::image::PyramidFile::open(options.file);
   if (!file) return fail(file.error());
   const char* const kind = (*file)->isPanorama() ? "panorama" : "picture";
@@ -45,13 +45,13 @@ int info(const InfoOptions& options) {
 }  // namespace
 
 void addImageInfo(Command image, Run& run) {
-  const auto options = std::make_shared<InfoOptions>();
+  const auto options = std::make_shared<ImageInfoOptions>();
   Command command = image.subcommand("info",
                                      "Show the size, the kind and the levels of a pyramid.\n"
                                      "Example: merlin image info photo.tif");
   command.option("file", options->file, "Pyramid (.tif)").required().typeName("FILE");
   command.flag("--json", options->json, "Print JSON, for programs");
-  command.callback([options, &run] { run = [options] { return info(*options); }; });
+  command.callback([options, &run] { run = [options] { return imageInfo(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -24,7 +24,7 @@
 namespace merlin::cli {
 namespace {
 
-struct RecordOptions {
+struct LineRecordOptions {
   std::string port, device, config, output;
   int baud = 0;
   double seconds = 0;
@@ -116,7 +116,7 @@ Result<DeviceSettings> configuredDevice(const std::string& file, const std::stri
 
 // What to record, and how to speak to it: the settings of the device in the configuration, or the
 // usual ones of the driver; without a driver the line is only read. What the options say counts.
-Result<DeviceSettings> recordedDevice(const RecordOptions& options) {
+Result<DeviceSettings> recordedDevice(const LineRecordOptions& options) {
   DeviceSettings device;
   if (!options.config.empty()) {
     const auto found = configuredDevice(options.config, options.device);
@@ -146,7 +146,7 @@ Result<DeviceSettings> recordedDevice(const RecordOptions& options) {
                         options.config, options.device)};
 }
 
-int record(const RecordOptions& options) {
+int recordLine(const LineRecordOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   const UniqueFd stop = stopSignals();
   const auto recorded = recordedDevice(options);
@@ -232,7 +232,7 @@ int replay(const ReplayOptions& options) {
 }  // namespace
 
 void addRecord(Command app, Run& run) {
-  const auto options = std::make_shared<RecordOptions>();
+  const auto options = std::make_shared<LineRecordOptions>();
   const std::string device_help = fmt::format(
       "Driver that sets up and polls the device ({}), with its usual settings; with --config the "
       "name of a device in that file, with the settings that it has there. Without --device, the "
@@ -263,7 +263,7 @@ void addRecord(Command app, Run& run) {
       .seconds();
   command.callback([options, &run] {
     if (!options->config.empty() && options->device.empty()) lacks("--device NAME");
-    run = [options] { return record(*options); };
+    run = [options] { return recordLine(*options); };
   });
 }
 

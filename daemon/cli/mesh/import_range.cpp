@@ -141,9 +141,9 @@ Result<Ok> addColours(const std::string& wanted, bool texture, range::RangeImage
   return Ok{};
 }
 
-std::vector<FeatureFacts> factsOf(const range::RangeImage& image) {
+std::vector<FeatureFacts> factsOfPlanes(const range::RangeImage& image) {
   std::vector<FeatureFacts> facts;
-  for (const range::Plane& plane : image.planes) facts.push_back(cli::factsOf(plane, image));
+  for (const range::Plane& plane : image.planes) facts.push_back(factsOf(plane, image));
   return facts;
 }
 
@@ -435,7 +435,7 @@ Result<Ok> meshRange(const std::string& path, const RangeImport& options, const 
   if (const auto chosen = chooseMaxEdge(options, imported); !chosen) return chosen;
   if (const auto added = addColours(options.colour_by, !image.join_ends, image); !added)
     return added;
-  imported.features = factsOf(image);
+  imported.features = factsOfPlanes(image);
   imported.origin =
       isElevation(image) ? range::mapOrigin(image.geometry) : takeOrigin(image.geometry);
   const std::vector<float> points = range::pointsOf(image, range::partOf(work, 0, 0.2));

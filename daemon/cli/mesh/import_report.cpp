@@ -13,6 +13,8 @@
 namespace merlin::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 nlohmann::ordered_json jsonOf(const ImportTimes& times) {
   return {{"reading", times.reading},   {"filtering", times.filtering}, {"meshing", times.meshing},
           {"reducing", times.reducing}, {"writing", times.writing},     {"all", times.all()}};
@@ -56,7 +58,6 @@ void printPlace(const ImportNames& names, const render::mesh::Origin& origin,
 
 void addRange(const ImportNames& names, const ImportedRange& range, const ImportedFile& written,
               nlohmann::ordered_json& json) {
-  using Json = nlohmann::ordered_json;
   Json features = Json::array();
   for (const FeatureFacts& f : range.features) {
     Json feature = {{"name", f.name}, {"dimension", f.dimension}};

@@ -73,7 +73,7 @@ Json jsonOf(const render::compare::Deviation& d, double diagonal) {
   return json;
 }
 
-void printJson(const CompareOptions& options, const Answer& answer) {
+void printComparisonJson(const CompareOptions& options, const Answer& answer) {
   const render::compare::Comparison& c = answer.comparison;
   Json json = {{"original", options.original}, {"other", options.other}, {"diagonal", c.diagonal}};
   json.update(jsonOf(c.symmetric(), c.diagonal));
@@ -88,7 +88,7 @@ std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
 }
 
-void printTable(const CompareOptions& options, const Answer& answer) {
+void printComparisonTable(const CompareOptions& options, const Answer& answer) {
   const render::compare::Comparison& c = answer.comparison;
   printOut("{} (A) and {} (B): diagonal of A {:.6g}, {:.1f} s\n", options.original, options.other,
            c.diagonal, answer.seconds);
@@ -186,7 +186,7 @@ int compareMeshes(const CompareOptions& options) {
   if (!comparison) return fail(comparison.error());
   answer.comparison = *comparison;
   answer.seconds = toSeconds(clock.now() - began);
-  (options.json ? printJson : printTable)(options, answer);
+  (options.json ? printComparisonJson : printComparisonTable)(options, answer);
   return kExitDone;
 }
 

@@ -19,7 +19,7 @@
 namespace merlin::cli {
 namespace {
 
-struct ExportOptions {
+struct MeshExportOptions {
   std::string model, output;
   LevelChoice choice;
   std::optional<double> within;  // maximum distance from the finest resolution [% of the diagonal]
@@ -27,7 +27,8 @@ struct ExportOptions {
   bool local = false;  // without the origin
 };
 
-Result<std::size_t> levelOf(const ExportOptions& options, const render::lod::Dendrogram& model) {
+Result<std::size_t> levelOf(const MeshExportOptions& options,
+                            const render::lod::Dendrogram& model) {
   if (!options.within) return options.choice.levelOf(model, options.model);
   if (model.levels() == 1) return hasOneResolution(options.model);
   const render::mesh::Mesh coarsest = render::lod::extract(model, model.levels() - 1);
@@ -58,7 +59,7 @@ void printMapOrigin(std::string_view about) {
         at);
 }
 
-int exportAll(const ExportOptions& options) {
+int exportAll(const MeshExportOptions& options) {
   if (!options.output.ends_with(".iv")) {
     return fail(
         {Errc::kInvalidArgument,
@@ -79,7 +80,7 @@ int exportAll(const ExportOptions& options) {
   return kExitDone;
 }
 
-int exportMesh(const ExportOptions& options) {
+int exportMesh(const MeshExportOptions& options) {
   if (const auto known = render::mesh::checkMeshEnding(options.output); !known)
     return fail(known.error());
   if (const auto writable = checkOutputs(options.model, {options.output}); !writable)
@@ -104,7 +105,7 @@ int exportMesh(const ExportOptions& options) {
 }  // namespace
 
 void addMeshExport(Command mesh, Run& run) {
-  const auto options = std::make_shared<ExportOptions>();
+  const auto options = std::make_shared<MeshExportOptions>();
   Command command = mesh.subcommand(
       "export",
       "Write one resolution of a model as a mesh: .ply (all features), .glb or .gltf (features of "

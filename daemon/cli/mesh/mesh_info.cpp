@@ -26,7 +26,7 @@
 namespace merlin::cli {
 namespace {
 
-struct InfoOptions {
+struct MeshInfoOptions {
   std::string file;
   RangeImport range;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
@@ -90,7 +90,7 @@ Result<FileInfo> infoOfMesh(const std::string& path, std::size_t limit) {
   return info;
 }
 
-Result<FileInfo> infoOfForeign(const InfoOptions& options, const InputKind& kind) {
+Result<FileInfo> infoOfForeign(const MeshInfoOptions& options, const InputKind& kind) {
   const std::string& path = options.file;
   const auto model = loadModel(path, kind, {meanwhile(), options.limit()});
   if (!model) return model.error();
@@ -132,7 +132,7 @@ void addPlanes(const ImportedRange& range, FileInfo& info) {
   }
 }
 
-Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<InputKind>& kind) {
+Result<FileInfo> infoOfRange(const MeshInfoOptions& options, const std::optional<InputKind>& kind) {
   auto range = loadRange(
       options.file, options.range, false,
       readerOf(kind,
@@ -159,7 +159,7 @@ Result<FileInfo> infoOfRange(const InfoOptions& options, const std::optional<Inp
   return info;
 }
 
-Result<FileInfo> infoOf(const InfoOptions& options) {
+Result<FileInfo> infoOf(const MeshInfoOptions& options) {
   if (const auto there = checkIsThere(options.file); !there) return there.error();
   const std::string option = options.range.scale ? "--scale" : options.range.anyGiven();
   const auto kind = options.range.isRaw() ? std::nullopt : inputKindOf(options.file);
@@ -173,7 +173,7 @@ Result<FileInfo> infoOf(const InfoOptions& options) {
                                                        : infoOfMesh(options.file, options.limit());
 }
 
-int info(const InfoOptions& options) {
+int meshInfo(const MeshInfoOptions& options) {
   const auto found = infoOf(options);
   if (!found) return fail(found.error());
   (options.json ? printInfoJson : printInfoText)(*found);
@@ -183,7 +183,7 @@ int info(const InfoOptions& options) {
 }  // namespace
 
 void addMeshInfo(Command mesh, Run& run) {
-  const auto options = std::make_shared<InfoOptions>();
+  const auto options = std::make_shared<MeshInfoOptions>();
   Command command = mesh.subcommand(
       "info",
       "Show what is in a model, a mesh, a range image, an elevation map, a point cloud, or a model "
@@ -207,7 +207,7 @@ void addMeshInfo(Command mesh, Run& run) {
       .size()
       .typeName("SIZE");
   command.flag("--json", options->json, "Print JSON, for programs");
-  command.callback([options, &run] { run = [options] { return info(*options); }; });
+  command.callback([options, &run] { run = [options] { return meshInfo(*options); }; });
 }
 
 }  // namespace merlin::cli

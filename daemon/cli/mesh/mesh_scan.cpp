@@ -28,6 +28,8 @@
 namespace merlin::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 namespace range = render::range;
 namespace scan = render::scan;
 
@@ -220,7 +222,6 @@ Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanne
 }
 
 void reportJson(const MeshScan& options, const scan::Scan& scanned, const ScannedFiles& files) {
-  using Json = nlohmann::ordered_json;
   Json features = Json::array();
   for (const range::FeatureFile& f : files.features)
     features.push_back({{"name", f.name}, {"file", f.file}});

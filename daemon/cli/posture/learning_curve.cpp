@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLeast = 1e-5, kMost = 1.0;  // range of the error axis
 constexpr std::size_t kLines = 10;
-constexpr int kBar = 30;
+constexpr int kCurveBar = 30;
 
 // Position on the logarithmic error axis: 0 at kLeast, 1 at kMost.
 double place(double error) {
@@ -38,7 +38,7 @@ std::string curveText(std::span<const nn::CurvePoint> curve) {
     if (std::isfinite(curve[n].validation)) validation = curve[n].validation;
     const std::size_t step = std::max<std::size_t>(curve.size() / kLines, 1);
     if ((n + 1) % step != 0 && n + 1 != curve.size()) continue;
-    const int bar = static_cast<int>(std::lround(kBar * place(curve[n].training)));
+    const int bar = static_cast<int>(std::lround(kCurveBar * place(curve[n].training)));
     out +=
         fmt::format("{:6}  {:8.5f}  {:>10}  {:5.2f}  {:#<{}}\n", curve[n].pass, curve[n].training,
                     std::isfinite(validation) ? fmt::format("{:.5f}", validation) : "-",

@@ -18,10 +18,10 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kBar = 24;
+constexpr int kSensorBar = 24;
 constexpr std::size_t kBarsALine = 2;
-constexpr Duration kRedraw = std::chrono::milliseconds(100);
-constexpr Duration kPatience = std::chrono::seconds(3);  // longest time without a sample
+constexpr Duration kCollectRedraw = std::chrono::milliseconds(100);
+constexpr Duration kSamplePatience = std::chrono::seconds(3);  // longest time without a sample
 
 struct CollectOptions {
   std::string label, output = "hands.csv", instance = "merlin", units = "rad";
@@ -45,10 +45,10 @@ void drawBars(const GloveSample& sample, bool again) {
   std::string out;
   std::size_t lines = 0;
   for (std::size_t i = 0; i < nn::kInputs; ++i) {
-    const int full = kBar * sample.raw[i] / 255;
+    const int full = kSensorBar * sample.raw[i] / 255;
     const bool last = i % kBarsALine == kBarsALine - 1 || i + 1 == nn::kInputs;
     out += fmt::format("{:>22} {:3} [{:#<{}}{:.<{}}]{}", nn::kInputNames[i], sample.raw[i], "",
-                       full, "", kBar - full, last ? "\033[K\n" : "  ");
+                       full, "", kSensorBar - full, last ? "\033[K\n" : "  ");
     lines += last ? 1 : 0;
   }
   printError("{}{}", again ? fmt::format("\033[{}A", lines) : "", out);
@@ -82,7 +82,7 @@ Result<nn::Recording> collect(const CollectOptions& options) {
        began == Timestamp{} || heard - began < fromSeconds(options.seconds);) {
     glove.wait(next, {0, 100'000'000});
     if (next == glove.count()) {
-      if (clock.now() - heard < kPatience) continue;
+      if (clock.now() - heard < kSamplePatience) continue;
       return Error{Errc::kTimeout, slots->name + " has sent nothing for 3 s: see merlin status"};
     }
     heard = clock.now();
@@ -95,7 +95,7 @@ Result<nn::Recording> collect(const CollectOptions& options) {
       recording.hands.push_back(handOf(*sample, options.label, recording.unit));
       for (std::size_t i = 0; i < nn::kInputs; ++i)
         recording.measured[i] = recording.measured[i] || sample->raw[i] != 0;
-      if (!terminal || heard - drawn < kRedraw) continue;
+      if (!terminal || heard - drawn < kCollectRedraw) continue;
       drawBars(*sample, again);
       drawn = heard;
       again = true;

@@ -13,6 +13,8 @@
 namespace merlin::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // Number of the first synthetic person for tests; the shipped network was not trained on any person
 // from this number on.
 constexpr std::size_t kUnseen = 1001;
@@ -32,7 +34,6 @@ Result<nn::Recording> testHands(const TestOptions& options, const nn::PostureNet
 }
 
 nlohmann::ordered_json toJson(const nn::Evaluation& e, bool synthetic) {
-  using Json = nlohmann::ordered_json;
   Json confusion = Json::array(), postures = Json::array();
   for (const nn::Confusion& c : e.confusions)
     confusion.push_back({{"shown", c.shown},

@@ -14,6 +14,7 @@
 
 #include "daemon/base/printable_text.h"
 #include "daemon/base/unique_fd.h"
+#include "daemon/base/version.h"
 
 namespace merlin::cli {
 namespace {
@@ -176,7 +177,7 @@ std::string kernelText(const std::string& root) {
 }  // namespace
 
 std::string versionsText(const std::string& root) {
-  return fmt::format("merlin {}\nkernel {}\ndistribution {}\n", MERLIN_VERSION, kernelText(root),
+  return fmt::format("merlin {}\nkernel {}\ndistribution {}\n", programVersion(), kernelText(root),
                      valueOf(contentOf(root + "/etc/os-release"), "PRETTY_NAME", '='));
 }
 

@@ -87,13 +87,13 @@ void limitChild(std::size_t most_bytes, const sigset_t& mask) {
 }
 
 // What the child tells until its end, `until` or `stop`.
-struct Told {
+struct ProgramOutput {
   std::string text;
   bool late = false, stopped = false;
 };
-Told listen(int from, int stop, Timestamp until) {
+ProgramOutput listen(int from, int stop, Timestamp until) {
   const SystemClock clock;
-  Told told;
+  ProgramOutput told;
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - clock.now()).count();
     if (left <= 0) return told.late = true, told;
@@ -184,7 +184,7 @@ Result<PartResult> runPart(const PartSettings& part, int stop, const sigset_t& m
   if (!child) return child.error();
   if (*child == 0) collectInChild(part, folder->path(), pipe->to.get(), mask);
   pipe->to.reset();
-  const Told told = listen(pipe->from.get(), stop, SystemClock().now() + part.limit);
+  const ProgramOutput told = listen(pipe->from.get(), stop, SystemClock().now() + part.limit);
   endChild(*child);
   if (told.stopped) return Error{Errc::kClosed, "interrupted; nothing is left behind"};
   PartResult result;

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ShowOptions {
+struct ShowFileOptions {
   std::string instance = "merlin";
   MeshImport mesh;  // its inputs: what is to be shown
   ImageImport image;
@@ -46,7 +46,7 @@ constexpr Duration kLook = std::chrono::milliseconds(5);
 
 // Refuses --panorama for what is shown as it is, since whether a picture is a panorama stands in
 // its pyramid. `found`: what it is.
-Result<Ok> checkPanorama(const ShowOptions& options, const char* found) {
+Result<Ok> checkPanorama(const ShowFileOptions& options, const char* found) {
   if (!options.image.panorama) return Ok{};
   return Error{Errc::kInvalidArgument,
                fmt::format("{}: --panorama is for a picture that is imported, and this is {}; "
@@ -54,7 +54,7 @@ Result<Ok> checkPanorama(const ShowOptions& options, const char* found) {
                            options.what(), found)};
 }
 
-Result<Ok> checkPanorama(const ShowOptions& options, FileKind kind) {
+Result<Ok> checkPanorama(const ShowFileOptions& options, FileKind kind) {
   switch (kind) {
     case FileKind::kModel: return checkPanorama(options, "a model");
     case FileKind::kMesh: return checkPanorama(options, "imported as a model");
@@ -68,7 +68,7 @@ Result<Ok> checkPanorama(const ShowOptions& options, FileKind kind) {
 // What became of a request, once the wall says and has shown another frame, or a period later is at
 // rest with all its detail: who looks late sees no other frame. Nothing before the end of the time
 // to wait.
-std::optional<shm::WallContent> awaitDone(const ShowOptions& options, std::uint32_t request) {
+std::optional<shm::WallContent> awaitDone(const ShowFileOptions& options, std::uint32_t request) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
   SystemClock clock;
@@ -93,7 +93,7 @@ std::optional<shm::WallContent> awaitDone(const ShowOptions& options, std::uint3
 }
 
 // Asks the wall to show it, and waits until it does.
-Result<Ok> ask(const ShowOptions& options, const RoleRequest& request) {
+Result<Ok> ask(const ShowFileOptions& options, const RoleRequest& request) {
   const auto asked = askRole(options.instance, "wall", request);
   if (!asked) return asked.error();
   const auto answer = nlohmann::json::parse(*asked, nullptr, false);
@@ -110,7 +110,7 @@ Result<Ok> ask(const ShowOptions& options, const RoleRequest& request) {
 }
 
 // A test card stays when another content is chosen: who adjusts projectors is not interrupted.
-void noteTestCard(const ShowOptions& options) {
+void noteTestCard(const ShowFileOptions& options) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
   const auto idle = segment ? (*segment)->idle.read() : std::nullopt;
@@ -121,7 +121,7 @@ void noteTestCard(const ShowOptions& options) {
 // Has the wall say how far it is, about once a second. A wall that does not answer holds nobody up.
 class WallNotices {
  public:
-  WallNotices(const ShowOptions& options, const Clock& clock)
+  WallNotices(const ShowFileOptions& options, const Clock& clock)
       : options_(options),
         clock_(clock),
         file_(excerpt(fs::path(options.what()).filename().string())) {}
@@ -151,7 +151,7 @@ class WallNotices {
     static_cast<void>(sent);
   }
 
-  const ShowOptions& options_;
+  const ShowFileOptions& options_;
   const Clock& clock_;
   std::string file_;
   Timestamp sent_{};
@@ -182,7 +182,7 @@ class HeldStop {
 };
 
 // Makes the content in a work folder in the content folder, and gives it its name there.
-Result<Ok> put(const ShowOptions& options, const ContentFolder& folder, FileKind kind,
+Result<Ok> put(const ShowFileOptions& options, const ContentFolder& folder, FileKind kind,
                const std::string& name, WallNotices& notices) {
   const auto room = roomIn(folder);
   if (!room) return room.error();
@@ -202,7 +202,7 @@ Result<Ok> put(const ShowOptions& options, const ContentFolder& folder, FileKind
 }
 
 // Returns the name of what was put into the content folder.
-Result<std::string> putFile(const ShowOptions& options, const ContentFolder& folder,
+Result<std::string> putFile(const ShowFileOptions& options, const ContentFolder& folder,
                             WallNotices& notices) {
   const auto kind = kindOfFile(options.what(), !options.meshOption().empty());
   if (!kind) return kind.error();
@@ -214,7 +214,7 @@ Result<std::string> putFile(const ShowOptions& options, const ContentFolder& fol
   return name;
 }
 
-int showFile(const ShowOptions& options) {
+int showFile(const ShowFileOptions& options) {
   const SystemClock clock;
   const Timestamp began = clock.now();
   const auto folder = contentFolderOf(options.instance);
@@ -246,7 +246,7 @@ int showFile(const ShowOptions& options) {
   return kExitDone;
 }
 
-int showName(const ShowOptions& options) {
+int showName(const ShowFileOptions& options) {
   const std::string option = options.meshOption();
   if (!option.empty())
     return fail({Errc::kInvalidArgument,
@@ -266,7 +266,7 @@ int showName(const ShowOptions& options) {
 }
 
 // The name of a content comes first; a file is told by a '/', or by its ending if it is there.
-int show(ShowOptions& options) {
+int showContent(ShowFileOptions& options) {
   std::vector<std::string>& inputs = options.mesh.inputs;
   if (const auto input = options.mesh.range.takeInput()) inputs.push_back(*input);
   if (inputs.size() != 1)
@@ -286,7 +286,7 @@ int show(ShowOptions& options) {
 }  // namespace
 
 void addShow(Command app, Run& run) {
-  const auto options = std::make_shared<ShowOptions>();
+  const auto options = std::make_shared<ShowFileOptions>();
   Command command = app.subcommand(
       "show",
       "Show a content on the wall: one of the configuration by its name; a file that was shown "
@@ -309,7 +309,7 @@ void addShow(Command app, Run& run) {
                "The picture is equirectangular (360 x 180 degrees): it is shown with the viewer "
                "inside");
   addImportOptions(command, options->mesh);
-  command.callback([options, &run] { run = [options] { return show(*options); }; });
+  command.callback([options, &run] { run = [options] { return showContent(*options); }; });
 }
 
 }  // namespace merlin::cli

@@ -12,15 +12,15 @@
 namespace merlin::cli {
 namespace {
 
-using Json = nlohmann::json;
-
-constexpr Duration kPollPeriod = std::chrono::milliseconds(20);
+constexpr Duration kAlignPollPeriod = std::chrono::milliseconds(20);
 // A mesh for a display of many pixels takes seconds on a slow machine.
-constexpr Duration kPatience = std::chrono::seconds(60);
+constexpr Duration kAlignPatience = std::chrono::seconds(60);
 
-state::Offset offsetOf(const Json& json) { return {json.at(0).get<double>(), json.at(1)}; }
+state::Offset offsetOf(const nlohmann::json& json) {
+  return {json.at(0).get<double>(), json.at(1)};
+}
 
-AlignedPicture pictureOf(const Json& json) {
+AlignedPicture pictureOf(const nlohmann::json& json) {
   AlignedPicture picture{
       json.at("name"),
       json.at("width"),
@@ -30,12 +30,12 @@ AlignedPicture pictureOf(const Json& json) {
       {},
       {offsetOf(json.at("seen").at("right")), offsetOf(json.at("seen").at("down"))}};
   for (std::size_t i = 0; i < picture.corners.size(); ++i) {
-    const Json& corner = json.at("corners").at(state::kCornerNames[i]);
+    const nlohmann::json& corner = json.at("corners").at(state::kCornerNames[i]);
     picture.corners[i] = {offsetOf(corner.at("configured")), offsetOf(corner.at("moved"))};
   }
   picture.mesh_columns = json.at("mesh").at(0);
   picture.mesh_rows = json.at("mesh").at(1);
-  for (const Json& point : json.at("points"))
+  for (const nlohmann::json& point : json.at("points"))
     picture.points.push_back({point.at("column"), point.at("row"), offsetOf(point.at("moved"))});
   return picture;
 }
@@ -55,11 +55,12 @@ const AlignedPicture* AlignAnswer::find(const std::string& output) const {
 
 Result<AlignAnswer> readAlignAnswer(const std::string& text) {
   try {
-    const Json json = Json::parse(text);
+    const auto json = nlohmann::json::parse(text);
     AlignAnswer answer{{}, json.at("undo"), json.at("redo"), json.at("done"), text};
-    for (const Json& output : json.at("outputs")) answer.outputs.push_back(pictureOf(output));
+    for (const nlohmann::json& output : json.at("outputs"))
+      answer.outputs.push_back(pictureOf(output));
     return answer;
-  } catch (const Json::exception& e) {
+  } catch (const nlohmann::json::exception& e) {
     return Error{Errc::kMalformed, fmt::format("merlind's answer cannot be read: {}", e.what())};
   }
 }
@@ -72,7 +73,7 @@ Result<AlignAnswer> AlignedWall::ask(const state::AlignRequest& request) const {
 
 Result<AlignAnswer> AlignedWall::askAndWait(const state::AlignRequest& request) const {
   SystemClock clock;
-  const Timestamp until = clock.now() + kPatience;
+  const Timestamp until = clock.now() + kAlignPatience;
   const auto first = ask(request);
   for (auto answer = first;; answer = ask(state::ListRequest{})) {
     if (!answer) return answer;
@@ -84,9 +85,9 @@ Result<AlignAnswer> AlignedWall::askAndWait(const state::AlignRequest& request) 
       return Error{Errc::kTimeout,
                    fmt::format("the alignment is changed and saved, but merlind does "
                                "not show it after {:.0f} s",
-                               toSeconds(kPatience))};
+                               toSeconds(kAlignPatience))};
     }
-    clock.sleepUntil(clock.now() + kPollPeriod, {});
+    clock.sleepUntil(clock.now() + kAlignPollPeriod, {});
   }
 }
 

@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 // --- export
 // ----------------------------------------------------------------------------------------
 
-struct ExportOptions {
+struct MpcdiExportOptions {
   std::string file, config, output;
 };
 
@@ -124,7 +124,7 @@ Result<render::correct::MpcdiOutput> exported(const render::out::OutputSettings&
 }
 
 // The outputs that are wanted, at least one. Errors also name those that there are.
-Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const ExportOptions& options,
+Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const MpcdiExportOptions& options,
                                                                   const Settings& settings) {
   const AlignAnswer moves = movesOf(settings.instance);
   std::vector<render::correct::MpcdiOutput> outputs;
@@ -149,7 +149,7 @@ Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const ExportOp
                                  options.output, fmt::join(names, ", "))};
 }
 
-int exportFile(const ExportOptions& options) {
+int exportFile(const MpcdiExportOptions& options) {
   if (const auto named = checkEnding(options.file, "correction file", ".mpcdi"); !named)
     return fail(named.error());
   const auto settings = readSettings(options.config);
@@ -169,7 +169,7 @@ int exportFile(const ExportOptions& options) {
 }
 
 void addExport(Command mpcdi, Run& run) {
-  const auto options = std::make_shared<ExportOptions>();
+  const auto options = std::make_shared<MpcdiExportOptions>();
   Command command = mpcdi.subcommand(
       "export",
       "Write the warp, blend and black level of a configuration's outputs as an "
@@ -189,7 +189,7 @@ void addExport(Command mpcdi, Run& run) {
 // --- import
 // ----------------------------------------------------------------------------------------
 
-struct ImportOptions {
+struct MpcdiImportOptions {
   std::string file, region, output;
 };
 
@@ -256,7 +256,7 @@ void printRegion(const std::string& file, const render::correct::MpcdiRegion& re
   }
 }
 
-int importFile(const ImportOptions& options) {
+int importFile(const MpcdiImportOptions& options) {
   const auto file = FileCopy::read(options.file);
   if (!file) return fail(file.error());
   const auto named = [&](const Error& error) {
@@ -284,7 +284,7 @@ int importFile(const ImportOptions& options) {
 }
 
 void addImport(Command mpcdi, Run& run) {
-  const auto options = std::make_shared<ImportOptions>();
+  const auto options = std::make_shared<MpcdiImportOptions>();
   Command command = mpcdi.subcommand(
       "import",
       "Check an MPCDI file (profile 2d) and print, for each of its regions, the correction that "

@@ -21,10 +21,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using render::room::Screen;
 
-constexpr double kWidth = 960, kMargin = 60, kMostHeight = 620, kTop = 40, kLine = 16;
+constexpr double kPlanWidth = 960, kPlanMargin = 60, kMostHeight = 620, kPlanTop = 40,
+                 kPlanLine = 16;
 constexpr double kPanelLabel = 20, kHingeLabel = 34, kHingeArc = 18;
-constexpr const char* kColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd",
-                                    "#ff7f0e", "#17becf", "#8c564b", "#e377c2"};
+constexpr const char* kTileColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd",
+                                        "#ff7f0e", "#17becf", "#8c564b", "#e377c2"};
 
 // Seen from above: x right, z down.
 Vector2d fromAbove(const Vector3d& p) { return {p.x(), p.z()}; }
@@ -48,8 +49,10 @@ std::vector<DrawnTile> wallTiles(const WallPlan& wall) {
   std::vector<DrawnTile> drawn;
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!table[i].followsWall() || wall.tiles.tiles[i].eye == render::tiles::Eye::kRight) continue;
-    DrawnTile tile{
-        table[i].name, {}, table[i].horizontal_deg, kColours[drawn.size() % std::size(kColours)]};
+    DrawnTile tile{table[i].name,
+                   {},
+                   table[i].horizontal_deg,
+                   kTileColours[drawn.size() % std::size(kTileColours)]};
     for (const auto& c :
          render::room::cornersOf(wall.tiles.tiles[i], wall.plan.tiles[i], wall.wall_distance_m))
       tile.corners.push_back(eye + render::room::pointOf(c));
@@ -70,9 +73,9 @@ class Scale {
       high = high.cwiseMax(fromAbove(p));
     }
     const Vector2d size = (high - low).cwiseMax(0.1);
-    pixels_per_m = std::min((kWidth - 2 * kMargin) / size.x(), kMostHeight / size.y());
-    height = size.y() * pixels_per_m + 2 * kMargin;
-    offset_ = Vector2d(kWidth / 2, kTop + height / 2) - (low + high) / 2 * pixels_per_m;
+    pixels_per_m = std::min((kPlanWidth - 2 * kPlanMargin) / size.x(), kMostHeight / size.y());
+    height = size.y() * pixels_per_m + 2 * kPlanMargin;
+    offset_ = Vector2d(kPlanWidth / 2, kPlanTop + height / 2) - (low + high) / 2 * pixels_per_m;
   }
 
   Vector2d at(const Vector3d& p) const { return offset_ + pixels_per_m * fromAbove(p); }
@@ -130,7 +133,7 @@ class Labels {
  public:
   // `along`: the direction in which the label is read; it is not read upside down.
   void add(const Vector2d& at, const std::string& what, const Vector2d& along = {1, 0}) {
-    Label& label = all_[{std::lround(at.x() / kLine), std::lround(at.y() / kLine)}];
+    Label& label = all_[{std::lround(at.x() / kPlanLine), std::lround(at.y() / kPlanLine)}];
     if (label.lines.empty()) label = {at, readableAngle(along), {}};
     if (std::ranges::find(label.lines, what) == label.lines.end()) label.lines.push_back(what);
   }
@@ -140,10 +143,10 @@ class Labels {
       const auto& [at, angle_deg, lines] = label;
       const std::string looks = fmt::format("{}transform=\"rotate({:.1f} {:.1f} {:.1f})\" {}",
                                             kLabel, angle_deg, at.x(), at.y(), attributes);
-      double y = at.y() - kLine * (static_cast<double>(lines.size()) - 1) / 2 + 4;
+      double y = at.y() - kPlanLine * (static_cast<double>(lines.size()) - 1) / 2 + 4;
       for (const std::string& what : lines) {
         out += text({at.x(), y}, looks, what);
-        y += kLine;
+        y += kPlanLine;
       }
     }
     return out;
@@ -274,7 +277,7 @@ std::string scaleBar(const Scale& scale) {
       if (length * scale.pixels_per_m <= 180) metres = std::max(metres, length);
     }
   }
-  const Vector2d from(20, kTop + scale.height - 12);
+  const Vector2d from(20, kPlanTop + scale.height - 12);
   const Vector2d to = from + Vector2d(metres * scale.pixels_per_m, 0), tick(0, 5);
   const std::string stroke = "stroke=\"black\"";
   return line(from, to, stroke) + line(from - tick, from + tick, stroke) +
@@ -336,12 +339,12 @@ std::string planSvg(const WallPlan& wall) {
   const Scale scale(points);
   const Vector2d eye = scale.at(points.front());
   const auto lines = tableLines(wall);
-  double y = kTop + scale.height + 24;
+  double y = kPlanTop + scale.height + 24;
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
       "fill=\"white\"/>\n",
-      kWidth, y + kLine * static_cast<double>(lines.size()) + 10);
+      kPlanWidth, y + kPlanLine * static_cast<double>(lines.size()) + 10);
   out += text({20, 26}, "font-size=\"16\"", "The wall from above");
   Labels labels;
   out += frusta(tiles, eye, scale, labels);
@@ -350,7 +353,7 @@ std::string planSvg(const WallPlan& wall) {
   out += labels.svg("fill=\"#222\"") + viewer(wall, eye) + scaleBar(scale);
   for (const std::string& each : lines) {
     out += text({20, y}, "font-family=\"monospace\" font-size=\"12\" xml:space=\"preserve\"", each);
-    y += kLine;
+    y += kPlanLine;
   }
   return out + "</svg>\n";
 }

@@ -22,14 +22,14 @@ constexpr std::string_view kLeave = "\033[?25h\033[?1049l";
 constexpr int kFatal[] = {SIGQUIT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE};
 
 // What a signal handler needs to put the terminal back: it has no other way to know.
-termios before{};                        // NOLINT
-volatile std::sig_atomic_t changed = 0;  // NOLINT
+termios terminal_before{};                        // NOLINT
+volatile std::sig_atomic_t terminal_changed = 0;  // NOLINT
 
 // Async-signal-safe.
 void putBack() {
-  if (changed == 0) return;
-  changed = 0;
-  ::tcsetattr(STDIN_FILENO, TCSANOW, &before);
+  if (terminal_changed == 0) return;
+  terminal_changed = 0;
+  ::tcsetattr(STDIN_FILENO, TCSANOW, &terminal_before);
   const auto written = ::write(STDOUT_FILENO, kLeave.data(), kLeave.size());
   static_cast<void>(written);  // a terminal that is gone needs nothing
 }
@@ -55,10 +55,10 @@ Result<Ok> RawTerminal::check() {
 }
 
 RawTerminal::RawTerminal() : signals_(stopSignals()) {
-  ::tcgetattr(STDIN_FILENO, &before);
-  changed = 1;
+  ::tcgetattr(STDIN_FILENO, &terminal_before);
+  terminal_changed = 1;
   for (const int s : kFatal) ::signal(s, onFatal);
-  termios raw = before;
+  termios raw = terminal_before;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // ISIG stays: Ctrl-C ends the program
   raw.c_cc[VMIN] = 1;
   raw.c_cc[VTIME] = 0;

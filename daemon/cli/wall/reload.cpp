@@ -22,8 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Duration kPollPeriod = std::chrono::milliseconds(20);
-constexpr Duration kPatience = std::chrono::seconds(60);  // a file system may be slow
+constexpr Duration kReloadPollPeriod = std::chrono::milliseconds(20);
+constexpr Duration kReloadPatience = std::chrono::seconds(60);  // a file system may be slow
 
 struct ReloadOptions {
   std::string instance = "merlin";
@@ -66,16 +66,16 @@ Result<Reloaded> reloadProcess(const std::string& instance, const FoundRole& pro
   if (!begun) return begun.error();
   const std::string number = std::to_string(begun->value("request", 0U));
   SystemClock clock;
-  for (const Timestamp until = clock.now() + kPatience; clock.now() < until;) {
+  for (const Timestamp until = clock.now() + kReloadPatience; clock.now() < until;) {
     auto answer = ask(number);
     if (!answer) return answer.error();
     if (!answer->value("pending", false)) return Reloaded{process, *std::move(answer)};
-    clock.sleepUntil(clock.now() + kPollPeriod, {});
+    clock.sleepUntil(clock.now() + kReloadPollPeriod, {});
   }
   return Error{Errc::kTimeout,
                fmt::format("merlind (process {}) has not read its configuration within {:.0f} s; "
                            "its log will say what became of it",
-                           process.pid, toSeconds(kPatience))};
+                           process.pid, toSeconds(kReloadPatience))};
 }
 
 Result<std::vector<Reloaded>> reloadEach(const std::string& instance,
@@ -124,16 +124,16 @@ bool isBack(const std::string& instance, const FoundRole& before) {
 // Waits until each process that starts again is back.
 Result<Ok> awaitStarts(const std::string& instance, const std::vector<Reloaded>& all) {
   SystemClock clock;
-  const Timestamp until = clock.now() + kPatience;
+  const Timestamp until = clock.now() + kReloadPatience;
   for (const Reloaded& reloaded : all) {
     while (reloaded.restarts() && !isBack(instance, reloaded.process)) {
       if (clock.now() > until) {
         return Error{Errc::kTimeout,
                      fmt::format("merlind (process {}) has not started again within {:.0f} s; its "
                                  "log will say what became of it",
-                                 reloaded.process.pid, toSeconds(kPatience))};
+                                 reloaded.process.pid, toSeconds(kReloadPatience))};
       }
-      clock.sleepUntil(clock.now() + kPollPeriod, {});
+      clock.sleepUntil(clock.now() + kReloadPollPeriod, {});
     }
   }
   return Ok{};
@@ -299,14 +299,14 @@ bool startsAgain(const std::string& instance, const FoundRole& before) {
 // Asks again where a process starts again: another request may have had it do so.
 Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>& roles) {
   SystemClock clock;
-  for (const Timestamp until = clock.now() + kPatience;;) {
+  for (const Timestamp until = clock.now() + kReloadPatience;;) {
     auto all = askOnce(options, roles);
     const bool again =
         !all && clock.now() < until && std::ranges::any_of(roles, [&](const FoundRole& role) {
           return startsAgain(options.instance, role);
         });
     if (!again) return all;
-    clock.sleepUntil(clock.now() + kPollPeriod, {});
+    clock.sleepUntil(clock.now() + kReloadPollPeriod, {});
   }
 }
 

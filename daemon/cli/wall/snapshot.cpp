@@ -22,8 +22,8 @@ struct SnapshotOptions {
   bool wall = false;
 };
 
-constexpr Duration kPollPeriod = std::chrono::milliseconds(5);
-constexpr Duration kPatience = std::chrono::seconds(5);
+constexpr Duration kSnapshotPollPeriod = std::chrono::milliseconds(5);
+constexpr Duration kSnapshotPatience = std::chrono::seconds(5);
 
 // The next signal of an output: merlind puts it into shared memory.
 Result<render::out::CapturedFrame> signalOf(const SnapshotOptions& options) {
@@ -33,14 +33,14 @@ Result<render::out::CapturedFrame> signalOf(const SnapshotOptions& options) {
   const std::string segment = json.value("shared_memory", "");
   const auto after = json.value("after", std::uint64_t{0});
   SystemClock clock;
-  for (const Timestamp until = clock.now() + kPatience; clock.now() < until;) {
+  for (const Timestamp until = clock.now() + kSnapshotPatience; clock.now() < until;) {
     auto frame = render::out::captureFrame(segment);
     if (!frame && frame.error().code != Errc::kTimeout) return frame;
     if (frame && frame->info.sequence > after) return frame;
-    clock.sleepUntil(clock.now() + kPollPeriod, {});
+    clock.sleepUntil(clock.now() + kSnapshotPollPeriod, {});
   }
   return Error{Errc::kTimeout, fmt::format("merlind shows no frame of output {} within {:.0f} s",
-                                           options.output, toSeconds(kPatience))};
+                                           options.output, toSeconds(kSnapshotPatience))};
 }
 
 // Refuses the last frame of a wall that does not run any more.

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Duration kPatience = std::chrono::seconds(5);
+constexpr Duration kStatusPatience = std::chrono::seconds(5);
 
 // Unit in which the detail of a frame is counted, "triangles".
 std::string costUnit(const Json& s) { return s.value("detail", Json::object()).value("unit", ""); }
@@ -222,7 +222,7 @@ Result<Json> askStatus(const DaemonAddress& daemon) {
   for (const FoundRole& role : *roles) {
     const auto allowed = checkMayAsk(role.endpoints.command);
     if (!allowed) return allowed.error();
-    const auto answer = status::ask(role.commands(), "status", kPatience);
+    const auto answer = status::ask(role.commands(), "status", kStatusPatience);
     if (!answer) return answer.error();
     mergeStatus(both, *answer);
   }

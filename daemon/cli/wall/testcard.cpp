@@ -21,18 +21,18 @@ struct CardOptions {
   std::string card;
 };
 
-constexpr Duration kPollPeriod = std::chrono::milliseconds(5);
-constexpr Duration kPatience = std::chrono::seconds(2);
+constexpr Duration kTestcardPollPeriod = std::chrono::milliseconds(5);
+constexpr Duration kTestcardPatience = std::chrono::seconds(2);
 
 // Returns when the wall has shown another frame, so that whoever looks next sees the card.
 void awaitFrameAfter(const std::string& instance, std::uint64_t frame) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance, "wall"));
   SystemClock clock;
-  for (const Timestamp until = clock.now() + kPatience; segment && clock.now() < until;) {
+  for (const Timestamp until = clock.now() + kTestcardPatience; segment && clock.now() < until;) {
     const auto stats = (*segment)->stats.read();
     if (stats && stats->frames > frame) return;
-    clock.sleepUntil(clock.now() + kPollPeriod, {});
+    clock.sleepUntil(clock.now() + kTestcardPollPeriod, {});
   }
 }
 

@@ -22,8 +22,8 @@ namespace merlin::cli {
 namespace {
 
 // Pairs of colours, by CellStyle. -1: the terminal's own.
-constexpr std::array<short, 6> kColours = {-1,           COLOR_CYAN, COLOR_GREEN,
-                                           COLOR_YELLOW, COLOR_RED,  -1};
+constexpr std::array<short, 6> kCellColours = {-1,           COLOR_CYAN, COLOR_GREEN,
+                                               COLOR_YELLOW, COLOR_RED,  -1};
 
 short pairOf(CellStyle style) { return static_cast<short>(static_cast<int>(style) + 1); }
 
@@ -63,8 +63,8 @@ CursesScreen::CursesScreen() : signals_(stopSignals()) {
   colours_ = ::has_colors() && ::start_color() == OK;
   if (!colours_) return;
   ::use_default_colors();
-  for (std::size_t i = 0; i < kColours.size(); ++i)
-    ::init_pair(pairOf(static_cast<CellStyle>(i)), kColours[i], -1);
+  for (std::size_t i = 0; i < kCellColours.size(); ++i)
+    ::init_pair(pairOf(static_cast<CellStyle>(i)), kCellColours[i], -1);
 }
 
 CursesScreen::~CursesScreen() {

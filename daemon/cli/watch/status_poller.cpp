@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string textOf(const Json& json, const char* key) {
+std::string fieldText(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -22,7 +22,8 @@ void addEvents(const std::string& answer, std::vector<WatchedEvent>& events) {
   const auto json = Json::parse(answer, nullptr, false);
   if (!json.is_array()) return;
   for (const Json& event : json) {
-    if (event.is_object()) events.push_back({textOf(event, "time_utc"), textOf(event, "what")});
+    if (event.is_object())
+      events.push_back({fieldText(event, "time_utc"), fieldText(event, "what")});
   }
 }
 

@@ -20,7 +20,7 @@ namespace merlin::cli {
 namespace {
 
 constexpr int kRound_ms = 50;
-constexpr Duration kPatience = std::chrono::seconds(3);
+constexpr Duration kWatchPatience = std::chrono::seconds(3);
 
 struct WatchOptions {
   std::string instance = "merlin";
@@ -52,7 +52,7 @@ int watchLines(const WatchOptions& options) {
   const Timestamp began = clock.now();
   nlohmann::ordered_json both = nlohmann::ordered_json::object();
   std::size_t documents = 0;
-  const auto followed = status::follow(endpoints, {"status"}, kPatience,
+  const auto followed = status::follow(endpoints, {"status"}, kWatchPatience,
                                        [&](const std::string&, const std::string& document) {
                                          mergeStatus(both, document);
                                          if (++documents % roles->size() == 0)
