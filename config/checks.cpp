@@ -159,8 +159,9 @@ void checkContents(const WallSettings& wall, LoadedSettings& loaded) {
     if (files > 1)
       loaded.addFinding(at, "names more than one file; give it one of model, picture and slides");
     if (!c.name.empty() && !names.insert(c.name).second)
-      loaded.addFinding(at + "/name",
-                        fmt::format("is \"{}\", the name of another content", c.name));
+      loaded.addFinding(
+          at + "/name",
+          fmt::format("is \"{}\", the name of another content; give each its own name", c.name));
   }
 }
 

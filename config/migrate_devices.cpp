@@ -87,7 +87,8 @@ Json entryOf(const FormerDevice& former, const Json& old, Notes& notes) {
       continue;
     }
     notes.push_back(fmt::format(
-        "/devices/{}: left out are settings of the driver {} ({}), since the device's driver is {}",
+        "/devices/{}: the settings of the driver {} ({}) are left out, since the device's driver "
+        "is {}",
         former.key, name, settings.is_object() ? keysOf(settings) : settings.dump(), driver));
   }
   return entry;
@@ -167,8 +168,8 @@ Result<bool> moveDevices(Json& root, Notes& notes) {
     for (const auto& [new_key, new_value] : now->items()) {
       if (new_key != "devices" && root.contains(new_key)) {
         return Error{Errc::kInvalidArgument,
-                     fmt::format("has both the object /devices, of which /{0} is made, and /{0}: "
-                                 "bring them together by hand",
+                     fmt::format("has both the object /devices, from which /{0} is made, and /{0}: "
+                                 "merge them by hand",
                                  new_key)};
       }
       moved[new_key] = new_value;

@@ -28,7 +28,7 @@ namespace merlin {
 namespace {
 
 constexpr Duration kWatchdogPing = std::chrono::seconds(1);
-// A run that began longer ago has its start behind it: what it said then is not told any more.
+// A run that began longer ago than this is not asked for the events of its start.
 constexpr Duration kStartIsNews = std::chrono::minutes(10);
 constexpr const char* kTest = "this is a test, asked for by SIGUSR1";
 constexpr Duration kAskAgain = std::chrono::seconds(3);
@@ -49,7 +49,7 @@ bool hasDevices(const Settings& settings) {
 const shm::Header& headerOf(const shm::WallSegment& segment) { return segment.header; }
 const shm::Header& headerOf(const shm::DeviceSlots& slots) { return *slots.header; }
 
-// Whether the sentence says of a device nothing but that it works.
+// Whether the sentence reports only that a device works.
 bool saysThatItWorks(std::string_view sentence, const shm::DeviceSlots* devices) {
   if (!devices) return false;
   return std::ranges::any_of(devices->health, [&](const auto& device) {
@@ -90,8 +90,8 @@ class FollowedRole {
   const auto* segment() const noexcept { return watch_.segment(); }
 
  private:
-  // Twice: what the role says between the first answer and the moment from which its events reach
-  // us is in the second one.
+  // Asks a run that starts for its events twice: the second answer also has what the role said
+  // between the first answer and the moment from which its events reach us.
   void askForStart(Timestamp now, const Tell& tell) {
     if (std::exchange(generation_, watch_.generation()) != watch_.generation()) {
       answers_due_ = isStarting(now) ? 2 : 0;
@@ -102,7 +102,7 @@ class FollowedRole {
       ask_at_ = now + kAskAgain;
     }
     queue_.update(watch_.commandEndpoint(), now, [&](std::uint64_t of, const auto& answer) {
-      if (!answer || of != generation_) return;  // it is asked again
+      if (!answer || of != generation_) return;  // the run is asked again
       if (answers_due_ > 0) --answers_due_;
       for (const alarms::AlarmEvent& event : alarms::eventsOf(watch_.role(), *answer)) tell(event);
     });
@@ -116,7 +116,7 @@ class FollowedRole {
   alarms::RoleState state_;
   status::CommandQueue queue_;
   std::uint64_t generation_ = 0;
-  int answers_due_ = 0;  // that the present run still has to give
+  int answers_due_ = 0;  // answers that the present run still has to give
   Timestamp ask_at_{};
 };
 
@@ -146,17 +146,18 @@ class Alarm {
     if (started)
       program_.emplace(*std::move(started));
     else
-      logWarning("the alarm {}", started.error().what);
+      logWarning("an alarm's program was not started: {}", started.error().what);
   }
 
  private:
-  // REQUIRES: no start is allowed now. Says it once, until nothing waits any more.
+  // REQUIRES: no start is allowed now. Logs once that events wait, and again only after none
+  // waited.
   void sayWhatWaits() {
     const bool waits = queue_.waiting() > 0;
     if (waits && !told_that_some_wait_) {
       logWarning(
-          "the alarm {} has been started as often as most_per_hour ({}) allows for now; "
-          "events wait, faults first",
+          "the alarm {} has been started as often as its setting most_per_hour ({}) allows; "
+          "further events wait, and faults are told first",
           settings_.run.front(), settings_.most_per_hour);
     }
     told_that_some_wait_ = waits;
@@ -204,7 +205,7 @@ class AlarmsProcess {
     devices_.update(now, tell);
     for (const page::LoggedEvent& event : events_.after(seen_)) {
       seen_ = event.number;
-      if (event.role == "page") continue;  // what the watches say of roles: RoleState is patient
+      if (event.role == "page") continue;  // from the watches, of a role: RoleState waits first
       add({event.role, event.time_utc, event.kind, event.what, event.severity});
     }
     for (Alarm& alarm : alarms_) alarm.tend(now);

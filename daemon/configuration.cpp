@@ -78,7 +78,7 @@ void checkSpnavSocket(LoadedSettings& loaded) {
   take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
 }
 
-// At a start the wall does without (StateKeeper); a reload refuses it.
+// A start goes on without a state file that can be written (see StateKeeper); a reload refuses it.
 void checkStateWritable(Reading reading, const char* pointer, LoadedSettings& loaded) {
   const std::string& path = loaded.settings.state_file;
   const std::string folder = std::filesystem::path(path).parent_path().string();
@@ -131,7 +131,7 @@ void checkSamples(LoadedSettings& loaded) {
     take(status::readPublicKeys(s.samples_clients), "/serve/samples_clients", loaded);
 }
 
-// Of the roles that this process has.
+// Checks the addresses and keys of the sockets for other machines, of this process's roles only.
 void checkNetworkCommands(const DaemonOptions& options, LoadedSettings& loaded) {
   const ServeSettings& s = loaded.settings.serve;
   const bool wall = options.wall && !s.wall_endpoint.empty();
@@ -161,7 +161,8 @@ void checkInput(const DaemonOptions& options, LoadedSettings& loaded) {
   if (!input.keys.empty()) take(status::readKeyPair(input.keys), "/wall/input/keys", loaded);
 }
 
-// A role that is switched off is not at fault: its process waits for a configuration with it.
+// Adds a finding that does not make the configuration invalid, because a role may be switched off:
+// its process then waits for a configuration that switches it on.
 void addNothingToDo(LoadedSettings& loaded, const char* pointer, const char* what) {
   loaded.add({true, loaded.lineOf(pointer), pointer, what});
 }
@@ -173,7 +174,8 @@ void checkPage(LoadedSettings& loaded) {
                  "is false, and so is /page/metrics: the role page has nothing to serve");
 }
 
-// A program that is not there is no reason to refuse the others, and may be put there later.
+// A program that is missing does not make the configuration invalid: the other alarms work, and the
+// program may be installed later.
 void checkAlarms(LoadedSettings& loaded) {
   const std::vector<AlarmSettings>& alarms = loaded.settings.alarms;
   if (alarms.empty())

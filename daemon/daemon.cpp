@@ -29,8 +29,8 @@ sigset_t takenSignals() {
   return set;
 }
 
-// The watchdog's time as the unit has it, since it is longer after a start of this program by
-// itself.
+// Also sets systemd's watchdog time to that of the unit again: tellEnd() lengthened it if this
+// program has started itself again.
 void tellReady() {
   std::uint64_t usec = 0;
   const bool watched = ::sd_watchdog_enabled(0, &usec) > 0;
@@ -137,7 +137,7 @@ Result<Ok> Daemon::makeRoles() {
   return Ok{};
 }
 
-// Of a process with a wall or projectors.
+// Makes the keeper of the state file if this process has a wall or projectors.
 void Daemon::makeKeeper() {
   devices::Projectors* const projectors = devices_ ? devices_->projectors() : nullptr;
   if (!options_.wall && !projectors) return;
@@ -155,7 +155,8 @@ void Daemon::makeKeeper() {
   });
 }
 
-// Beside the devices' flight recordings; before the wall makes its own frame buffer.
+// Saves the last frame of a run that crashed, beside the devices' flight recordings. To be called
+// before the wall makes its own frame buffer.
 void Daemon::keepCrashFrame() {
   auto frame = wall::frameOfCrash(shm::segmentName(settings_.instance, "framebuffer"));
   if (!frame) return;
@@ -166,7 +167,7 @@ void Daemon::keepCrashFrame() {
       threads_);
 }
 
-// Makes what executes commands of the roles, and what serves them.
+// Makes the parts that execute the roles' commands, and the servers that receive them.
 void Daemon::connectRoles() {
   if (wall_ && !settings_.wall.snapshots.empty()) {
     snapshots_ = std::make_unique<wall::SnapshotWriter>(
@@ -176,7 +177,7 @@ void Daemon::connectRoles() {
         threads_);
     wall_->onSnapshot([this] { snapshots_->take(); });
   }
-  // SIGCHLD is waited for anyway, and asks for a round of the main loop.
+  // The main loop waits for SIGCHLD anyway; sending it starts a round of the loop.
   const auto wake = [main = ::pthread_self()] { ::pthread_kill(main, SIGCHLD); };
   const GpioSettings& gpio = settings_.devices.gpio;
   if (devices_ && devices_->panel() && gpio.lamp_line >= 0 && gpio.lamp_warns)
@@ -209,15 +210,15 @@ void Daemon::serveWindows() {
 // are executed by the walls.
 void Daemon::executeActions() {
   for (const std::size_t action : device_actions_.read(devices_->slots()).in_order) {
-    if (action >= kActions.size()) continue;  // shared memory may be written by its owner
+    if (action >= kActions.size()) continue;  // shared memory may be written by other processes
     const CommandInfo* const command = findCommand(kActions[action]);
     if (command->role == CommandOf::kWall) continue;
     const auto done = commands_->run(command->name);
-    if (!done) logWarning("an input's action failed: {}", done.error().what);
+    if (!done) logWarning("an action bound to an input failed: {}", done.error().what);
   }
 }
 
-// The lamp of the control panel shows that the wall needs somebody.
+// Switches the warning of the control panel's lamp on while the wall needs somebody, and off again.
 void Daemon::tendLamp(Timestamp now) {
   std::string why = wall_fault_->look(now);
   devices_->panel()->warn(!why.empty());
@@ -226,7 +227,8 @@ void Daemon::tendLamp(Timestamp now) {
   warned_of_ = std::move(why);
 }
 
-// What the operator's panel asks for, by the ball, and what it shows of the projectors.
+// Executes what was asked for on the operator's panel by the ball, and tells the panel the state of
+// the projectors.
 void Daemon::tendPanel() {
   commands_->runPanel();
   if (devices_beside_) {
@@ -277,13 +279,14 @@ void Daemon::tendReload() {
   starts_again_ = done == Reloader::Done::kRestart;
 }
 
-// To systemd the service goes on while it starts again, and is to be given time for a large model.
+// To systemd, a program that starts itself again has not stopped; its watchdog time is lengthened,
+// because reading a large model takes long.
 void Daemon::tellEnd() const {
   ::sd_notify(0, starts_again_ ? kLongWatchdog : "STOPPING=1");
   logInfo("{}", starts_again_ ? "starting again" : "stopping");
 }
 
-// A configuration is good when merlind runs with it.
+// Keeps the configuration as the last good one, now that merlind runs with it.
 void Daemon::keepLastGood() {
   if (!instead_of_.empty()) services_.failed("configuration", instead_of_);
   if (options_.last_good.empty()) return;
@@ -306,8 +309,7 @@ Result<Ok> Daemon::awaitFirstFrame(std::future<Result<std::string>> ready) {
 }
 
 // Waits up to `wait` for a signal; true for SIGTERM and SIGINT, and once a window was closed whose
-// on_close is "stop". An ended emulator (SIGCHLD) is
-// reported by housekeeping().
+// on_close is "stop". An ended emulator (SIGCHLD) is reported by housekeeping().
 bool Daemon::stopAsked(Duration wait) {
   const sigset_t set = takenSignals();
   const timespec limit{0, wait.count()};

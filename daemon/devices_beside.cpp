@@ -26,7 +26,7 @@ DevicesBeside::DevicesBeside(const std::string& instance)
 Result<Ok> DevicesBeside::send(const std::string& command, Timestamp now) {
   const std::lock_guard lock(mutex_);
   if (commands_.add({0, command, "", now + kPatience})) return Ok{};
-  return Error{Errc::kBusy, "too many commands wait for the role devices"};
+  return Error{Errc::kBusy, "too many commands wait for the role devices; try again later"};
 }
 
 void DevicesBeside::update(Timestamp now,

@@ -31,7 +31,7 @@ UniqueFd KeptBySystemd::take(const std::string& name) {
 
 bool KeptBySystemd::keep(const std::string& name, int fd) {
   if (!is_service_) return false;
-  removeFromStore(name);  // two files may have the same name there
+  removeFromStore(name);  // systemd would keep both files under the same name
   const std::string message = "FDSTORE=1\nFDNAME=" + name;
   if (::sd_pid_notify_with_fds(0, 0, message.c_str(), &fd, 1) <= 0) return false;
   const std::lock_guard lock(mutex_);

@@ -18,14 +18,15 @@ namespace fs = std::filesystem;
 
 constexpr Duration kStep = std::chrono::milliseconds(200);
 
-// Takes away what not everybody may do with the file.
+// Removes from `mode` the permissions that the file does not give.
 void restrictTo(const fs::path& file, mode_t& mode) {
   struct stat status {};
   if (::stat(file.c_str(), &status) == 0) mode &= status.st_mode;
 }
 
-// The permissions of what is kept. Under systemd's units the roles page and alarms, other users of
-// the group merlin, read it.
+// The permissions of the kept file: for others than its owner at most those that every file of the
+// configuration gives. The group can read it because, under systemd's units, the roles page and
+// alarms run as other users of the group merlin.
 mode_t modeLike(const std::string& configuration) {
   mode_t mode = 0640;
   restrictTo(configuration, mode);
@@ -82,7 +83,7 @@ void LastGoodKeeper::loop(const std::stop_token& stop, Progress& progress) {
     }
     progress.step();
     if (text) {
-      const Progress::Pause pause(progress);  // a disk may take its time
+      const Progress::Pause pause(progress);  // writing to a disk may take long
       write(*text);
     } else if (stop.stop_requested()) {
       return;

@@ -51,10 +51,10 @@ manual::PageSettings page() {
                      "merged over the configuration in the order of their names"},
                     {"/usr/share/merlin/merlin-devices.service.d, merlin-wall.service.d, "
                      "merlin-alarms.service.d",
-                     "drop-ins for these services, each of which allows one more thing"},
+                     "drop-ins for these services; each one gives its service one more permission"},
                     {"/var/lib/merlin",
                      "models, what people changed while the wall ran, and the last good settings"},
-                    {"/run/merlin", "sockets of status and commands, for the group merlin"}},
+                    {"/run/merlin", "sockets for status and commands, usable by the group merlin"}},
           .see_also = {"merlin(1)", "merlin.json(5)", "systemctl(1)"}};
 }
 
@@ -72,8 +72,8 @@ DaemonOptions daemonOptions(const Options& options) {
           options.last_good ? state::lastGoodFile(options.config, options.role) : std::string()};
 }
 
-// The settings to start with when the configuration is invalid. The page and the alarms, which keep
-// none, take those of the processes that they follow.
+// The settings to start with when the configuration is invalid. The page and the alarms, which save
+// no settings, take those of the processes that they follow.
 std::optional<Configuration> lastGood(const Options& options, const Configuration& broken) {
   const DaemonOptions with = daemonOptions(options);
   if (!options.last_good) return std::nullopt;
@@ -85,7 +85,7 @@ std::optional<Configuration> lastGood(const Options& options, const Configuratio
   return std::nullopt;
 }
 
-// Restarts that follow one another at once would only fill the journal.
+// Waits 5 s under systemd, because restarts in quick succession would only fill the journal.
 void delayRestart() {
   if (::getenv("NOTIFY_SOCKET") == nullptr) return;  // NOLINT(concurrency-mt-unsafe)
   constexpr timespec kDelay{5, 0};
@@ -154,12 +154,12 @@ int exitStatusOf(const Result<Ok>& ran) {
   return ran.error().code == Errc::kClosed ? kExitDone : exitStatus(ran.error());
 }
 
-// The roles page and alarms, which start again for a changed configuration.
+// Runs the role page or alarms, which starts the program again for a changed configuration.
 int runBeside(const Options& options, const Settings& settings, const ProgramRestart& restart) {
   const auto is_valid = [&] {
     const Configuration fresh = checkedConfiguration(options.config, options);
     if (fresh.loaded.verdict() != LoadedSettings::Verdict::kInvalid) return true;
-    logWarning("{} is invalid; the settings before it stay in effect", options.config);
+    logWarning("{} is invalid; the previous settings stay in effect", options.config);
     return false;
   };
   SystemClock clock;
@@ -213,7 +213,7 @@ int runProgram(int argc, char** argv) {
       [](const std::string& file) { return std::string(file.empty() ? "names no file" : ""); }, "");
   app.add_option(
          "--config", options.config,
-         "The configuration file, JSON. SIGHUP, or `merlin reload`, has merlind read it again")
+         "The configuration file (JSON). SIGHUP or `merlin reload` makes merlind read it again")
       ->check(named)
       ->capture_default_str();
   const CLI::Option* check =
@@ -224,19 +224,20 @@ int runProgram(int argc, char** argv) {
           ->check(named)
           ->type_name("FILE");
   app.add_option("--role", options.role,
-                 "Role of this process: it reads the devices, draws the wall, or does both; or it "
-                 "serves the operator's web page, or starts the programs of alarms, beside a "
-                 "merlind that does. SIGUSR1 has the role alarms tell every alarm of a test")
+                 "Role of this process: it reads the devices, draws the wall, or does both; or, "
+                 "beside such a merlind, it serves the operator's web page or starts the programs "
+                 "of the alarms. SIGUSR1 makes the role alarms send a test event to every alarm")
       ->check(CLI::IsMember({"devices", "wall", "all", "page", "alarms"}))
       ->capture_default_str();
   app.add_flag("--emulate", options.emulate,
                "Start an emulator for each device, on a pseudo-terminal");
   app.add_flag("--last-good", options.last_good,
-               "Keep the settings whenever merlind runs with them, and start with those if the "
-               "configuration is invalid, which an event tells. The roles page and alarms start "
-               "with those of the wall or the devices. Wherever /state_file is, they are kept in "
-               "the folder that systemd sets (StateDirectory=), else in /var/lib/merlin for root, "
-               "else in $XDG_STATE_HOME/merlin or ~/.local/state/merlin");
+               "Save the settings that merlind runs with, and start with the saved ones if the "
+               "configuration is invalid; an event then says so. The roles page and alarms start "
+               "with the settings that the wall or the devices saved. Wherever /state_file is, "
+               "they are saved in the folder that systemd sets (StateDirectory=), else in "
+               "/var/lib/merlin for root, else in $XDG_STATE_HOME/merlin or "
+               "~/.local/state/merlin");
   app.add_flag("--print-config", options.print_config,
                "Print the configuration with every setting, including defaults, and exit");
   app.add_flag("--print-schema", options.print_schema,

@@ -76,7 +76,7 @@ class PageProcess {
                    fmt::format("/page/port {}: {}", settings.page.port, server.error().what)};
     }
     const PageSettings& p = settings.page;
-    logInfo("{} of merlind \"{}\" at http://{}:{}/{}; the token of commands is in {}",
+    logInfo("{} of merlind \"{}\" at http://{}:{}/{}; the token for commands is in {}",
             p.enabled ? "the page" : "metrics", settings.instance, p.address, (*server)->port(),
             p.enabled ? "" : "metrics", settings.token_file);
     return std::unique_ptr<net::Server>(*std::move(server));
@@ -108,7 +108,7 @@ class PageProcess {
   net::ServerKeeper keeper_;  // uses everything above
 };
 
-// Waits until the configuration has a page again, or for the end.
+// Waits until the configuration has a page or metrics again, or until the process is to end.
 Asked serveNothing(const std::function<bool()>& is_valid) {
   ::sd_notify(0, "READY=1\nSTATUS=switched off by the configuration");
   logInfo("ready: the page is switched off by the configuration, and so are the metrics");

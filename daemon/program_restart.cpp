@@ -15,7 +15,7 @@
 namespace merlin {
 namespace {
 
-constexpr int kFirst = SD_LISTEN_FDS_START;  // the first after standard error
+constexpr int kFirst = SD_LISTEN_FDS_START;  // the first descriptor after standard error
 constexpr const char* kProgram = "/proc/self/exe";
 
 std::vector<int> openFiles() {
@@ -30,14 +30,14 @@ std::vector<int> openFiles() {
   return files;
 }
 
-// So that the kernel closes them when the new program begins.
+// Makes the kernel close these files when the new program begins.
 void closeAtStart(const std::vector<int>& files) {
   for (const int fd : files) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
 }
 
 // Gives the files the numbers from kFirst on, and leaves them open for the new program.
 void place(const std::vector<std::pair<std::string, UniqueFd>>& kept) {
-  std::vector<UniqueFd> apart;  // a number that is needed may be that of another
+  std::vector<UniqueFd> apart;  // copies: a number may still be in use by another file
   const int beyond = kFirst + static_cast<int>(kept.size());
   for (const auto& [name, file] : kept)
     apart.emplace_back(::fcntl(file.get(), F_DUPFD_CLOEXEC, beyond));
@@ -55,7 +55,7 @@ std::vector<char*> pointersTo(std::vector<std::string>& texts) {
 }  // namespace
 
 ProgramRestart::ProgramRestart(int argc, char** argv) : arguments_(argv, argv + argc) {
-  // The kernel names a program that was started again after the link: ps would show "exe".
+  // The kernel names a process after the path that is executed: after now(), ps would show "exe".
   ::prctl(PR_SET_NAME, program_invocation_short_name);
   for (char** variable = environ; *variable; ++variable) {
     if (!std::string_view(*variable).starts_with("LISTEN_")) environment_.emplace_back(*variable);
@@ -71,7 +71,7 @@ Error ProgramRestart::now(const std::vector<std::pair<std::string, UniqueFd>>& k
     environment.push_back(fmt::format("LISTEN_FDS={}", kept.size()));
     environment.push_back("LISTEN_FDNAMES=" + names);
   }
-  ::alarm(0);  // it would end the new program
+  ::alarm(0);  // an alarm that is set would end the new program
   closeAtStart(openFiles());
   place(kept);
   ::execve(kProgram, pointersTo(arguments).data(), pointersTo(environment).data());

@@ -17,7 +17,8 @@ using reload::Outcome;
 using reload::Part;
 
 constexpr std::size_t kMostWaiting = 8, kKept = 32;
-// A process that starts again waits until its answer was fetched, and then until it has been sent.
+// Before it starts again, the process waits at most kFetch for the client that fetches its answer,
+// and then kSend, so that the answer is sent.
 constexpr Duration kFetch = std::chrono::seconds(5), kSend = std::chrono::milliseconds(200);
 constexpr const char* kService = "configuration";
 
@@ -29,8 +30,8 @@ std::optional<std::uint32_t> numberIn(const std::string& text) {
   return number;
 }
 
-// Whether a number that is out of range would change what is in effect. At the start it is
-// adjusted, since a wall that runs is worth more; here the one before is at hand.
+// Whether a setting that had to be adjusted is among the changes. A start uses the adjusted value,
+// because a wall that runs is worth more; a reload refuses it and keeps the previous value.
 bool adjustsChange(const LoadedSettings& loaded, const std::vector<SettingChange>& changes) {
   return std::ranges::any_of(loaded.findings, [&](const Finding& finding) {
     return std::ranges::any_of(changes, [&](const SettingChange& change) {
@@ -63,7 +64,7 @@ void Reloader::request() {
 
 // REQUIRES: mutex_ is held.
 Result<std::string> Reloader::add(bool only_check, bool is_command) {
-  // The start reads the file anew, which is what was asked for.
+  // The start that is due reads the file anew, and so answers this request, too.
   if (restart_at_) return fmt::format("{{\"request\": {}}}", restart_number_);
   if (waiting_.size() >= kMostWaiting) {
     return Error{Errc::kBusy,
@@ -89,7 +90,7 @@ Result<std::string> Reloader::run(const std::string& argument) {
   if (waits || (current_ && current_->number == number)) return std::string("{\"pending\": true}");
   return Error{
       Errc::kInvalidArgument,
-      fmt::format("\"{}\" is neither now, check nor the number of a request of the last {}",
+      fmt::format("\"{}\" is neither now nor check nor the number of one of the last {} requests",
                   argument.substr(0, 64), kKept)};
 }
 
@@ -118,12 +119,12 @@ Reloader::Done Reloader::tend() {
   return done;
 }
 
-// The body of the thread. Then it waits until it is stopped, as every thread must.
+// The body of the thread. After reading, it waits until it is stopped, as every thread must.
 void Reloader::read(const std::stop_token& stop, Progress& progress) {
   giveWay();
   ReadFile file;
   {
-    const Progress::Pause pause(progress);  // a file system may not answer
+    const Progress::Pause pause(progress);  // a file system may take long, or never answer
     file = readGuarded();
   }
   std::unique_lock lock(mutex_);
@@ -138,7 +139,7 @@ void Reloader::read(const std::stop_token& stop, Progress& progress) {
 Reloader::ReadFile Reloader::readGuarded() const {
   try {
     return read();
-  } catch (const std::exception& e) {  // of memory
+  } catch (const std::exception& e) {  // for example, no memory is left
     ReadFile failed;
     failed.answer.outcome = Outcome::kFailed;
     failed.answer.file = file_;
@@ -153,7 +154,8 @@ reload::Readers Reloader::process() const {
          (mirrors ? reload::kMirror : 0U);
 }
 
-// What a start checks beyond a reload, where it can have changed: the process would end for it.
+// Checks the changed settings for the faults that only a start finds, and that would end the
+// process when it starts again.
 void Reloader::checkStart(LoadedSettings& loaded, const std::vector<SettingChange>& changes) const {
   if (!options_.wall) return;
   if (concerns(changes, "/wall/render/gpu")) wall::checkRenderer(loaded);
@@ -187,7 +189,7 @@ Reloader::ReadFile Reloader::read() const {
   if (file.answer.outcome != Outcome::kDone || !options_.devices) return file;
   if (auto trained = devices::loadTrained(file.settings)) {
     file.trained = *std::move(trained);
-  } else {  // it was readable when it was checked
+  } else {  // a file was changed after readConfiguration() had checked it
     file.answer.outcome = Outcome::kInvalid;
     file.answer.findings.push_back(
         fmt::format("{}: /postures or /gestures cannot be used: {}", file_, trained.error().what));
@@ -237,15 +239,17 @@ void Reloader::report(const reload::Answer& answer) {
   if (!refusal.empty()) return parts_.services.failed(kService, refusal);
   parts_.services.ok(kService);
   if (answer.outcome == Outcome::kRestarts) {
-    return logInfo("reload: {} changed in {}, which only a start takes: merlind starts again",
-                   reload::restartReason(answer.plan), file_);
+    return logInfo(
+        "reload: {} changed in {}, which takes effect at a start only: merlind starts again",
+        reload::restartReason(answer.plan), file_);
   }
   for (const SettingChange& change : answer.plan.swapped) {
     logInfo("reload: {} was {} and is {}", change.pointer, orNothing(change.before),
             orNothing(change.after));
   }
   logInfo("reload: {} was read again; {}", file_,
-          answer.plan.swapped.empty() ? "nothing changed for this process" : "all is done");
+          answer.plan.swapped.empty() ? "nothing changed for this process"
+                                      : "all changes are in effect");
 }
 
 }  // namespace merlin

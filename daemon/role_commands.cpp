@@ -45,8 +45,9 @@ Answer request(const Parts& p, wall::WallLoop::Request what) {
   return done();
 }
 
-// A number outside the limits of what is shown is moved to them, since the panel and the page step
-// down from the least as well; the answer says which number is used.
+// A number outside the limits of the content that is shown is clamped to them and not refused,
+// because the panel and the page also step down from the least number. The answer has the number
+// that is used.
 Answer triangles(const Parts& p, const std::string& argument) {
   constexpr wall::Pace::Limits kWidest{4, 1'000'000'000};
   const auto number = numberOrAuto(argument, {kWidest.least, kWidest.most});
@@ -62,8 +63,8 @@ Answer triangles(const Parts& p, const std::string& argument) {
   return fmt::format(R"({{"used": {}}})", used);
 }
 
-// Reads as many numbers with blanks between them as `numbers` holds; false unless that is all, and
-// number i is at most most(i) in size.
+// Fills `numbers` from the text, in which blanks separate them. False if the text has fewer numbers
+// or anything after them, or if a number i is not from -most(i) to most(i).
 template <typename Number, std::size_t count, typename Most>
 bool readNumbers(std::string_view text, std::array<Number, count>& numbers, const Most& most) {
   const char* at = text.data();
@@ -71,14 +72,15 @@ bool readNumbers(std::string_view text, std::array<Number, count>& numbers, cons
   for (std::size_t i = 0; i < count; ++i) {
     while (at != end && *at == ' ') ++at;
     const auto [rest, error] = std::from_chars(at, end, numbers[i]);
-    // not std::abs(), which the least int does not have
+    // not std::abs(), which overflows for the least int
     if (error != std::errc() || !(numbers[i] >= -most(i) && numbers[i] <= most(i))) return false;
     at = rest;
   }
   return at == end;
 }
 
-// Six numbers: see the list of commands. The limits keep one command from losing the model.
+// Six numbers: see the list of commands. The limits keep a single command from moving the model out
+// of reach.
 Answer move(const Parts& p, std::string_view argument) {
   constexpr float kMostRadii = 10, kMostDegrees = 360;
   std::array<float, 6> step{};
@@ -99,7 +101,7 @@ Answer notice(const Parts& p, const std::string& text) {
   return shown ? done() : Answer(shown.error());
 }
 
-// The number of the request, for shm::WallContent::finished.
+// Answers with the request's number, which shm::WallContent::finished will have.
 Answer requestOf(const Result<std::uint32_t>& request) {
   if (!request) return request.error();
   return fmt::format("{{\"request\": {}}}", *request);
@@ -113,21 +115,21 @@ Answer rate(const Parts& p, const std::string& argument) {
   return done();
 }
 
-// Number of the last frame that is known: one after it shows what was asked for before.
+// The number of the newest known frame: a frame after it shows what was requested before this call.
 std::uint64_t framesOf(const Parts& p) {
   const auto stats = p.wall->segment().stats.read();
   return stats ? stats->frames : 0;
 }
 
-// The segment into which the signal of the output will be copied, and the number of the last frame
-// that is not it.
+// Answers with the segment into which the signal of the output will be copied, and with the number
+// of the newest frame: the copy is that of a later frame.
 Answer signal(const Parts& p, const std::string& output) {
   const auto segment = p.wall->outputs().signals().ask(output);
   if (!segment) return segment.error();
   return fmt::format("{{\"shared_memory\": \"{}\", \"after\": {}}}", *segment, framesOf(p));
 }
 
-// A bound input's action, asked for by a client.
+// Executes an action of the alignment for a client, as for an input that is bound to it.
 Answer alignAction(const Parts& p, std::string_view name) {
   wall::AlignInput input;
   const auto action = std::ranges::find(wall::kAlignActions, name);
@@ -153,13 +155,13 @@ Answer playlist(const Parts& p, const std::string& argument) {
   return done();
 }
 
-// Blank or freeze: on, or off again.
+// Switches blank or freeze on, or off if it is on.
 Answer toggle(const Parts& p, void (wall::Attendance::*what)()) {
   (p.wall->attendance().*what)();
   return done();
 }
 
-// An alignment, or a test card, is to be seen.
+// Counts as a use of the wall, so that an alignment or a test card can be seen.
 Answer seen(const Parts& p, Answer answer) {
   if (answer) p.wall->attendance().touch();
   return answer;
@@ -290,7 +292,7 @@ std::vector<status::Command> RoleCommands::of(CommandOf role) const {
   std::vector<status::Command> commands;
   for (const CommandInfo& c : kCommands) {
     if (c.role != role || c.bindable == Bindable::kHeld) continue;
-    if (c.name == "status" || c.name == "events") continue;  // the servers' own
+    if (c.name == "status" || c.name == "events") continue;  // added by the servers
     status::Command command{std::string(c.name), std::string(c.help), nullptr, nullptr};
     if (c.argument.empty())
       command.run = [this, name = c.name] { return run(name); };

@@ -39,8 +39,9 @@ Result<status::CurveServer> sampleServerKeys(const ServeSettings& s) {
   return status::CurveServer{s.samples_endpoint, *std::move(keys), {*std::move(clients), {}}};
 }
 
-// The same of a socket of a role for other machines, at `endpoint`: that which answers requests, or
-// that of the topics.
+// Address, keys and clients of a role's socket for other machines, at `endpoint`: the socket that
+// answers requests, or that of the topics; without an address if `endpoint` is empty. Errors: those
+// of the files with the keys.
 Result<status::CurveServer> commandServerKeys(const ServeSettings& s, const std::string& endpoint) {
   if (endpoint.empty()) return status::CurveServer{};
   auto keys = status::readKeyPair(s.commands_keys);

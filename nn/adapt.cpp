@@ -68,8 +68,8 @@ Error unknown(const std::string& posture, const PostureStatistics& statistics) {
   std::string names;
   for (const std::string& name : statistics.postures) names += names.empty() ? name : ", " + name;
   return {Errc::kInvalidArgument, "posture \"" + posture +
-                                      "\" is none of the network's, which are " + names +
-                                      "; a new posture needs training anew"};
+                                      "\" is not one of the network's, which are " + names +
+                                      "; a new posture needs a new training"};
 }
 
 Result<std::vector<Sample>> toSamples(std::span<const LabelledHand> hands,

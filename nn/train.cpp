@@ -66,12 +66,13 @@ std::optional<Error> invalid(std::span<const Example> examples, const TrainSetti
   }
   if (s.phi == Phi::kSignum)
     return error("phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
-  if (!(s.rate > 0) || !std::isfinite(s.rate)) return error(fmt::format("rate {} not > 0", s.rate));
+  if (!(s.rate > 0) || !std::isfinite(s.rate))
+    return error(fmt::format("rate {} is not > 0", s.rate));
   if (!(s.momentum >= 0 && s.momentum < 1)) {
-    return error(fmt::format("momentum {} not in [0, 1)", s.momentum));
+    return error(fmt::format("momentum {} is not in [0, 1)", s.momentum));
   }
-  if (s.max_iterations < 1) return error("max_iterations 0, not >= 1");
-  if (!(s.mse_limit >= 0)) return error(fmt::format("mse_limit {} not >= 0", s.mse_limit));
+  if (s.max_iterations < 1) return error("max_iterations is 0, not >= 1");
+  if (!(s.mse_limit >= 0)) return error(fmt::format("mse_limit {} is not >= 0", s.mse_limit));
   return std::nullopt;
 }
 

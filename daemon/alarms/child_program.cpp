@@ -31,11 +31,13 @@ Result<UniqueFd> fileOf(const std::string& text) {
       ::write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
       ::lseek(file.get(), 0, SEEK_SET) == 0;
   if (good) return file;
-  return Error{Errc::kIo, fmt::format("the event's file: {}", std::strerror(errno))};
+  return Error{Errc::kIo,
+               fmt::format("cannot make a file for the event: {}", std::strerror(errno))};
 }
 
-// In the child, which may only call what signal handlers may: our signals are not its. `failure`:
-// where the errno of execve() goes; closed by it otherwise.
+// Runs the program in the child, which may only call functions that are safe in signal handlers.
+// Sets the signals back to their defaults. `failure`: takes the errno of execv(); a success closes
+// it.
 [[noreturn]] void become(const std::vector<char*>& arguments, int input, int output, int failure,
                          pid_t parent) {
   ::setpgid(0, 0);
@@ -54,7 +56,7 @@ Result<UniqueFd> fileOf(const std::string& text) {
   ::_exit(127);
 }
 
-// Waits until the child has become the program, or has said why it cannot: then its errno, else 0.
+// Waits until the child runs the program (returns 0) or reports why it cannot (returns the errno).
 int failureOf(const UniqueFd& end) {
   int why = 0;
   ssize_t got = 0;
@@ -63,7 +65,7 @@ int failureOf(const UniqueFd& end) {
   return got == static_cast<ssize_t>(sizeof why) ? why : 0;
 }
 
-// Why a file cannot be executed whatever is in it; empty if it can.
+// Why a file cannot be executed, whatever its content; empty if it can.
 std::string whyNoProgram(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), X_OK) != 0)
@@ -71,10 +73,13 @@ std::string whyNoProgram(const std::string& path) {
   return S_ISREG(status.st_mode) ? "" : "it is not a file";
 }
 
-// The same of a script: by its beginning, as the kernel reads it. A file with a zero byte is
-// another kind of program, of which the kernel may know more kinds than ELF (binfmt_misc).
+// Why a file cannot be executed, by its beginning, as the kernel reads it: it is neither a script
+// whose interpreter can be executed nor another kind of program; empty if it can. A file with a
+// zero byte is taken for another kind, because the kernel may know more kinds than ELF
+// (binfmt_misc).
 std::string whyNoScript(std::string_view begin) {
-  constexpr const char* kNone = "it is no program; a script begins with a line such as #!/bin/sh";
+  constexpr const char* kNone =
+      "it is not a program; a script begins with a line such as #!/bin/sh";
   if (!begin.starts_with("#!")) return begin.find('\0') == std::string_view::npos ? kNone : "";
   begin = begin.substr(2, begin.find('\n') - 2);
   begin.remove_prefix(std::min(begin.find_first_not_of(" \t"), begin.size()));
@@ -90,7 +95,7 @@ std::string whyNotExecutable(const std::string& path) {
   std::string why = whyNoProgram(path);
   if (!why.empty()) return why;
   const auto begin = FileCopy::read(path, kReadByKernel);
-  return begin ? whyNoScript(begin->text()) : "";  // who may not read a program may execute it
+  return begin ? whyNoScript(begin->text()) : "";  // a program need not be readable
 }
 
 Error cannotBeExecuted(const std::string& path, std::string_view why) {
@@ -120,7 +125,7 @@ Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
   const auto child = startChild();
   if (!child) return child.error();
   if (*child == 0) become(arguments, file->get(), output->to.get(), failures->to.get(), parent);
-  ::setpgid(*child, *child);  // here too: whoever comes first
+  ::setpgid(*child, *child);  // in both processes: either may be first
   failures->to.reset();
   if (const int failure = failureOf(failures->from); failure != 0) {
     waitForChild(*child);
@@ -150,7 +155,7 @@ ChildProgram::~ChildProgram() {
 
 void ChildProgram::kill() noexcept { ::kill(-pid_, SIGKILL); }
 
-// Whoever writes without end is kept waiting by the pipe, not by us.
+// Reads a limited amount at a time: a program that writes without end has to wait for the pipe.
 void ChildProgram::readOutput() {
   constexpr int kMostReads = 16;
   std::array<char, 65536> bytes;  // NOLINT: filled by read
@@ -184,7 +189,7 @@ std::optional<std::string> ChildProgram::ended(Timestamp now) {
   }
   int status = 0;
   if (::waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
-  kill();  // what it left behind
+  kill();  // the processes that it left behind
   pid_ = -1;
   readOutput();
   if (too_long_) return "took longer than its time limit, and was ended";

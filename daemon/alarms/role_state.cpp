@@ -14,9 +14,10 @@ std::optional<std::string> RoleState::update(std::uint64_t generation, Timestamp
   if (std::exchange(missing_, false)) return fmt::format("the role {} runs again", role_);
   if (runs_.size() < kOftenStarts) return std::nullopt;
   const std::size_t starts = runs_.size();
-  runs_.clear();  // the next such time begins
-  return fmt::format("the role {} was started {} times within {:.0f} minutes: it does not stay",
-                     role_, starts, toSeconds(kOften) / 60);
+  runs_.clear();  // the count begins again
+  return fmt::format(
+      "the role {} was started {} times within {:.0f} minutes: it does not keep running", role_,
+      starts, toSeconds(kOften) / 60);
 }
 
 std::optional<std::string> RoleState::missed(Timestamp now) {

@@ -54,9 +54,9 @@ inline constexpr EventKind kWallEvent{
     "is too slow: look at the outputs of `merlin status`"};
 inline constexpr EventKind kPictureEvent{
     "picture",
-    "an output works and yet was found to show something else than what it was sent: black, an "
-    "older frame, parts of two frames, another program's picture; or shows it again: look at "
-    "`picture` of the outputs of `merlin status`"};
+    "an output works but does not show what it was sent: it shows black, an older frame, parts of "
+    "two frames or another program's picture; or it shows the right picture again: look at "
+    "`picture` of the outputs in `merlin status --json`"};
 inline constexpr EventKind kModelEvent{
     "model",
     "a content was replaced, or its file cannot be shown: the sentence says why; the content "
@@ -81,8 +81,8 @@ inline constexpr EventKind kFlightEvent{
     "fault"};
 inline constexpr EventKind kRoleEvent{
     "role",
-    "merlind ended and was not back within 15 s, or is back; only alarms tell it: look at "
-    "`systemctl status 'merlin-*'` and the journal"};
+    "merlind, or one of its two processes, has not run for 15 s, or runs again; it cannot report "
+    "this itself, so only alarms do: look at `systemctl status 'merlin-*'` and the journal"};
 // Routine: it happens whenever somebody moves a hand in that way.
 inline constexpr EventKind kGestureEvent{"gesture", "a hand has made a gesture"};
 

@@ -65,7 +65,7 @@ inline std::string unknownWord(const GivenCommand& given, const std::string& wor
   const std::string near = nearestWord(word, known);
   const std::string quoted = is_option ? excerpt(word) : fmt::format("\"{}\"", excerpt(word));
   if (is_option && near == word)
-    return fmt::format("{} has to stand behind the command: {} {}", quoted, given.words, quoted);
+    return fmt::format("{} has to come after the command: {} {}", quoted, given.words, quoted);
   if (!near.empty())
     return fmt::format("{} is not {}; did you mean {}?", quoted,
                        is_option ? "an option" : "a command", near);

@@ -27,7 +27,7 @@ CLI::Validator worded(const CLI::Validator& validator, const std::string& wanted
         bool valid = false;
         try {
           valid = validator(value).empty();
-        } catch (const CLI::ValidationError&) {  // of a unit that it does not know
+        } catch (const CLI::ValidationError&) {  // the value has a unit that CLI11 does not know
         }
         return valid ? std::string() : fmt::format("\"{}\" is not {}", excerpt(kept), wanted);
       },

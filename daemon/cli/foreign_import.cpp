@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Signals end the import instead of this process, until it is over.
+// While this object exists, signals end the import instead of this process.
 class HeldSignals {
  public:
   HeldSignals() {
@@ -34,7 +34,7 @@ class HeldSignals {
   HeldSignals& operator=(const HeldSignals&) = delete;
 
   int stop() const noexcept { return stop_.get(); }
-  // The signal that came has done what it was for.
+  // Consumes the signal that has ended the import.
   void take() const {
     signalfd_siginfo info{};
     [[maybe_unused]] const auto n = ::read(stop_.get(), &info, sizeof info);
@@ -127,14 +127,15 @@ std::string ForeignReport::text(const char* key) const {
 }
 
 Duration patienceFor(std::uint64_t bytes, std::uint64_t bytes_per_second) noexcept {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 44;  // of a file [bytes]
+  // Larger files count as this size [bytes].
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 44;
   return ImportChild::kPatience +
          std::chrono::seconds(static_cast<long>(std::min(bytes, kMost) / (10 * bytes_per_second)));
 }
 
 Result<ForeignReport> importForeign(const ForeignFile& file,
                                     const std::function<Result<Ok>(const std::string&)>& take) {
-  const HeldSignals signals;  // before the folder is there, which a signal would leave
+  const HeldSignals signals;  // before the folder exists: a signal would leave it behind
   const auto folder = WorkFolder::make(file.output);
   if (!folder) return folder.error();
   auto report = importInto(file, folder->path(), signals.stop(), take);

@@ -65,7 +65,7 @@ Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided&
   const Timestamp ready = clock.now() + fromSeconds(timing.pause_s);
   broken = listenUntil(guided, clock, false,
                        [&] { return timing.pause_s > 0 ? clock.now() >= ready : enterPressed(); });
-  if (broken) broken = guided.listen(false);  // what was on its way when Enter was pressed
+  if (broken) broken = guided.listen(false);  // discards samples that were on their way at Enter
   if (!broken) return broken.error();
   guided.begin(step);
   const Timestamp end = clock.now() + fromSeconds(timing.hold_s);

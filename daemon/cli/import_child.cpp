@@ -123,7 +123,7 @@ ImportChild::~ImportChild() {
   waitForChild(pid_);
 }
 
-// Takes what is there; false at the end.
+// Reads the bytes that have arrived; false at the end of the output.
 bool ImportChild::read() {
   std::array<char, 4096> bytes{};
   const ssize_t n = ::read(output_.get(), bytes.data(), bytes.size());

@@ -25,7 +25,7 @@ inline std::vector<std::string> divided(std::string_view text, char by) {
 
 // CLI11 puts a value's placeholder and the descriptions of its checks into one text: "FLOAT:FLOAT
 // in [1 - 9]", "TEXT:{left,right}". The project's own placeholder for words is "on|off";
-// "NAME|FILE" is none.
+// "NAME|FILE" does not list words.
 inline void setValue(const CLI::Option& option, manual::ProgramOption& facts) {
   const std::string whole = option.get_type_name();
   const std::size_t colon = whole.find(':');

@@ -136,9 +136,9 @@ Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon) {
   return roles;
 }
 
-// While a process starts another program it has no command line for a moment. A name it always has:
-// that of a program which was started by the link /proc/self/exe is "exe" until it gives itself
-// another (ProgramRestart). One that has ended and waits for its parent has no command line either.
+// A process that executes another program has no command line for a moment, but it always has a
+// name. A program that was started by the link /proc/self/exe has the name "exe" until it renames
+// itself (ProgramRestart). A zombie process has no command line either.
 bool isMerlind(std::uint32_t pid) {
   std::string program, state;  // "1234 (merlind) S ..."
   std::getline(std::ifstream(fmt::format("/proc/{}/cmdline", pid)), program, '\0');
@@ -198,8 +198,9 @@ Result<std::string> askRole(const DaemonAddress& daemon, const std::string& role
     }
     return status::ask(found.commands(), request.command, request.patience, request.argument);
   }
-  return Error{Errc::kInvalidArgument,
-               fmt::format("{}: none of these is the role {}", daemon.name(), role)};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: none of these endpoints belongs to the role {}", daemon.name(), role)};
 }
 
 }  // namespace merlin::cli

@@ -28,7 +28,7 @@ struct DaemonAddress {
 };
 
 struct FoundRole {
-  std::string role;  // "devices" or "wall"; empty: that of the other machine's endpoint
+  std::string role;  // "devices" or "wall"; empty: whichever the other machine's endpoint has
   shm::Endpoints endpoints;
   std::uint32_t pid = 0;         // of its process; one may have both roles
   std::uint64_t generation = 0;  // differs after each start

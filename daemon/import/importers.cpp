@@ -63,8 +63,8 @@ Result<Imported> importGrid(const Request& request, const Reports& reports) {
   return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
 }
 
-// A file that may be read and cannot be mapped is larger than the memory that is allowed, of which
-// the libraries take a part.
+// A file that can be read but not mapped is larger than what the libraries leave of the allowed
+// memory.
 Result<render::points::PointCloud> readPoints(const std::string& path) {
   const auto file = MappedFile::open(path);
   if (!file && file.error().code == Errc::kIo && ::access(path.c_str(), R_OK) == 0)
@@ -121,13 +121,14 @@ Result<Imported> importPoints(const Request& request, const Reports& reports) {
 
 Result<Ok> preparePoints(const char* /*program*/) { return Ok{}; }
 
-// What can be said of the file is said first.
+// Reads the file all the same, so that a fault of the file is reported first.
 Result<Imported> importPoints(const Request& request, const Reports& /*reports*/) {
   const auto cloud = readPoints(request.input);
   if (!cloud) return cloud.error();
   return Error{Errc::kUnsupported, request.input +
                                        ": this merlin-import was built without Open3D, which makes "
-                                       "surfaces of points (Debian: libopen3d-dev)"};
+                                       "surfaces of points; build it with Open3D (Debian: "
+                                       "libopen3d-dev)"};
 }
 
 #endif

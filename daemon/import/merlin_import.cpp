@@ -1,5 +1,5 @@
 // merlin-import: reads one file of another program's format, in a sandbox, and writes what MERLIN
-// shows. Started by `merlin image import` and `merlin mesh import`; what it says is for them.
+// shows. Started by `merlin image import` and `merlin mesh import`, which read its output.
 //
 // stdout, a line each: "lacks WHAT", "pixels N", "progress SHARE ITEMS", "note WHAT", then "done
 // FILE {JSON}" or "failed CODE WHY".
@@ -42,7 +42,7 @@ int usage() {
       "LENGTH] [--memory BYTES] [--cpu SECONDS]\n");
   for (const Importer& importer : importers())
     printError("  {}: {}\n", importer.kind, importer.help);
-  printError("For people there are: merlin image import IN -o OUT, merlin mesh import IN -o OUT\n");
+  printError("People use: merlin image import IN -o OUT, or merlin mesh import IN -o OUT\n");
   return kExitBadInput;
 }
 
@@ -67,7 +67,8 @@ bool parse(std::string_view text, T& value) {
   return error == std::errc() && rest == text.data() + text.size();
 }
 
-// The ending of a file's name becomes a part of names that a library sees.
+// The ending of a file's name. Only a few plain characters are allowed, because it becomes part of
+// names that a library sees.
 bool parse(std::string_view text, std::string& ending) {
   const bool plain = std::ranges::all_of(
       text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
@@ -87,7 +88,7 @@ bool parse(std::string_view text, std::optional<std::array<double, 2>>& range) {
   return true;
 }
 
-// It is only compared.
+// Any name is allowed, because it is only compared.
 bool parseName(std::string_view text, std::string& name) {
   name = text;
   return true;
@@ -121,7 +122,8 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   return o;
 }
 
-// The result may be a third larger than its raw data, by its coarser levels, and a little more.
+// The coarser levels make a result a third larger than its raw data; the limit of 1.5 times and
+// 64 MiB leaves some room.
 Result<Ok> limitResult(std::uint64_t raw_bytes) {
   return limitFileSize(raw_bytes / 2 * 3 + (std::uint64_t{64} << 20));
 }
@@ -137,7 +139,7 @@ Result<Imported> runWithinMemory(const Importer& importer, const Request& reques
 }
 
 int run(const Importer& importer, const char* program, const Options& options) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever started this no longer waits
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with the program that started this one
   ::setenv("TMPDIR", options.request.folder.c_str(), 1);
   if (const auto prepared = importer.prepare(program); !prepared) return failed(prepared.error());
   std::vector<std::string> inputs = {options.request.input};

@@ -113,7 +113,7 @@ constexpr int kForbidden[] = {SYS_socket,
                               SYS_shmget,
                               SYS_memfd_secret};
 
-// A filter of system calls; those of another architecture's numbers end the process.
+// Sets a filter of system calls; a call with the number of another architecture ends the process.
 bool limitCalls() {
   if (kMachine == 0) return false;
   constexpr std::uint32_t kOtherNumbers = 0x4000'0000;  // x32
@@ -154,7 +154,8 @@ void addFiles(const fs::path& folder, std::vector<std::string>& files) {
 constexpr const char* kUsualFolders[] = {"textures", "Textures", "images", "maps", "materials"};
 
 // The visible folders in a folder, the usual ones first, in case there are too many files. A link
-// counts among the usual ones alone: an unpacked model may have brought one to anywhere.
+// to a folder counts only under a usual name, because an unpacked model may contain links to
+// anywhere.
 std::vector<fs::path> foldersIn(const fs::path& folder) {
   constexpr std::size_t kMostLooked = 65536;
   std::vector<fs::path> folders, others;
@@ -183,7 +184,7 @@ std::vector<std::string> filesBeside(const std::string& input) {
 }
 
 Result<Ok> limitFileSize(std::uint64_t bytes) {
-  ::signal(SIGXFSZ, SIG_IGN);  // then it is an error of write()
+  ::signal(SIGXFSZ, SIG_IGN);  // exceeding the limit is then an error of write()
   return limit(RLIMIT_FSIZE, bytes, "file sizes");
 }
 
@@ -191,13 +192,13 @@ Result<std::vector<std::string>> closeSandbox(const std::vector<std::string>& in
                                               const std::string& folder, const Limits& limits) {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
     return Error{Errc::kIo, fmt::format("PR_SET_NO_NEW_PRIVS: {}", std::strerror(errno))};
-#if !defined(MERLIN_ANY_SANITIZER)  // these reserve terabytes
+#if !defined(MERLIN_ANY_SANITIZER)  // sanitizers reserve terabytes
   if (const auto set = limit(RLIMIT_AS, limits.memory_bytes, "memory"); !set) return set.error();
 #endif
   if (const auto set = limit(RLIMIT_CPU, limits.cpu_s, "CPU time"); !set) return set.error();
   if (const auto set = limit(RLIMIT_CORE, 0, "core dumps"); !set) return set.error();
   if (const auto set = limit(RLIMIT_NOFILE, 128, "open files"); !set) return set.error();
-  ::unshare(CLONE_NEWNET);  // where this is allowed, there is no network either way
+  ::unshare(CLONE_NEWNET);  // if it is not allowed, limitCalls() forbids the network
   std::vector<std::string> lacking;
   if (!limitFiles(inputs, folder)) lacking.emplace_back("Landlock, which limits files");
   if (!limitCalls()) lacking.emplace_back("seccomp, which limits the network and other programs");

@@ -24,7 +24,7 @@ ServerKeeper::ServerKeeper(std::string name, Start start)
     : name_(std::move(name)), start_(std::move(start)), failure_("not started yet") {}
 
 void ServerKeeper::tend(Timestamp now) {
-  std::unique_ptr<Server> ended;  // destroyed after the lock, because that waits for its thread
+  std::unique_ptr<Server> ended;  // destroyed without the lock: it waits for its thread
   {
     const std::lock_guard lock(mutex_);
     if (server_ && !server_->failure().empty()) {

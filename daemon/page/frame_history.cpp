@@ -18,7 +18,7 @@ void FrameHistory::follow(const shm::Channel<shm::FrameTrace>& trace, std::uint6
     read_ = 0;
   }
   const std::uint64_t count = trace.count();
-  if (count < read_) read_ = 0;  // not the wall's doing: the segment may be written by others
+  if (count < read_) read_ = 0;  // a wall never does this, but others may write
   if (count - read_ >= shm::kHistory) read_ = count - (shm::kHistory - 1);
   for (; read_ < count; ++read_) {
     if (const auto frame = trace.at(read_)) add(*frame);

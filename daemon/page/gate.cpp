@@ -24,12 +24,13 @@ std::optional<Answer> refuseHost(const Request& request, const std::optional<std
   if (host && isOwnHost(*host, settings.host_names)) return std::nullopt;
   return errorAnswer(
       403,
-      fmt::format("the Host \"{}\" is none of this page's: use an address or localhost, or set "
-                  "/page/host_names",
+      fmt::format("the Host \"{}\" is not a name of this page: use an address or localhost, or add "
+                  "the name to /page/host_names",
                   excerpt(request.header("host"))));
 }
 
-// Other sites may neither read nor command, whatever the browser would let them do.
+// Refuses what pages of other sites ask for, reading and commands alike, whatever the browser
+// allows.
 std::optional<Answer> refuseSite(const Request& request) {
   const std::string& origin = request.header("origin");
   const auto authority = authorityOf(origin);
@@ -78,7 +79,8 @@ std::optional<Answer> refuse(const Request& request, Needs needs, const GateSett
   const auto host = hostOf(request.header("host"));
   if (auto refused = refuseHost(request, host, settings)) return refused;
   if (auto refused = refuseSite(request)) return refused;
-  // A proxy on this machine has a loopback address, and may ask under a loopback name.
+  // A proxy on this machine has a loopback address, and may ask under a loopback name: what it
+  // passed on for others needs the token.
   const bool free =
       needs == Needs::kReading && settings.loopback && isLoopbackHost(*host) && !request.passed_on;
   if (needs == Needs::kNothing || free) return std::nullopt;

@@ -19,13 +19,14 @@
 namespace merlin::page {
 namespace {
 
-constexpr std::size_t kMemory = 16 << 10;  // of a connection, for everything but the content
-// The library counts a connection that was closed here until it has noticed.
+constexpr std::size_t kMemory = 16 << 10;  // bytes a connection; the content is not in it
+// Connections that the library is allowed beyond our limit: it still counts one that was closed
+// here until it notices.
 constexpr unsigned kClosing = 64;
-constexpr std::size_t kMostAccepted = 32;  // in a round
+constexpr std::size_t kMostAccepted = 32;  // connections in a round
 constexpr Duration kNoDescriptors = std::chrono::seconds(1);
 
-// What every answer has.
+// Headers that every answer has.
 constexpr std::pair<const char*, const char*> kSecurityHeaders[] = {
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
@@ -86,7 +87,7 @@ struct HttpServer::Client {
   Timestamp until{};     // closed then, unless a request was completed
   bool busy = false;     // a request is being answered
   bool closing = false;  // was closed here; the library will notice
-  TokenBucket own;       // its requests that no other client can use up
+  TokenBucket own;       // requests that only this client can use up
 };
 
 struct HttpServer::Exchange {
@@ -97,7 +98,7 @@ struct HttpServer::Exchange {
   bool too_large = false, handled = false;
 };
 
-// Callbacks of the library, which is in C: nothing that is thrown may reach it.
+// Callbacks of the library, which is written in C: no exception may leave them.
 struct HttpServer::Library {
   static int descriptorOf(MHD_Connection* connection) {
     const MHD_ConnectionInfo* const info =
@@ -230,7 +231,8 @@ Result<Ok> HttpServer::start() {
       kMemory, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
   const MHD_DaemonInfo* const info =
       library_ ? MHD_get_daemon_info(library_, MHD_DAEMON_INFO_EPOLL_FD) : nullptr;
-  if (!info) return Error{Errc::kIo, fmt::format("libmicrohttpd: {}", std::strerror(errno))};
+  if (!info)
+    return Error{Errc::kIo, fmt::format("libmicrohttpd does not start: {}", std::strerror(errno))};
   epoll_ = info->epoll_fd;
   return Ok{};
 }
@@ -341,7 +343,7 @@ void HttpServer::closeSilent(Timestamp now) {
     if (client.closing || now < client.until) continue;
     client.closing = true;
     ::shutdown(fd, SHUT_RDWR);
-    if (client.occupant.established && !client.busy) continue;  // a browser that asked no more
+    if (client.occupant.established && !client.busy) continue;  // a browser without a request
     count(client.busy ? &net::ServerReport::slow : &net::ServerReport::silent,
           fmt::format("closed {}: {} within {:.0f} s", net::peerName(client.occupant.peer),
                       client.busy ? "it did not take its answer" : "it completed no request",
@@ -349,7 +351,7 @@ void HttpServer::closeSilent(Timestamp now) {
   }
 }
 
-// A client that asks for more than its own share takes from what is left for all.
+// A client that asks for more than its own share takes from the requests that all clients share.
 bool HttpServer::mayAsk(MHD_Connection* connection) {
   const Timestamp now = clock_.now();
   Client* const client = Library::clientOf(*this, connection);
@@ -361,7 +363,8 @@ std::optional<Answer> HttpServer::respond(Exchange& exchange) {
   if (!mayAsk(exchange.connection))
     return errorAnswer(429, "there are too many requests; try again later");
   if (exchange.too_large)
-    return errorAnswer(413, fmt::format("the content has more than {} bytes", kMostBodyBytes));
+    return errorAnswer(
+        413, fmt::format("the content of the request has more than {} bytes", kMostBodyBytes));
   return handle_(exchange.request, exchange.id);
 }
 

@@ -16,7 +16,8 @@
 namespace merlin::page {
 namespace {
 
-// A metric of a role's document. `to`: its name here; empty: the same. `scale`: to the base unit.
+// A metric of a role's document. `name`: its name there. `to`: its name in /metrics; empty: the
+// same. `scale`: factor that takes the value to the base unit.
 struct Described {
   std::string_view name, to, help;
   double scale = 1;
@@ -25,14 +26,15 @@ struct Described {
 constexpr Described kWall[] = {
     {"frames_total", "", "Frames drawn and presented."},
     {"deadlines_total", "", "Deadlines that passed while something moved."},
-    {"late_total", "", "Deadlines of these that were missed."},
+    {"late_total", "", "Deadlines that were missed while something moved."},
     {"longest_late", "longest_late_frames", "Longest sequence of late frames since the start."},
-    {"detail_cost", "", "Cost of the last frame's detail, for a model its triangles."},
+    {"detail_cost", "", "Cost of the last frame's detail; for a model, its triangles."},
     {"triangles", "", "Triangles of the last frame."},
     {"rate_held_hz", "rate_held_hertz", "Deadlines met in the last second."},
     {"rate_now_hz", "rate_now_hertz", "Desired rate, divided by rate_divisor."},
-    {"work_ms", "work_seconds", "Work of the last frame, from its begin to its last pixel.", 1e-3},
-    {"utilisation", "utilisation_ratio", "Work of the last second's moving frames per period."},
+    {"work_ms", "work_seconds", "Work of the last frame, from its start to its last pixel.", 1e-3},
+    {"utilisation", "utilisation_ratio",
+     "Mean work of the last second's moving frames, share of the period."},
     {"late_share", "late_ratio", "Share of deadlines that were missed, since the start."},
     {"late_share_1s", "late_ratio_1s", "Share of deadlines missed in the last second."},
     {"late_share_1min", "late_ratio_1min", "Share of deadlines missed in the last minute."},
@@ -43,7 +45,7 @@ constexpr Described kWall[] = {
     {"rate_divisor", "", "1; 2 or 4 while even the coarsest detail takes too long."},
     {"scale_divisor", "", "2 while moving tiles are drawn at half size, otherwise 1."},
     {"operator_coarser", "", "1 while the operator's view is coarser to save time."},
-    {"ladder_steps_total", "", "Changes of these degradations, up and down."},
+    {"ladder_steps_total", "", "Changes of rate_divisor, scale_divisor and operator_coarser."},
     {"head_room", "head_room_ratio", "Time reserve of the governor, share of the period."},
     {"cost_fixed_ms", "cost_fixed_seconds", "Cost model: the part of a frame's work that is fixed.",
      1e-3},
@@ -54,10 +56,10 @@ constexpr Described kWall[] = {
     {"outputs_wrong", "", "Outputs that were found black, frozen, torn, or with another picture."},
 };
 
-// Of a device; in the document the device's name and _ precede the name.
+// Metrics of a device; in the document, the device's name and _ precede these names.
 constexpr Described kDevice[] = {
     {"ok", "", "1 while the device works."},
-    {"samples_total", "", "Samples of the device."},
+    {"samples_total", "", "Samples received from the device."},
     {"reconnects_total", "", "Times that the device was connected again."},
     {"bad_packets_total", "", "Packets that could not be read."},
     {"bad_bytes_total", "", "Bytes that belong to no packet."},
@@ -73,7 +75,8 @@ struct Family {
 };
 using Families = std::map<std::string, Family>;
 
-// What other names have becomes _, and no name begins with a digit, since ours begin with merlin_.
+// The name with _ for each character that Prometheus does not allow. A first digit needs no change,
+// because merlin_ is put before the name.
 std::string validName(std::string_view name) {
   std::string valid(name.substr(0, 100));
   for (char& c : valid) {
@@ -115,7 +118,8 @@ std::optional<int> sixteenthOf(std::string_view name) {
   return number;
 }
 
-// Frames whose work took at most le periods, as the quantiles of Prometheus need them.
+// Adds the numbers of frames whose work took at most le periods, a cumulative histogram from which
+// Prometheus can compute quantiles.
 void addWork(Families& families, const std::map<int, double>& sixteenths) {
   double sum = 0;
   int number = 0;
@@ -178,7 +182,7 @@ void addPage(Families& families, const PageMetrics& page) {
   add("page_connections", "Connections to the page.", page.connections);
   add("page_accepted_total", "Connections that were accepted.", page.accepted);
   add("page_sent_away_total", "Connections that were refused or closed.", page.sent_away);
-  add("page_requests_total", "Requests.", page.requests);
+  add("page_requests_total", "Requests to the page.", page.requests);
   add("page_refused_total", "Requests that were answered by an error.", page.refused);
   add("page_pictures_total", "Pictures that were encoded.", page.pictures);
 }

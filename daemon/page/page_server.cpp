@@ -32,8 +32,8 @@ RouteSettings routeSettings(const PageServerSettings& s) {
           s.page.metrics};
 }
 
-// A number that grows over restarts, so that a browser's number of an earlier run is no number of
-// this one.
+// The first number of this run: higher than the numbers of earlier runs, so that a number that a
+// browser has from an earlier run is not used again.
 std::uint64_t firstNumber() {
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);
@@ -193,12 +193,12 @@ Answer PageServer::phone(const std::string& origin) const {
   return json(phoneDocument({*address, "", *std::move(code)}));
 }
 
-// Nothing if the client has to wait for a newer one.
+// The answer, or nothing if the client has to wait for a newer picture.
 std::optional<Answer> PageServer::pictureFor(const PictureRoute& route) {
   const auto picture = pictures_.newest({viewOf(route.view), route.width});
   if (!picture)
-    return errorAnswer(503, fmt::format("{} other views and sizes are looked at already",
-                                        PictureMaker::kMostKinds));
+    return errorAnswer(
+        503, fmt::format("{} other views and sizes are in use already", PictureMaker::kMostKinds));
   if (!picture->jpeg || picture->number == route.after) return std::nullopt;
   return pictureAnswer(*picture);
 }

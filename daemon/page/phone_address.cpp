@@ -25,10 +25,10 @@ Result<std::string> phoneAddress(const std::string& origin, const PagePlace& pla
   if (isLoopback(place.address)) {
     return Error{
         Errc::kNotFound,
-        fmt::format("a phone cannot reach the page: it listens at {} alone, which is this "
-                    "machine. Set \"address\": \"0.0.0.0\" in /page of the configuration, or "
-                    "put a proxy before it, and restart the page; daemon/page/README.md "
-                    "says who can listen then",
+        fmt::format("a phone cannot reach the page: it listens only at {}, which no other machine "
+                    "reaches. Set \"address\": \"0.0.0.0\" in /page of the configuration, or "
+                    "put a proxy before the page, and restart it; daemon/page/README.md says who "
+                    "can then read the traffic",
                     place.address)};
   }
   std::string address = place.address;

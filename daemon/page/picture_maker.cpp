@@ -87,7 +87,7 @@ void PictureMaker::loop(const std::stop_token& stop, Progress& progress) {
   }
 }
 
-// Forgets what nobody looks at any more, since a view holds a copy of the frame.
+// Deletes the views that nobody looks at any more, because each holds a copy of the frame.
 void PictureMaker::dropUnwanted(const std::vector<PictureKind>& kinds) {
   std::erase_if(views_, [&](const View& v) {
     return std::ranges::none_of(kinds,
@@ -119,7 +119,8 @@ PictureMaker::View& PictureMaker::viewOf(const rfb::View& view) {
   return views_.back();
 }
 
-// Whether the last picture of this kind shows the view after so many changes, or nobody wants it.
+// Whether no new picture of this kind is needed: the last one shows the view after so many changes,
+// or nobody wants the kind any more.
 bool PictureMaker::isShownBy(const PictureKind& kind, std::uint64_t changes) const {
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find(kinds_, kind, &Kind::kind);
@@ -131,7 +132,7 @@ void PictureMaker::make(const PictureKind& kind, const View& view) {
   const render::image::Image image =
       scaleDown(view.shown->pixels(), view.shown->width(), view.shown->height(), kind.width);
   auto jpeg = render::image::encodeJpeg(image.width, image.height, image.pixels, kQuality);
-  if (!jpeg) return;  // no memory: perhaps for the next one
+  if (!jpeg) return;  // no memory; the next picture may succeed
   auto bytes = std::make_shared<const std::string>(*std::move(jpeg));
   {
     const std::lock_guard lock(mutex_);

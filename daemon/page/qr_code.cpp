@@ -15,13 +15,13 @@ Result<QrCode> qrCode(std::string_view text) {
                         reinterpret_cast<const unsigned char*>(text.data()), 0, QR_ECLEVEL_M),
       free);
   if (!made) {
-    if (errno == ENOMEM) return Error{Errc::kIo, "a QR code: no memory"};
+    if (errno == ENOMEM) return Error{Errc::kIo, "no memory for a QR code"};
     return Error{Errc::kInvalidArgument,
                  fmt::format("a QR code cannot hold these {} bytes", text.size())};
   }
   QrCode code{made->width, {}};
   const auto count = static_cast<std::size_t>(code.side) * static_cast<std::size_t>(code.side);
-  // The lowest bit is the colour.
+  // The lowest bit of a module is its colour; 1 is dark.
   for (std::size_t i = 0; i < count; ++i)
     code.dark.push_back(static_cast<std::uint8_t>(made->data[i] & 1U));
   return code;

@@ -26,7 +26,8 @@ bool isReading(const Request& request) {
 }
 
 Answer wrongMethod(const char* allowed) {
-  Answer answer = errorAnswer(405, fmt::format("allowed here: {}", allowed));
+  Answer answer =
+      errorAnswer(405, fmt::format("the method is not allowed here; allowed: {}", allowed));
   answer.headers.emplace_back("Allow", allowed);
   return answer;
 }
@@ -91,7 +92,8 @@ const JsonNode* memberOf(const JsonNode& object, std::string_view key) {
 
 // {"command": NAME, "argument": TEXT}; the argument only where the command needs one.
 Route commandRoute(const Request& request) {
-  constexpr const char* kForm = "allowed is {\"command\": \"NAME\", \"argument\": \"TEXT\"}";
+  constexpr const char* kForm =
+      "the content must be {\"command\": \"NAME\", \"argument\": \"TEXT\"}";
   if (!request.header("content-type").starts_with("application/json"))
     return errorAnswer(415, "the content's type must be application/json");
   const auto parsed = parseJson(request.body);
@@ -135,7 +137,7 @@ constexpr Path kPaths[] = {
     {"/api/command", Needs::kCommand, commandRoute},
     {"/api/phone", Needs::kCommand,
      [](const Request& request) -> Route { return PhoneRoute{request.header("origin")}; }},
-    // Whether a token is accepted.
+    // Answers whether the token is accepted.
     {"/api/token", Needs::kCommand,
      [](const Request&) -> Route {
        return Answer::text(200, "application/json", "{\"ok\":true}\n");
@@ -147,7 +149,7 @@ Route fileRoute(const Request& request, const PageFile& file) {
   return FileRoute{&file};
 }
 
-// `needs` and what follows of a path that exists.
+// The route of a path that exists, once the request's method and token were checked.
 Route checked(const Request& request, const RouteSettings& settings, const Path& path) {
   const bool reads = path.needs != Needs::kCommand;
   if (reads ? !isReading(request) : request.method != "POST")

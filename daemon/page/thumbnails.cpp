@@ -29,7 +29,7 @@ std::vector<PageContent> firstOf(std::vector<PageContent> contents) {
 }  // namespace
 
 Result<std::string> thumbnailOf(const render::image::Image& image) {
-  // No wider than what leaves the height within its limit.
+  // The greatest width with which the height, too, stays within its limit.
   const auto width =
       std::clamp<std::int64_t>(std::int64_t{Thumbnails::kMostHeight} * image.width / image.height,
                                1, Thumbnails::kMostWidth);
@@ -79,8 +79,8 @@ void Thumbnails::loop(const std::stop_token& stop, Progress& progress) {
   }
 }
 
-// Reads the next content's file that is due: one that was not read yet, or, while somebody looks,
-// not for a minute.
+// Reads the next content's file that is due: one that was never read or, while somebody looks at
+// the contents, was last read a minute ago or earlier.
 void Thumbnails::readOne(Timestamp now, Progress& progress) {
   bool looked_at = false;
   {
@@ -93,7 +93,7 @@ void Thumbnails::readOne(Timestamp now, Progress& progress) {
     read_at = now;
     const Progress::Pause pause(progress);  // a disk may be slow
     if (!contents_[i].read) {
-      note(i, fileStamp(contents_[i].path) ? "" : contents_[i].path + ": is not there");
+      note(i, fileStamp(contents_[i].path) ? "" : contents_[i].path + ": does not exist");
       continue;
     }
     const auto picture = contents_[i].read();
@@ -107,7 +107,7 @@ void Thumbnails::readOne(Timestamp now, Progress& progress) {
   }
 }
 
-// What the wall shows now; nothing while there is none, or not of this release.
+// What the wall shows now; nothing while no wall of this release runs.
 std::optional<Showing> Thumbnails::showing(Timestamp now) {
   const shm::WallSegment* const wall = wall_.get(now);
   if (!wall) return std::nullopt;
@@ -131,7 +131,7 @@ void Thumbnails::followWall(Timestamp now) {
   if (found == contents_.end() || found->read) return;
   (void)picture_.update(now);
   const auto after = showing(now);
-  // Not if another one came up, or something covered it, while the frame was copied.
+  // Not if another content came up, or something covered it, while the frame was copied.
   if (!picture_.card().empty() || !after || after->content != before->content || after->covered)
     return;
   render::image::Image image{picture_.width(), picture_.height(), {}};
@@ -148,7 +148,7 @@ void Thumbnails::keepModel(std::size_t place, const render::image::Image& image)
   if (!written) logWarning("a thumbnail is not kept over restarts: {}", written.error().what);
 }
 
-// Pictures of models from earlier runs.
+// Reads the pictures of models that earlier runs have kept.
 void Thumbnails::readFiles(Progress& progress) {
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < contents_.size(); ++i) {
@@ -160,7 +160,7 @@ void Thumbnails::readFiles(Progress& progress) {
   files_.removeOthers(keys);
 }
 
-// Whether it is another one than before.
+// Takes the picture as the newest of the content; false if it is the same as before.
 bool Thumbnails::keep(std::size_t place, std::string jpeg) {
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[place];

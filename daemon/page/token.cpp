@@ -42,7 +42,8 @@ bool isToken(std::string_view text) {
          });
 }
 
-// The token of a file that only its owner and group could read, and only its owner write.
+// The token in the file; nothing unless this user owns the file, only the user and the file's group
+// can read it, and only the user can write it.
 std::optional<std::string> tokenIn(const UniqueFd& file) {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) ||

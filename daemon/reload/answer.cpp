@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongest = 200;  // bytes of a value, for a person
 
-// Not through the middle of a UTF-8 character.
+// Shortens a long text, but not in the middle of a UTF-8 character.
 std::string cut(const std::string& text) {
   if (text.size() <= kLongest) return text;
   std::size_t end = kLongest;
@@ -27,7 +27,7 @@ Json valuesOf(const std::vector<SettingChange>& changes) {
   return list;
 }
 
-// Without values, which may name files with secrets.
+// The settings without their values, which may name files with secrets.
 Json pointersOf(const std::vector<SettingChange>& changes) {
   Json list = Json::array();
   for (const SettingChange& change : changes) list.push_back(change.pointer);
@@ -58,7 +58,7 @@ std::string answerText(const Answer& answer) {
 }
 
 std::string refusal(const Answer& answer) {
-  constexpr const char* kKept = "the settings before it stay in effect";
+  constexpr const char* kKept = "the previous settings stay in effect";
   switch (answer.outcome) {
     case Outcome::kDone:
     case Outcome::kRestarts: return {};

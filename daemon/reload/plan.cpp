@@ -42,8 +42,8 @@ constexpr Taker kTakers[] = {
     // Measured files are read at the start.
     {"/wall/outputs/*/correction/mpcdi", kWall, Part::kRestart},
     {"/wall/outputs/*/correction/mpcdi_region", kWall, Part::kRestart},
-    // The initial view, the model's size and the screen's distance are in what was measured and
-    // laid out at the start.
+    // The initial view, the model's size and the screen's distance were used at the start, to
+    // measure the contents and to lay out the wall.
     {"/wall/scene", kWall, Part::kRestart},
     {"/wall/scene/ball_speed_m_s", kWall, Part::kScene},
     {"/wall/scene/ball_turn_deg_s", kWall, Part::kScene},
@@ -148,7 +148,7 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
     if (i < plan.lines.size() && plan.lines[i]) adoptDevice(from.list[i], keep_ports, to.list[i]);
     if (plan.has(Part::kHand)) to.list[i].person = from.list[i].person;
   }
-  // What a change of other settings of a hand would have needed is a restart.
+  // All settings of the hands: a change of the other ones would have needed a restart.
   if (plan.has(Part::kHand) || plan.has(Part::kGestures)) to.hands = from.hands;
   if (plan.has(Part::kHand)) to.turn_s = from.turn_s;
   if (plan.has(Part::kPostures)) {
@@ -164,7 +164,7 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
     for (std::size_t i = 0; i < std::min(outputs.size(), fresh.wall.outputs.size()); ++i)
       outputs[i].correction = fresh.wall.outputs[i].correction;
   }
-  // All of it: a change of the rest of the scene would have needed a restart.
+  // The whole scene: a change of its other settings would have needed a restart.
   if (plan.has(Part::kScene)) running.wall.scene = fresh.wall.scene;
 }
 

@@ -59,7 +59,8 @@ constexpr double kMostRadii = 10, kMostDegrees = 360;
 
 }  // namespace
 
-// A drag with another button goes on over the panel.
+// Whether the panel takes the event. It takes none of a drag with another button, which goes on
+// over the panel.
 bool InputMap::panelTakes(unsigned buttons, int x, int y) {
   const bool drags_otherwise = (buttons & ~kLeft) != 0 && (buttons & kLeft) == 0;
   return !drags_otherwise && panel_.point(x, y, (buttons & kLeft) != 0);

@@ -51,7 +51,8 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--clients", o.settings.clients, "Maximum number of clients at a time")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  app.add_option("--rate", o.settings.rate_hz, "Pictures per second that a client gets at most")
+  app.add_option("--rate", o.settings.rate_hz,
+                 "Maximum number of pictures per second for each client")
       ->type_name("HZ")
       ->check(CLI::Range(1, 60))
       ->capture_default_str();
@@ -86,7 +87,7 @@ void warnOfCard(const rfb::RfbSettings& settings) {
   picture.update(SystemClock().now());
   std::string card = picture.card();
   std::replace(card.begin(), card.end(), '\n', ' ');
-  if (!card.empty()) logWarning("for now clients see a card: {}", oneLine(card));
+  if (!card.empty()) logWarning("for now clients see only this message: {}", oneLine(card));
 }
 
 int serve(Options& options) {

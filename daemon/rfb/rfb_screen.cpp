@@ -21,7 +21,7 @@ void dropLine(const char* /*format*/, ...) {}
 
 struct RfbScreen::Library {
   std::string name, password;
-  char* passwords[2] = {nullptr, nullptr};  // a list that a null ends
+  char* passwords[2] = {nullptr, nullptr};  // a list, ended by a null pointer
   InputMap* input = nullptr;
   rfbScreenInfoPtr screen = nullptr;
   rfbClientPtr client = nullptr;  // null before it is accepted, and after it has left
@@ -39,7 +39,7 @@ void RfbScreen::Library::setUp(const ScreenSettings& settings) {
   password = settings.password;
   screen->screenData = this;
   screen->desktopName = name.c_str();
-  screen->port = screen->ipv6port = 0;  // 0, and a socket of inetd: it does not listen
+  screen->port = screen->ipv6port = 0;  // with an inetd socket: the library does not listen
   screen->autoPort = FALSE;
   screen->httpDir = nullptr;
   screen->permitFileTransfer = FALSE;

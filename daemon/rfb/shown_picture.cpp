@@ -49,7 +49,7 @@ Result<bool> ShownPicture::readFrame(Timestamp now) {
   if (!opened) return opened.error();
   const std::uint64_t newest = reader_->newest();
   if (newest == sequence_ || newest == 0) return false;
-  if (!reader_->copy(frame_)) return false;  // overwritten each time: the next one may be luckier
+  if (!reader_->copy(frame_)) return false;  // overwritten while it was copied
   sequence_ = frame_.info.sequence;
   opened_ = now;
   return true;
@@ -73,7 +73,8 @@ Result<Ok> ShownPicture::openReader(Timestamp now, std::uint64_t generation) {
     reader_.reset();
     return Error{Errc::kNotFound,
                  fmt::format("The merlind \"{}\" puts no frames into shared memory\n{}", instance_,
-                             stale ? "What is there is of an earlier one." : opened.error().what)};
+                             stale ? "The frames that are there are from an earlier run."
+                                   : opened.error().what)};
   }
   // The first frames of a restarted merlind have the numbers of earlier ones.
   if (!reader_ || reader_->generation() != generation) sequence_ = 0;

@@ -13,7 +13,7 @@ namespace {
 using render::out::CapturedFrame;
 using render::out::framebuffer::TileRectangle;
 
-constexpr int kMostSide = 65535;  // of the protocol [px]
+constexpr int kMostSide = 65535;  // the protocol's limit [px]
 constexpr int kBlock = 64;        // [px]: small enough that a moving pointer sends little
 
 // The header is another program's: the name may lack its NUL.

@@ -45,7 +45,7 @@ SettingFaults validate(const ServeSettings& s) {
   for (const Endpoint& a : all) {
     for (const Endpoint* b = all; b != &a; ++b) {
       if (!a.address.empty() && a.address == b->address)
-        faults.push_back({a.pointer, fmt::format("is the same address as that of serve{}; each "
+        faults.push_back({a.pointer, fmt::format("is the same address as that of /serve{}; each "
                                                  "needs a port of its own",
                                                  b->pointer)});
     }

@@ -127,7 +127,7 @@ void SpnavClient::request(Words words, std::string& out) {
   append(out, words);
 }
 
-// Answers a query of spacenavd's configuration: everything is passed on as the device sends it.
+// Answers a query of spacenavd's configuration: MERLIN passes on everything as the device sends it.
 // `words[1]` is the axis or button of the query. False for an unknown query and for requests that
 // set something, because the ball is configured in MERLIN.
 bool SpnavClient::configuration(std::uint32_t number, Words& words) const {

@@ -57,7 +57,7 @@ net::ServerLimits limits() {
   net::ServerLimits l;
   l.places = {.all = 16, .per_peer = 12};  // all clients have the same address
   l.input_bytes = kVrpnLongest;
-  l.output_bytes = 1 << 18;  // one second of all devices, besides the socket's buffer
+  l.output_bytes = 1 << 18;  // holds one second of all devices' messages
   l.messages_per_s = l.messages_burst = 500;
   return l;
 }
@@ -149,7 +149,7 @@ Result<net::Session::Taken> VrpnSession::receive(std::string_view input, std::si
   }
   while (taken.messages < most) {
     const VrpnFront front = readVrpn(input.substr(taken.bytes));
-    if (front.broken) return Error{Errc::kMalformed, "a message with an invalid length"};
+    if (front.broken) return Error{Errc::kMalformed, "it sent a message with an invalid length"};
     if (!front.message) break;
     handle(*front.message, output);
     taken.bytes += front.bytes;

@@ -30,7 +30,7 @@ class Words {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     const bool good = error == std::errc() && end == word.data() + word.size() &&
-                      std::abs(value) <= most;  // false for what is no number
+                      std::abs(value) <= most;  // false for NaN
     return good ? std::optional(value) : std::nullopt;
   }
   std::optional<int> index() {

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 64, kLongestPath = 4096;
 constexpr std::size_t kMostOutputs = 64;
-constexpr int kLargest = 1 << 20;  // of sizes and numbers of points
+constexpr int kLargest = 1 << 20;  // the largest size, and number of points
 constexpr double kLeastRate = 1, kMostRate = 240;
 constexpr std::uint64_t kMostMinutes = 5'000'000'000;  // of local time since 1970
 constexpr const char* kVersionKey = "merlin_state";
@@ -179,7 +179,7 @@ State stateOf(JsonView root) {
 
 }  // namespace
 
-// A line for each output and step: short enough for the limits of what is read again.
+// Each output and each step has a line of its own.
 std::string stateText(const State& state) {
   std::string text = fmt::format("{{\"{}\": {},\n", kVersionKey, kStateVersion);
   if (state.rate_hz) text += fmt::format("\"rate_hz\": {},\n", lineOf(*state.rate_hz));

@@ -25,7 +25,7 @@ Error failed(const std::string& path, int error) {
   return {Errc::kIo, fmt::format("{}: {}", path, std::strerror(error))};
 }
 
-// One byte more than a state may have, so that a longer file is seen to be too long.
+// Reads at most one byte more than a state may have, so that the parser refuses a longer file.
 Result<std::string> textOf(const std::string& path) {
   const auto copy = FileCopy::read(path, kMostJsonBytes + 1);
   if (!copy) return copy.error();
@@ -37,7 +37,7 @@ std::string folderOf(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-// After a rename: the folder's entries are on the disk when this returns.
+// Writes the folder's entries to the disk, so that a rename outlives a power failure.
 Result<Ok> syncFolder(const std::string& folder) {
   const UniqueFd fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd.valid() && ::fsync(fd.get()) == 0) return Ok{};
@@ -49,11 +49,12 @@ Result<Ok> rename(const std::string& from, const std::string& to) {
   return failed(to, errno);
 }
 
-// Makes the file of the name `from` known as `to` as well, in place of what had that name.
+// Gives the file `from` the second name `to`, in place of the file that had it. `meanwhile`: a name
+// that it has in between.
 Result<Ok> linkAs(const std::string& from, const std::string& to, const std::string& meanwhile) {
   ::unlink(meanwhile.c_str());
   if (::link(from.c_str(), meanwhile.c_str()) != 0) {
-    if (errno == ENOENT) return Ok{};  // the first one has no previous one
+    if (errno == ENOENT) return Ok{};  // the first state has no previous one
     return failed(to, errno);
   }
   return rename(meanwhile, to);
@@ -80,7 +81,7 @@ Result<std::string> StateFolder::read() { return textOf(path_); }
 
 Result<std::string> StateFolder::readPrevious() { return textOf(path_ + ".previous"); }
 
-// The new one is whole under a name of its own before the old one gets its second name.
+// The new state is complete under a name of its own before the old one gets its second name.
 Result<Ok> StateFolder::write(const std::string& text) {
   const std::string folder = folderOf(path_), next = path_ + ".next";
   std::error_code error;
@@ -109,8 +110,9 @@ std::string findStateFile(const std::string& wanted, const std::string& instance
 
 namespace {
 
-// "etc-merlin-merlin.json.wall.last-good": configurations of the same name may be in several
-// folders, and each role checks other files. A dash of the name is doubled.
+// The path of a kept configuration, such as "FOLDER/etc-merlin-merlin.json.wall.last-good". The
+// name has the whole path and the role, because configurations in several folders may have the same
+// name, and each role checks other files. A dash in the path is doubled.
 std::string lastGoodIn(const std::string& folder, const std::string& configuration,
                        std::string_view role) {
   const std::string path = absolutePath(configuration);

@@ -15,14 +15,14 @@ Result<State> parsed(const Result<std::string>& text, const std::string& name) {
   return parseState(*text, name);
 }
 
-// Of a damaged file: what became of the one before it.
+// What is used instead of a damaged state file.
 const char* outcomeOf(const Result<State>& previous) {
   if (previous) return "the previous state is used";
   if (previous.error().code == Errc::kNotFound)
-    return "there is no previous one: the configuration holds";
+    return "there is no previous one: the configuration's values are used";
   if (previous.error().code == Errc::kMalformed)
-    return "the previous one is damaged too: the configuration holds";
-  return "the previous one cannot be used either: the configuration holds";
+    return "the previous one is damaged too: the configuration's values are used";
+  return "the previous one cannot be used either: the configuration's values are used";
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ void StateKeeper::load() {
   switch (last.error().code) {
     case Errc::kMalformed: return loadPrevious(last.error());
     case Errc::kNotFound:
-      // Also after a stop between the two renames of a damaged one.
+      // Also if merlind ended after putAside() and before the next write().
       if (auto previous = parsed(files_->readPrevious(), files_->name()); previous) {
         state_ = *std::move(previous);
         notices_.push_back(
@@ -63,7 +63,7 @@ void StateKeeper::load() {
   }
   may_save_ = false;
   fault_ = fmt::format(
-      "{}; the file is left alone: the configuration holds, and changes are not "
+      "{}; the file is left alone: the configuration's values are used, and changes are not "
       "saved",
       last.error().what);
 }
@@ -124,7 +124,7 @@ void StateKeeper::save() {
   saving_ = false;
   unsaved_ = unsaved_ || !written;
   fault_ = written ? std::string()
-                   : fmt::format("{}; it is tried again every {:.3g} s", written.error().what,
+                   : fmt::format("{}; saving is tried again every {:.3g} s", written.error().what,
                                  toSeconds(try_again_));
   settled_.notify_all();
 }
@@ -146,9 +146,9 @@ void StateKeeper::loop(const std::stop_token& stop, Progress& progress) {
     }
     tried = std::chrono::steady_clock::now();
     const bool last = stop.stop_requested();
-    const Progress::Pause pause(progress);  // a disk may take its time
+    const Progress::Pause pause(progress);  // writing to a disk may take long
     save();
-    if (last) return;  // whatever comes of it
+    if (last) return;  // even if it failed
   }
 }
 

@@ -32,7 +32,8 @@ void checkButtons(const EvdevSettings& settings, SettingFaults& faults) {
     if (seen.insert(settings.buttons[i]).second) continue;
     faults.push_back(
         {fmt::format("/evdev/buttons/{}", i),
-         fmt::format("is \"{}\" once more; each key can be one button", settings.buttons[i])});
+         fmt::format("is \"{}\", which is listed before; each key can be only one button",
+                     settings.buttons[i])});
   }
 }
 

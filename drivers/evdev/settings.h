@@ -23,10 +23,10 @@ struct EvdevSettings {
 };
 
 inline constexpr const char* kAxisForms =
-    "the kernel's name of an axis without ABS_ in lower case (x, y, z, rx, ry, rz, throttle, "
-    "rudder, "
-    "wheel, gas, brake, hat0x ... hat3y), with - before it if it is reversed; two names with - "
-    "between them, for a pair of triggers; and none";
+    "the kernel's name of an axis, in lower case and without ABS_ (x, y, z, rx, ry, rz, throttle, "
+    "rudder, wheel, gas, brake, hat0x ... hat3y), for example rx; such a name after a minus sign, "
+    "if the axis is reversed: -rx; two names joined by a minus sign, for a pair of triggers, the "
+    "second of which acts in the opposite direction: rz-z; and the word none, for no axis";
 
 // Finds invalid axes and buttons, and a port that cannot be that of an input device. Pointers:
 // "/evdev/axes", "/evdev/axes/INDEX", "/evdev/buttons", "/evdev/buttons/INDEX", "/port".

@@ -302,19 +302,19 @@ std::array<float, 4> quaternionOf(const std::array<float, 3>& angles_deg) noexce
 }
 
 std::string_view meaningOf(char error) noexcept {
-  if (error >= 'a' && error <= 'c') return "a transmitter driver";
-  if (error >= 'd' && error <= 'f') return "a receiver gain";
+  if (error >= 'a' && error <= 'c') return "fault of a transmitter driver";
+  if (error >= 'd' && error <= 'f') return "fault of a receiver's gain";
   switch (error) {
-    case 'g': return "a coil";
+    case 'g': return "fault of a coil";
     case 'j': return "receiver too near: saturated";
     case 'k': return "receiver too far or unplugged: low signal";
     case 'l': return "a receiver without a signal";
-    case 'm': return "memory checksum";
+    case 'm': return "wrong memory checksum";
     case 's': return "unit vector reset";
     case 't':
     case 'u': return "compensation";
     case 'v': return "no synchronisation";
-    case 'w': return "writing its memory";
+    case 'w': return "fault while writing its memory";
     case 'x': return "outside the motion box";
     case 'y': return "outside the angles allowed";
     default: return "";

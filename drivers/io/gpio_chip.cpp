@@ -33,7 +33,7 @@ class ChipLines final : public GpioLines {
     if (number < 0) return Ok{};
     if (static_cast<unsigned>(number) >= ::gpiod_chip_num_lines(chip_))
       return Error{Errc::kInvalidArgument,
-                   fmt::format("{} has no line {}; it has {}, from 0 on", name_, number,
+                   fmt::format("{} has no line {}; it has {} lines, from 0 on", name_, number,
                                ::gpiod_chip_num_lines(chip_))};
     gpiod_line* line = ::gpiod_chip_get_line(chip_, static_cast<unsigned>(number));
     const int done = !line    ? -1

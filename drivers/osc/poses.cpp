@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kPosition = 3, kPose = 7;  // numbers in a message
 
 constexpr const char* kOtherAddress = "OSC messages come, but none to the address of a station";
-constexpr const char* kOtherStation = "poses come only of stations that \"stations\" does not have";
+constexpr const char* kOtherStation =
+    "poses come only from stations that \"stations\" does not name";
 constexpr const char* kNotFormed = "messages of poses have neither 3 nor 7 numbers";
 constexpr const char* kTooFar = "poses come from beyond 25 m: is \"scale\" right?";
 constexpr const char* kNoNumbers = "poses come with values that are not numbers";

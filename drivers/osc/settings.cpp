@@ -41,10 +41,9 @@ void checkStations(const OscSettings& settings, SettingFaults& faults) {
   if (good && !names.empty()) return;
   faults.push_back(
       {"/osc/stations",
-       fmt::format(
-           "is \"{}\"; needed are 1 to {} names of at most {} characters, without spaces, "
-           "/ and any of #*,?[]{{}}, each another one (\"\" for a station that is not used)",
-           fmt::join(settings.stations, "\", \""), kStations, kLongestName)});
+       fmt::format("is \"{}\"; needed are 1 to {} names of at most {} characters, without spaces, "
+                   "/ and any of #*,?[]{{}}, each only once (\"\" for a station that is not used)",
+                   fmt::join(settings.stations, "\", \""), kStations, kLongestName)});
 }
 
 }  // namespace

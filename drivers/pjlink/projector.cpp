@@ -179,7 +179,7 @@ void Projector::switched(Command command, const Answer& answer, Timestamp now) {
     accepted_at_ = now;
     return;
   }
-  refusal_ = fmt::format("does not accept to be switched {} ({}); it is tried again",
+  refusal_ = fmt::format("refuses to be switched {} ({}); it is tried again",
                          command == Command::kPowerOn ? "on" : "off", errorText(answer.code));
 }
 

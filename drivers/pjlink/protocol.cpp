@@ -98,7 +98,7 @@ Result<std::optional<Answer>> Session::take(std::string_view line) {
     return std::optional<Answer>();
   }
   if (expected_.empty())
-    return Error{Errc::kMalformed, fmt::format("sends \"{}\", unasked", shown(line))};
+    return Error{Errc::kMalformed, fmt::format("sends \"{}\" without being asked", shown(line))};
   if (!beginsWith(line, expected_)) {
     return Error{Errc::kMalformed,
                  fmt::format("answers \"{}\" where {}... was due", shown(line), expected_)};

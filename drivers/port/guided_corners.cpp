@@ -59,7 +59,7 @@ Result<SurfacePlace> GuidedCorners::end() {
                       length, kLeastSide));
     if (step_ == kBottomLeft &&
         isAlongX(way) == isAlongX(between(corners_[kTopLeft], corners_[kTopRight])))
-      return refuse("it lies in the direction of the top right corner");
+      return refuse("it lies in the same direction as the top right corner");
   }
   corners_[step_] = place;
   return place;

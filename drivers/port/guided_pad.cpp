@@ -14,7 +14,7 @@ constexpr GuidedStep kSteps[] = {
     {"rest", "take your hands off it"},
     {"right",
      "move what is to move the model to the right, as far as it goes, and hold it there; "
-     "nothing: the model cannot be moved so"},
+     "if nothing is moved, the model cannot be moved this way"},
     {"up", "the same for up"},
     {"towards you", "the same for towards you"},
     {"tilt", "the same for a turn of the model that brings its top towards you"},

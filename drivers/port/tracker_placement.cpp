@@ -50,8 +50,8 @@ Result<int> nearestAxis(const std::array<double, 3>& origin, const std::array<do
   return Error{
       Errc::kMalformed,
       fmt::format("the {} axis lies {:.0f} degrees off the nearest axis that is sent ({} are "
-                  "allowed): hold the station more exactly, or turn the frame where the "
-                  "tracker is served",
+                  "allowed): hold the station more exactly, or turn the axes in the "
+                  "tracker's server",
                   name, off_deg, kMostOff_deg)};
 }
 

@@ -17,7 +17,7 @@ constexpr std::int64_t kLatest = 100;
 // Larger values, such as pixels, are rejected.
 constexpr double kOutside = 0.25;
 
-constexpr const char* kNotFormed = "a TUIO message is not formed as TUIO 1.1 has it";
+constexpr const char* kNotFormed = "a TUIO message does not have the form of TUIO 1.1";
 constexpr const char* kNoShare =
     "positions come that are not from 0 to 1: does the tracker send pixels?";
 constexpr const char* kTooMany = "more than 64 fingers or objects come at once";

@@ -13,8 +13,9 @@ constexpr Duration kPoseTime = std::chrono::seconds(2);  // without a pose befor
 constexpr const char* kTypes[] = {kVrpnPoseType};
 
 constexpr const char* kNoneCame = "the server has the device, but no pose of it comes";
-constexpr const char* kLeft = "the server has the device no more";
-constexpr const char* kOtherSensors = "poses come only of sensors that \"stations\" does not have";
+constexpr const char* kLeft = "the server no longer has the device";
+constexpr const char* kOtherSensors =
+    "poses come only from sensors that \"stations\" does not name";
 constexpr const char* kTooFar = "poses come from beyond 25 m: is \"scale\" right?";
 constexpr const char* kNoNumbers = "poses come with values that are not numbers";
 constexpr const char* kNoRotation = "the orientations that come are not unit quaternions";

@@ -8,8 +8,8 @@ namespace {
 enum Type : std::size_t { kButton, kButtons, kChannels };
 constexpr const char* kTypes[] = {kVrpnButtonType, kVrpnButtonsType, kVrpnChannelsType};
 
-constexpr const char* kNotDescribed = "the server has not described it";
-constexpr const char* kLeft = "the server has the device no more";
+constexpr const char* kNotDescribed = "the server has not described the device";
+constexpr const char* kLeft = "the server no longer has the device";
 constexpr const char* kNoPad = "the server serves neither buttons nor analogs";
 
 }  // namespace

@@ -26,7 +26,8 @@ void checkButtons(const VrpnPadSettings& settings, SettingFaults& faults) {
     if (number && seen.insert(*number).second) continue;
     faults.push_back(
         {fmt::format("/vrpn_pad/buttons/{}", i),
-         number ? fmt::format("is \"{}\" once more; each button of the server can be one button",
+         number ? fmt::format("is \"{}\", which is listed before; each button of the server can be "
+                              "only one button",
                               settings.buttons[i])
                 : fmt::format("is \"{}\"; allowed are the server's numbers of buttons, 0 to {}",
                               settings.buttons[i], kVrpnButtons - 1)});
@@ -44,7 +45,7 @@ SettingFaults validate(const VrpnPadSettings& settings, const LineSettings& line
   if (settings.rest == settings.full) {
     faults.push_back(
         {"/vrpn_pad/full", fmt::format("is {}, as \"rest\" is; needed is a channel's value at full "
-                                       "deflection, which is another one than at rest",
+                                       "deflection, which differs from that at rest",
                                        settings.full)});
   }
   return faults;

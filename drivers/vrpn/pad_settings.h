@@ -25,8 +25,9 @@ struct VrpnPadSettings {
 };
 
 inline constexpr const char* kChannelForms =
-    "the server's number of a channel, 0 to 127, with - before it if it is reversed; two numbers "
-    "with - between them, for a pair of triggers; and none";
+    "the server's number of a channel, 0 to 127, for example 3; such a number after a minus sign, "
+    "if the channel is reversed: -3; two numbers joined by a minus sign, for a pair of triggers, "
+    "the second of which acts in the opposite direction: 5-2; and the word none, for no channel";
 
 // Finds an invalid name, invalid axes and buttons, equal values of `rest` and `full`, and a port of
 // the wrong kind. Pointers, relative to the device: "/port", "/vrpn_pad/device",

@@ -25,7 +25,7 @@ void checkName(const std::string& name, const char* pointer, SettingFaults& faul
   const std::size_t at = name.find('@');
   if (at != std::string::npos) {
     faults.push_back({pointer, fmt::format("is \"{}\"; needed is the name alone, \"{}\": the host "
-                                           "belongs into the port, tcp://HOST:3883",
+                                           "belongs in the port, tcp://HOST:3883",
                                            name, name.substr(0, at))});
   } else if (name.empty() || name.size() > kLongestName) {
     faults.push_back({pointer, fmt::format("has {} characters; allowed are 1 to {}", name.size(),

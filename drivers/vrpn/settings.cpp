@@ -17,8 +17,8 @@ void checkStations(const VrpnSettings& settings, SettingFaults& faults) {
   if (end != used.begin() && !repeated) return;
   faults.push_back(
       {"/vrpn/stations",
-       fmt::format("is {}; needed is a sensor for at least one station, and for each station "
-                   "another one ({} for a station that is not used)",
+       fmt::format("is {}; needed is a sensor for at least one station, and no sensor for "
+                   "two stations ({} for a station that is not used)",
                    fmt::join(settings.stations, ", "), VrpnSettings::kNoSensor)});
 }
 

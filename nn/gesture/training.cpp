@@ -204,7 +204,7 @@ Result<Examples> examplesOf(std::span<const LabelledStroke> strokes) {
   if (examples.of.empty())
     return Error{
         Errc::kInvalidArgument,
-        "no gesture in it: in no take that has a gesture's name the hand moved far and fast "
+        "no gesture in it: in no take with a gesture's name did the hand move far and fast "
         "enough for a stroke; record it again with brisk movements"};
   if (examples.of.size() > kMostGestures)
     return Error{Errc::kInvalidArgument,

@@ -47,7 +47,7 @@ Result<std::vector<View>> viewsOf(std::span<const range::RangeImage> scans, Fuse
     return Error{Errc::kInvalidArgument,
                  fmt::format("{} scans of {} pixels take {} MB besides their files; the limit "
                              "(--memory, by default the free memory) leaves {} MB: fuse fewer "
-                             "scans, or give more",
+                             "scans, or give more memory",
                              scans.size(), pixels, need >> 20, settings.memory >> 20)};
   settings.memory -= pixels * kPixelBytes;
   std::vector<View> views;
@@ -92,7 +92,7 @@ Result<Grid> gridOf(std::span<const View> views, const FuseSettings& settings) {
   if (longest / settings.voxel <= kMost) return grid;
   return Error{
       Errc::kInvalidArgument,
-      fmt::format("voxels of {:.4g} are {:.3g} along an axis; allowed are {}: --voxel "
+      fmt::format("voxels of {:.4g} make {:.3g} along an axis; allowed are {}: --voxel "
                   "{:.3g} would fit",
                   settings.voxel, longest / settings.voxel, kMost, 1.01 * longest / kMost)};
 }

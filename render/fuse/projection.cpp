@@ -67,15 +67,15 @@ std::optional<Place> Projection::at(const Point& p) const {
 std::string inverseFaultOf(const range::RangeImage& image) {
   const range::Geometry& g = image.geometry;
   if (g.scanner == Scanner::kElevation)
-    return "is an elevation map; fused are scans that are orthogonal, spinning or pinhole";
+    return "is an elevation map; only orthogonal, spinning and pinhole scans can be fused";
   if (g.scanner == Scanner::kRays)
-    return "has points with a ray each; fused are scans that are orthogonal, spinning or pinhole";
+    return "has points with a ray each; only orthogonal, spinning and pinhole scans can be fused";
   if (g.scanner != Scanner::kSpinning) return {};
   for (std::size_t r = 1; r < g.beams.size(); ++r) {
     if (!(g.beams[r].altitude_rad < g.beams[r - 1].altitude_rad))
       return fmt::format(
-          "row {} of its table of angles is not below the row before it; fused are "
-          "spinning scans whose rows go from the top to the bottom",
+          "row {} of its table of angles is not below the row before it; only "
+          "spinning scans whose rows go from the top to the bottom can be fused",
           r + 1);
   }
   return {};

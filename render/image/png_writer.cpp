@@ -34,7 +34,7 @@ PngRows rowsOf(int width, int height, std::span<const std::uint8_t> pixels, bool
 // Callbacks of libpng; the I/O pointer that it passes is a WriteBytes.
 void writeChunk(png_structp png, png_bytep data, png_size_t size) {
   const auto& write = *static_cast<const WriteBytes*>(png_get_io_ptr(png));
-  if (!write(std::as_bytes(std::span(data, size)))) png_error(png, "the file takes no more");
+  if (!write(std::as_bytes(std::span(data, size)))) png_error(png, "the file cannot be written");
 }
 void flushNothing(png_structp) {}
 void keepQuiet(png_structp, png_const_charp) {}

@@ -90,9 +90,9 @@ class SceneReader {
     const auto& notes = textures_.notes();
     built.notes.insert(built.notes.end(), notes.begin(), notes.end());
     if (transforms_ > 0)
-      built.notes.push_back(
-          fmt::format("left out: the {} of {} textures, which lie otherwise than in the model",
-                      linear_ ? "rotations" : "scales, offsets and rotations", transforms_));
+      built.notes.push_back(fmt::format(
+          "left out: the {} of {} textures, which therefore lie otherwise than in the model",
+          linear_ ? "rotations" : "scales, offsets and rotations", transforms_));
     if (others_ > 0) built.notes.push_back(fmt::format("left out: {} lines and points", others_));
     if (coloured_pictures_ > 0)
       built.notes.push_back(

@@ -226,7 +226,8 @@ Result<std::optional<std::int64_t>> cornersOf(const SoShape& shape) {
   std::int64_t sum = 0;
   for (int i = 0; i < numbers->getNum(); ++i) {
     if ((*numbers)[i] < 0)
-      return malformed(fmt::format("its numVertices has {} beside others", (*numbers)[i]));
+      return malformed(fmt::format(
+          "its numVertices has {} beside other values; -1 is allowed alone", (*numbers)[i]));
     sum += (*numbers)[i];
   }
   return std::optional(sum);

@@ -130,7 +130,7 @@ void readScale(Cards& cards, range::GridHead& head) {
   }
   if (!unit.empty() && !head.header.scale)
     head.notes.push_back(
-        fmt::format("BUNIT {} is not a length that is known", oneLine(excerpt(unit))));
+        fmt::format("BUNIT {} is not a known unit of length", oneLine(excerpt(unit))));
   if (const auto scale = cards.number("SCALE")) head.header.scale = scale;
 }
 

@@ -145,7 +145,8 @@ class GdalGrid final : public GridSource {
     const double dx = std::hypot(t[1], t[4]), dy = std::hypot(t[2], t[5]);
     if (!placed || !(dx > 0 && dy > 0 && dx < 1e15 && dy < 1e15)) return;
     if (t[2] != 0 || t[4] != 0)
-      head_.notes.emplace_back("the map is turned against its projection; the mesh is not");
+      head_.notes.emplace_back(
+          "the map is rotated against the axes of its projection; the mesh is not");
     south_first_ = t[5] > 0;
     east_first_ = t[1] < 0;
     const auto height = static_cast<double>(head_.height), width = static_cast<double>(head_.width);

@@ -51,7 +51,7 @@ Result<const json*> arrayOf(const json& object, const char* name) {
   static const json kEmpty = json::array();
   const json* found = memberOf(object, name);
   if (!found) return &kEmpty;
-  if (!found->is_array()) return malformed(fmt::format("{} is no array", name));
+  if (!found->is_array()) return malformed(fmt::format("{} is not an array", name));
   return found;
 }
 
@@ -63,7 +63,7 @@ Result<std::optional<std::string_view>> textOf(std::string_view file) {
   const auto* p = reinterpret_cast<const std::uint8_t*>(file.data());
   if (loadLe32(p + 4) != 2) return std::optional<std::string_view>();
   const std::size_t length = loadLe32(p + kHead);
-  if (file.substr(kHead + 4, 4) != "JSON") return malformed("its first chunk is no JSON");
+  if (file.substr(kHead + 4, 4) != "JSON") return malformed("its first chunk is not JSON");
   if (length > file.size() - kHead - kChunkHead)
     return malformed(fmt::format("its first chunk has {} bytes, {} are there", length,
                                  file.size() - kHead - kChunkHead));
@@ -85,7 +85,7 @@ Result<Ok> checkExtensions(const json& model) {
   const auto required = arrayOf(model, "extensionsRequired");
   if (!required) return required.error();
   for (const json& name : **required) {
-    if (!name.is_string()) return malformed("extensionsRequired has what is no name");
+    if (!name.is_string()) return malformed("extensionsRequired has an entry that is not a name");
     const auto& text = name.get_ref<const std::string&>();
     if (std::ranges::find(kHarmless, text) != std::end(kHarmless)) continue;
     return Error{Errc::kUnsupported,

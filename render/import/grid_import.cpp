@@ -26,7 +26,7 @@ Result<std::unique_ptr<GridSource>> openGrid(const GridInput& input) {
                  "file"};
   if (fits) return openFits(in, input.hdu);
   if (!input.hdu.empty())
-    return Error{Errc::kInvalidArgument, "--hdu is for FITS files, and this is none"};
+    return Error{Errc::kInvalidArgument, "--hdu is for FITS files, and this is not one"};
   // GDAL takes an absolute path for a file's; other names could be addresses or databases.
   std::error_code error;
   const auto path = std::filesystem::absolute(in, error);

@@ -41,8 +41,8 @@ const image::ImageFile* ModelTextures::named(const std::string& name) {
     if (!image && isForbidden(path))
       return Error{image.error().code,
                    image.error().what +
-                       " (read are visible files in the model's folder and in "
-                       "its visible folders, 4096 in all; put it beside the model)"};
+                       " (only visible files in the model's folder and in its "
+                       "visible folders are read, 4096 in all; put it beside the model)"};
     return image;
   });
 }
@@ -52,7 +52,8 @@ const image::ImageFile* ModelTextures::inside(const std::string& name,
   return once(name, [&]() -> Result<image::ImageFile> {
     auto image = image::decodeImage(file);
     if (!image)
-      return Error{image.error().code, "the texture " + name + " inside: " + image.error().what};
+      return Error{image.error().code,
+                   "the texture " + name + " inside the model: " + image.error().what};
     image->file.assign(file.begin(), file.end());
     return image;
   });

@@ -95,7 +95,7 @@ std::optional<ValueRange> rangeFor(VipsImage* image, const PyramidOptions& optio
   const bool dark = !isMeasured(image) && (!found || found->high >= kMostOfDarkGrey);
   if (dark) return std::nullopt;  // 16-bit grey is kept as it is
   const ValueRange range = found.value_or(ValueRange{});
-  reports.note(found ? fmt::format("{} are shown, which are all but a thousandth at either end; "
+  reports.note(found ? fmt::format("{} are shown: all but a thousandth of them at either end; "
                                    "--range LOW HIGH sets others",
                                    textOf(range))
                      : "it holds no numbers, and is black");

@@ -134,7 +134,8 @@ std::string elevationFault(const Geometry& g) {
 
 std::string poseFault(const Pose& pose) {
   for (const double x : pose) {
-    if (!(std::abs(x) <= 1e9)) return fmt::format("the camera transform has the number {}", x);
+    if (!(std::abs(x) <= 1e9))
+      return fmt::format("the camera transform has the number {}; allowed are -1e9 to 1e9", x);
   }
   const auto row = [&](std::size_t r) {
     return Vector{pose[4 * r], pose[4 * r + 1], pose[4 * r + 2]};

@@ -114,7 +114,7 @@ Result<Scan> scan(const Scene& scene, const ScanSettings& settings, const range:
     result.oblique += row.oblique;
     result.lost += row.lost;
   }
-  if (result.met == 0) return Error{Errc::kMalformed, "none of the rays meets it"};
+  if (result.met == 0) return Error{Errc::kMalformed, "none of the rays meets the mesh"};
   return result;
 }
 

@@ -131,11 +131,12 @@ TEST(Migrate, SettingsOfADriverThatTheDeviceDoesNotHaveAreLeftOutAndNamed) {
   ASSERT_TRUE(migrated) << migrated.error().what;
   ASSERT_EQ(migrated->changes.size(), 3u);
   EXPECT_EQ(migrated->changes[1],
-            "/devices/tracker: left out are settings of the driver fastrak (hemisphere1, stylus), "
-            "since the device's driver is vrpn");
-  EXPECT_EQ(migrated->changes[2],
-            "/devices/ball: left out are settings of the driver spacenav (dead_zone), since the "
-            "device's driver is spaceball");
+            "/devices/tracker: the settings of the driver fastrak (hemisphere1, stylus) are left "
+            "out, since the device's driver is vrpn");
+  EXPECT_EQ(
+      migrated->changes[2],
+      "/devices/ball: the settings of the driver spacenav (dead_zone) are left out, since the "
+      "device's driver is spaceball");
   const auto loaded = loadSettings(migrated->text, "");
   EXPECT_EQ(test::findingsOf(loaded), "");
   EXPECT_EQ(loaded.settings.devices.list[1].own.vrpn.device, "Wand");
@@ -166,9 +167,9 @@ TEST(Migrate, WhatNoVersionKnewIsLeftForTheCheck) {
   EXPECT_EQ(number.error().what, "/devices/ball is not an object");
   const auto both = migrate(R"({"devices": {"gpio": {}}, "gpio": {}})");
   ASSERT_FALSE(both);
-  EXPECT_EQ(both.error().what,
-            "has both the object /devices, of which /gpio is made, and /gpio: bring them together "
-            "by hand");
+  EXPECT_EQ(
+      both.error().what,
+      "has both the object /devices, from which /gpio is made, and /gpio: merge them by hand");
 }
 
 TEST(Migrate, WhatIsOfThisVersionStaysByteByByte) {

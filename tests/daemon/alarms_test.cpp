@@ -221,7 +221,7 @@ TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
     return checked ? std::string("started") : checked.error().what;
   };
   const std::string begin = script + ": cannot be executed: ";
-  const std::string none = "it is no program; a script begins with a line such as #!/bin/sh";
+  const std::string none = "it is not a program; a script begins with a line such as #!/bin/sh";
   const std::string names = "its first line names the interpreter ";
   for (const char* text : {"echo\n", "", "#", "#!", "#! \n/bin/sh\n"})
     EXPECT_EQ(whatOf(text), begin + none) << text;
@@ -296,7 +296,8 @@ TEST(RoleStateTest, TellsOfARoleThatDoesNotStay) {
       const auto said = wall.update(generation++, from + i * apart);
       if (!said) continue;
       ++told;
-      EXPECT_EQ(*said, "the role wall was started 5 times within 10 minutes: it does not stay");
+      EXPECT_EQ(*said,
+                "the role wall was started 5 times within 10 minutes: it does not keep running");
     }
     return told;
   };

@@ -236,14 +236,14 @@ TEST_F(Day, OfVisitorsAnOperatorProjectorsAndTwoRestarts) {
 08:55:00 the middle projector answers after 2 s, the right one refuses
 09:00:00   projectors: switched on by the schedule
 09:00:00   panel: warming
-09:00:07   projector right: off, refused (does not accept to be switched on (ERR3, not available at this time); it is tried again)
+09:00:07   projector right: off, refused (refuses to be switched on (ERR3, not available at this time); it is tried again)
 09:00:08   projector left: warming, ok
 09:00:13   projector middle: warming, ok
 09:00:30   panel: on
 09:00:34   projector left: on, ok
 09:00:39   projector middle: on, ok
 09:02:00 the right one obeys again
-09:02:01   projector right: off, failed (is still off though it was to be on by now; does not accept to be switched on (ERR3, not available at this time); it is tried again)
+09:02:01   projector right: off, failed (is still off though it was to be on by now; refuses to be switched on (ERR3, not available at this time); it is tried again)
 09:02:05   projector right: off, failed (is still off though it was to be on by now)
 09:02:07   projector right: warming, failed (is still warming though it was to be on by now)
 09:02:39   projector right: on, ok

@@ -253,7 +253,8 @@ TEST(ContentNames, ThoseOfFilesAreComparedToo) {
       "");
   EXPECT_EQ(nameFindings(R"("contents": [{"model": "a.mrm", "name": "x"},
                            {"model": "b.mrm", "name": "x"}])"),
-            "f.json:2: /wall/contents/1/name is \"x\", the name of another content\n")
+            "f.json:2: /wall/contents/1/name is \"x\", the name of another content; give each its "
+            "own name\n")
       << "said once";
 }
 

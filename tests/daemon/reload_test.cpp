@@ -201,10 +201,10 @@ TEST(ReloadAnswer, SaysWhatAndWhyNot) {
   answer.outcome = Outcome::kInvalid;
   answer.findings = {"/etc/m.json:3: /wal is not a known setting"};
   EXPECT_EQ(refusal(answer),
-            "/etc/m.json:3: /wal is not a known setting; the settings before it stay in effect");
+            "/etc/m.json:3: /wal is not a known setting; the previous settings stay in effect");
   answer.outcome = Outcome::kFailed;
   answer.failure = "std::bad_alloc";
-  EXPECT_EQ(refusal(answer), "/etc/m.json: std::bad_alloc; the settings before it stay in effect");
+  EXPECT_EQ(refusal(answer), "/etc/m.json: std::bad_alloc; the previous settings stay in effect");
 }
 
 TEST(ReloadAnswer, CutsALongValueBetweenCharacters) {

@@ -324,7 +324,8 @@ TEST_F(StateKeeping, OfADamagedFileThePreviousOneIsUsedAndKept) {
 
 TEST_F(StateKeeping, OfADamagedFileWithoutAPreviousOneTheConfigurationHolds) {
   disk_.last = "{";
-  EXPECT_NE(keeper()->takeNotices().at(0).find("there is no previous one: the configuration holds"),
+  EXPECT_NE(keeper()->takeNotices().at(0).find(
+                "there is no previous one: the configuration's values are used"),
             std::string::npos);
 }
 
@@ -333,9 +334,9 @@ TEST_F(StateKeeping, WhereBothAreDamagedTheConfigurationHolds) {
   disk_.previous = "";
   const auto only = keeper();
   EXPECT_FALSE(only->state().rate_hz);
-  EXPECT_NE(
-      only->takeNotices().at(0).find("the previous one is damaged too: the configuration holds"),
-      std::string::npos);
+  EXPECT_NE(only->takeNotices().at(0).find(
+                "the previous one is damaged too: the configuration's values are used"),
+            std::string::npos);
   setRate(*only, 22);
   EXPECT_EQ(rateOf(disk_.last), 22);
 }
@@ -369,7 +370,7 @@ TEST_F(StateKeeping, AFullDiskIsSaidAndTheChangeIsNotLost) {
     setRate(*only, 20);
     disk_.fault = Error{Errc::kIo, "FILE: No space left on device"};
     setRate(*only, 21);
-    EXPECT_EQ(only->fault(), "FILE: No space left on device; it is tried again every 5 s");
+    EXPECT_EQ(only->fault(), "FILE: No space left on device; saving is tried again every 5 s");
     EXPECT_EQ(only->state().rate_hz, 21);
     EXPECT_EQ(rateOf(disk_.last), 20);
     disk_.fault.reset();

@@ -117,7 +117,7 @@ TEST(VrpnOffers, MerlindIsNotOfferedItsOwnServer) {
   EXPECT_TRUE(listingOf(answerOf(own)).devices.empty());
   EXPECT_EQ(
       toText(listingOf(answerOf(own))),
-      "  tcp://lab:3883: merlind's own server (/serve/vrpn_port), which is no input of its\n");
+      "  tcp://lab:3883: merlind's own server (/serve/vrpn_port), which merlind does not read\n");
   EXPECT_EQ(listingOf(answerOf(other)).devices.size(), 1u) << "another daemon's is a server";
   EXPECT_TRUE(listingOf(answerOf(other), settingsOf(R"({"instance": "other"})")).own);
   const Settings serves = settingsOf(R"({"serve": {"vrpn_port": 4000}})");
@@ -143,7 +143,9 @@ TEST(VrpnOffers, AnEntryIsJsonWhateverTheName) {
             nlohmann::json::parse(toJson(listing)["devices"][0]["as"][0].dump()));
   const std::string text = toText(listing);
   EXPECT_EQ(text.find('\x1B'), std::string::npos);
-  EXPECT_NE(text.find("    2 more, whose names no configuration can have"), std::string::npos);
+  EXPECT_NE(
+      text.find("    2 more devices are not listed: their names cannot be used in a configuration"),
+      std::string::npos);
 }
 
 TEST(VrpnOffers, AServerThatBreaksOffIsListedWithItsFault) {

@@ -301,8 +301,8 @@ TEST(FastrakDevice, ComplainsOfTheFirstStationWithAnError) {
   } kCases[] = {{1, ' ', ""},
                 {2, 'k', "station 2 reports error k (receiver too far or unplugged: low signal)"},
                 {1, ' ', "station 2 reports error k (receiver too far or unplugged: low signal)"},
-                {1, 'a', "station 1 reports error a (a transmitter driver)"},
-                {2, ' ', "station 1 reports error a (a transmitter driver)"},
+                {1, 'a', "station 1 reports error a (fault of a transmitter driver)"},
+                {2, ' ', "station 1 reports error a (fault of a transmitter driver)"},
                 {1, ' ', ""}};
   for (const auto& [station, error, complaint] : kCases) {
     tracker.stream.feed(record(station, error));

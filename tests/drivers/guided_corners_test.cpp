@@ -66,7 +66,7 @@ TEST(GuidedCorners, SayWhatCannotBeUsed) {
             "mouse, which has no corners, needs --mouse-counts");
   ASSERT_TRUE(touched(guided, 1, 0.9F, 0.5F));
   EXPECT_EQ(touched(guided, 2, 0.1F, 0.6F).error().what,
-            "it lies in the direction of the top right corner");
+            "it lies in the same direction as the top right corner");
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST(TrackerPlacement, FollowsFromThreePlaces) {
   EXPECT_EQ(
       placementOf({0, 0, 0}, {1, 0.5, 0}, {0, 1, 0}).error().what,
       "the x axis lies 27 degrees off the nearest axis that is sent (20 are allowed): hold the "
-      "station more exactly, or turn the frame where the tracker is served");
+      "station more exactly, or turn the axes in the tracker's server");
   EXPECT_EQ(placementOf({0, 0, 0}, {1, 0, 0}, {-1, 0.1, 0}).error().what,
             "the x axis and the y axis both lie along the axis 1 that is sent");
 }

@@ -119,7 +119,7 @@ TEST(ProjectorLoop, ARefusalIsItsHealth) {
   r.loop.want(true);
   ASSERT_TRUE(r.becomes(Health::kRefused));
   EXPECT_EQ(r.loop.state().reason,
-            "does not accept to be switched on (ERR4, the projector has failed); it is tried "
+            "refuses to be switched on (ERR4, the projector has failed); it is tried "
             "again");
 }
 

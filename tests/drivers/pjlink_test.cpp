@@ -107,7 +107,7 @@ TEST(Pjlink, HostileBytesEndTheConnection) {
   EXPECT_EQ(faultOf(greeted(), "PJLINK ERRA\r"), "refuses the password (ERRA)");
   EXPECT_EQ(faultOf(greeted(), "%1LAMP=12 1\r"),
             "answers \"%1LAMP=12 1\" where %1POWR=... was due");
-  EXPECT_EQ(faultOf(greeted(), "%1POWR=1\r%1POWR=0\r"), "sends \"%1POWR=0\", unasked");
+  EXPECT_EQ(faultOf(greeted(), "%1POWR=1\r%1POWR=0\r"), "sends \"%1POWR=0\" without being asked");
   EXPECT_EQ(faultOf(greeted(), "%1POWR=\x1b[2J\r"), "");
   EXPECT_EQ(faultOf(greeted(), std::string(135, 'x')), "");
   EXPECT_EQ(faultOf(greeted(), std::string(136, 'x')).substr(0, 40),
@@ -207,7 +207,7 @@ TEST(Pjlink, ARefusalIsSaidAndTriedAgain) {
   b.pass(30);
   EXPECT_EQ(b.state().health, Health::kRefused);
   EXPECT_EQ(b.state().reason,
-            "does not accept to be switched on (ERR3, not available at this time); it is tried "
+            "refuses to be switched on (ERR3, not available at this time); it is tried "
             "again");
   EXPECT_GE(b.device.log.size(), 8u);
   EXPECT_LE(b.device.log.size(), 11u) << "every three seconds";

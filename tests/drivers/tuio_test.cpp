@@ -170,7 +170,7 @@ TEST_F(TuioTest, WhatIsMalformedDropsItsFrameAndIsSaid) {
                   oscMessage(kCursor, {std::string("fseq"), 6})}));
   feed(oscBundle({oscMessage(kCursor, {7})}));
   feed(oscBundle({oscMessage(kCursor, {})}));
-  EXPECT_STREQ(device_->complaint(), "a TUIO message is not formed as TUIO 1.1 has it");
+  EXPECT_STREQ(device_->complaint(), "a TUIO message does not have the form of TUIO 1.1");
   feed("not OSC.");
   EXPECT_STREQ(device_->complaint(), "datagrams come that are not OSC");
   EXPECT_EQ(sink_.touch.size(), 1u);

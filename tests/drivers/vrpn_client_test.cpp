@@ -212,7 +212,8 @@ TEST_F(VrpnTest, AServerThatAnswersButSendsNoPoseIsAComplaintAndNoFault) {
   }
   EXPECT_STREQ(device_->complaint(), "the server has the device, but no pose of it comes");
   EXPECT_EQ(samplesOf(pose(8, {0, 0, 0})), 0u);
-  EXPECT_STREQ(device_->complaint(), "poses come only of sensors that \"stations\" does not have");
+  EXPECT_STREQ(device_->complaint(),
+               "poses come only from sensors that \"stations\" does not name");
   EXPECT_EQ(samplesOf(pose(1, {0, 1200, 0})), 0u);
   EXPECT_STREQ(device_->complaint(), "poses come from beyond 25 m: is \"scale\" right?");
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -227,7 +228,7 @@ TEST_F(VrpnTest, AServerThatAnswersButSendsNoPoseIsAComplaintAndNoFault) {
 TEST_F(VrpnTest, ADeviceThatLeavesItsServerIsSaid) {
   connect();
   EXPECT_EQ(samplesOf(sender(kTracker, "Wand")), 0u);
-  EXPECT_STREQ(device_->complaint(), "the server has the device no more");
+  EXPECT_STREQ(device_->complaint(), "the server no longer has the device");
   EXPECT_EQ(samplesOf(sender(kTracker, "Tracker0") + pose(0, {1, 2, 3})), 1u);
   EXPECT_STREQ(device_->complaint(), "");
 }
@@ -291,7 +292,7 @@ TEST_F(VrpnTest, ADeviceWithoutPosesIsNotOpened) {
   EXPECT_EQ(openFails(vrpnCookie() + descriptions(), Errc::kTimeout),
             "\"Tracker0\": the server has the device, but no pose of it comes");
   EXPECT_EQ(openFails(vrpnCookie() + descriptions() + pose(8, {0, 0, 0}), Errc::kTimeout),
-            "\"Tracker0\": poses come only of sensors that \"stations\" does not have");
+            "\"Tracker0\": poses come only from sensors that \"stations\" does not name");
   EXPECT_TRUE(sink_.tracker.empty());
 }
 

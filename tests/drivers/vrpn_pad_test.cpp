@@ -272,7 +272,7 @@ TEST_F(VrpnPadTest, ADeviceThatLeavesItsServerIsSaidAndLetsGo) {
   connect();
   EXPECT_EQ(samplesOf(button(1, true) + channels({1})), 2u);
   EXPECT_EQ(samplesOf(test::vrpnSender(kStick, "Wand")), 1u);
-  EXPECT_STREQ(device_->complaint(), "the server has the device no more");
+  EXPECT_STREQ(device_->complaint(), "the server no longer has the device");
   EXPECT_EQ(sink_.ball.back().buttons, 0u);
   EXPECT_FLOAT_EQ(sink_.ball.back().translation[0], 0);
   EXPECT_EQ(samplesOf(message(kOther, kPong, "")), 0u);
@@ -328,18 +328,20 @@ TEST(VrpnPadSettings, NamesAxesAndButtonsThatCannotBe) {
   s.buttons = {"3", "256", "x", "3"};
   s.axes = {"0", "1", "2", "3", "4", "128"};
   s.full = s.rest;
-  EXPECT_EQ(faults(s),
-            "/vrpn_pad/device is \"Joystick0@lab\"; needed is the name alone, \"Joystick0\": the "
-            "host belongs into the port, tcp://HOST:3883\n"
-            "/vrpn_pad/axes/5 is \"128\"; allowed are the server's number of a channel, 0 to 127, "
-            "with - before it if it is reversed; two numbers with - between them, for a pair of "
-            "triggers; and none\n"
-            "/vrpn_pad/buttons/1 is \"256\"; allowed are the server's numbers of buttons, 0 to "
-            "255\n"
-            "/vrpn_pad/buttons/2 is \"x\"; allowed are the server's numbers of buttons, 0 to 255\n"
-            "/vrpn_pad/buttons/3 is \"3\" once more; each button of the server can be one button\n"
-            "/vrpn_pad/full is 0, as \"rest\" is; needed is a channel's value at full deflection, "
-            "which is another one than at rest\n");
+  EXPECT_EQ(
+      faults(s),
+      "/vrpn_pad/device is \"Joystick0@lab\"; needed is the name alone, \"Joystick0\": the host "
+      "belongs in the port, tcp://HOST:3883\n"
+      "/vrpn_pad/axes/5 is \"128\"; allowed are the server's number of a channel, 0 to 127, for "
+      "example 3; such a number after a minus sign, if the channel is reversed: -3; two numbers "
+      "joined by a minus sign, for a pair of triggers, the second of which acts in the opposite "
+      "direction: 5-2; and the word none, for no channel\n"
+      "/vrpn_pad/buttons/1 is \"256\"; allowed are the server's numbers of buttons, 0 to 255\n"
+      "/vrpn_pad/buttons/2 is \"x\"; allowed are the server's numbers of buttons, 0 to 255\n"
+      "/vrpn_pad/buttons/3 is \"3\", which is listed before; each button of the server can be only "
+      "one button\n"
+      "/vrpn_pad/full is 0, as \"rest\" is; needed is a channel's value at full deflection, which "
+      "differs from that at rest\n");
   s = {};
   s.axes = {"0"};
   s.buttons = std::vector<std::string>(13, "0");

@@ -171,7 +171,7 @@ TEST(Adapt, LearnsAPersonAndForgetsNobody) {
   EXPECT_GE(adapted->drawn_after, adapted->drawn_before - 0.005);
   const auto refused = adapt(fitted->network, fitted->statistics, DataSet{{"wink", {}}}, 1);
   ASSERT_FALSE(refused);
-  EXPECT_TRUE(refused.error().what.starts_with("posture \"wink\" is none of the network's"));
+  EXPECT_TRUE(refused.error().what.starts_with("posture \"wink\" is not one of the network's"));
 }
 
 Recognition shows(std::uint32_t code, float margin) {

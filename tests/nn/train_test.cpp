@@ -190,10 +190,10 @@ TEST(Train, RefusesWhatItCannotTrain) {
   EXPECT_EQ(trainError({}, {}), "no examples to train on");
   EXPECT_EQ(trainError(good, {.phi = Phi::kSignum}),
             "phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
-  EXPECT_EQ(trainError(good, {.rate = 0}), "rate 0 not > 0");
-  EXPECT_EQ(trainError(good, {.momentum = 1}), "momentum 1 not in [0, 1)");
-  EXPECT_EQ(trainError(good, {.max_iterations = 0}), "max_iterations 0, not >= 1");
-  EXPECT_EQ(trainError(good, {.mse_limit = -1}), "mse_limit -1 not >= 0");
+  EXPECT_EQ(trainError(good, {.rate = 0}), "rate 0 is not > 0");
+  EXPECT_EQ(trainError(good, {.momentum = 1}), "momentum 1 is not in [0, 1)");
+  EXPECT_EQ(trainError(good, {.max_iterations = 0}), "max_iterations is 0, not >= 1");
+  EXPECT_EQ(trainError(good, {.mse_limit = -1}), "mse_limit -1 is not >= 0");
   auto bad = good;
   bad[2].code = 32;
   EXPECT_EQ(trainError(bad, {}), "an example with code 32");

@@ -234,7 +234,8 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
   }
   const std::pair<std::string, std::string> faults[] = {
       {four + "comment TextureFile other.png\n",
-       "left out: 2 texture images, since no property texnumber of the faces says which is whose"},
+       "left out: 2 texture images, since the faces have no property texnumber that says which of "
+       "them each one has"},
       {"comment TextureFile none.png\n",
        dir_ / "none.png: No such file or directory; the texture image is left out"},
       {"comment TextureFile broken.png\n",

@@ -163,11 +163,12 @@ TEST(Las, WhatBecomesNoFeatureIsNamed) {
   bytes[227 + 18] = 7;
   const auto cloud = cloudOf(bytes);
   ASSERT_EQ(cloud.notes.size(), 1U);
-  EXPECT_EQ(cloud.notes[0],
-            "left out of each point, as no feature: GPS time, return numbers, scan angles, "
-            "user data, point source IDs");
+  EXPECT_EQ(
+      cloud.notes[0],
+      "left out of each point, and not kept as features: GPS time, return numbers, scan angles, "
+      "user data, point source IDs");
   EXPECT_EQ(cloudOf(las(4, 10, 3)).notes[0],
-            "left out of each point, as no feature: near infrared, waveforms");
+            "left out of each point, and not kept as features: near infrared, waveforms");
 }
 
 TEST(Las, WhatIsWrongInAHeaderIsNamed) {

@@ -151,7 +151,8 @@ TEST_F(RangeFile, RefusalsNameFilePlaceAndWhatIsAllowed) {
             "a.pgm: line 5: 99999 x 99999 pixels; allowed are 268435456");
   EXPECT_EQ(fault(kHeader + "1 2\n255\nab"),
             "a.pgm: the image has 1 x 2 pixels; triangles need 2 x 2 at least");
-  EXPECT_EQ(fault("P6\n2 2\n255\n"), "a.pgm: is not a range image; read are " + readableRanges());
+  EXPECT_EQ(fault("P6\n2 2\n255\n"),
+            "a.pgm: is not a range image; supported are " + readableRanges());
 }
 
 RangeOptions raw(const std::string& layout) {

@@ -135,7 +135,7 @@ TEST(Alarms, AConfigurationWithoutAlarmsHasNothingToStart) {
   ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
   writeText(dir / "c.json", "{");
   ::kill(alarms.pid(), SIGHUP);
-  EXPECT_TRUE(alarms.saysEventually("c.json is invalid; the settings before it stay in effect"));
+  EXPECT_TRUE(alarms.saysEventually("c.json is invalid; the previous settings stay in effect"));
   writeText(dir / "c.json", R"({"alarms": [{"run": ["/bin/true"]}]})");
   ::kill(alarms.pid(), SIGHUP);
   EXPECT_TRUE(alarms.saysEventually("starting again"));

@@ -299,7 +299,7 @@ TEST_F(BadInput, ArgumentsThatNoCommandTakes) {
   expectOutcome(run({kMerlin, "mesh", "info", scan, "--jsn"}), 2,
                 {"merlin mesh info: --jsn is not an option; did you mean --json?"});
   expectOutcome(run({kMerlin, "--instance", "x", "status"}), 2,
-                {"merlin status: --instance has to stand behind the command: "
+                {"merlin status: --instance has to come after the command: "
                  "merlin status --instance\n"});
   expectOutcome(run({kMerlin, "blank", "now"}), 2,
                 {"merlin blank: \"now\" is one argument too many"});

@@ -128,7 +128,8 @@ TEST(CalibratePad, WritesGivenValuesOrSaysWhatIsWrong) {
       << ball.output;
   writeText(dir / "ball.json", onlyDevice(deviceEntry("ball", "spaceball")).dump());
   const Outcome pad = run({kMerlin, "calibrate", "pad", "--curve", "2", "-o", dir / "ball.json"});
-  EXPECT_NE(pad.output.find("`merlin calibrate ball` is for it"), std::string::npos) << pad.output;
+  EXPECT_NE(pad.output.find("`merlin calibrate ball` calibrates; for a pad"), std::string::npos)
+      << pad.output;
   EXPECT_EQ(readText(file), before);
 }
 

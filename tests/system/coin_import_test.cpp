@@ -136,8 +136,9 @@ TEST_F(CoinImport, MoreCornersThanCoordinatesAreRefused) {
                 "FaceSet: it takes 5 coordinates, and there are 4");
   expectRefused(inventor("FaceSet { startIndex -1 numVertices 3 }"),
                 "FaceSet: its startIndex is -1");
-  expectRefused(inventor("TriangleStripSet { numVertices [ 3, -2 ] }"),
-                "TriangleStripSet: its numVertices has -2 beside others");
+  expectRefused(
+      inventor("TriangleStripSet { numVertices [ 3, -2 ] }"),
+      "TriangleStripSet: its numVertices has -2 beside other values; -1 is allowed alone");
   expectRefused(inventor("QuadMesh { verticesPerRow 2 verticesPerColumn 3 }"),
                 "QuadMesh: it takes 6 coordinates, and there are 4");
   EXPECT_EQ(vertices(inventor("FaceSet { }")).size(), 4U);

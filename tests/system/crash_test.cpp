@@ -102,13 +102,13 @@ TEST_F(KilledRole, OfTheWallIsSaidByStatusReloadAndSnapshot) {
       << reload.output;
   EXPECT_NE(reload.output.find("nothing changed\n"), std::string::npos) << "that of the devices";
   const std::string pid = std::to_string(devices_->process().pid());
-  EXPECT_NE(reload.output.find("the role devices has done it; the exit status is 1 until the role "
-                               "wall has been started again. Without that role: merlin reload "
-                               "--pid " +
-                               pid),
+  EXPECT_NE(reload.output.find(
+                "the role devices has done the reload; the exit status is 1 until the role wall "
+                "has been started again. To reload without that role: merlin reload --pid " +
+                pid),
             std::string::npos)
       << reload.output;
-  EXPECT_NE(merlin({"reload", "--check"}).output.find("the role devices can do it; "),
+  EXPECT_NE(merlin({"reload", "--check"}).output.find("the role devices can do the reload; "),
             std::string::npos);
   EXPECT_EQ(run({kMerlin, "reload", "--pid", pid}).output, "nothing changed\n");
 

@@ -388,10 +388,11 @@ TEST_F(GltfImport, FaultsOfItsJsonAreSaid) {
     json[Json::json_pointer(pointer)] = value;
     return json.dump();
   };
-  expectRefused(with("/extensionsRequired", 3), "glTF: extensionsRequired is no array");
-  expectRefused(with("/extensionsRequired", {3}), "glTF: extensionsRequired has what is no name");
-  expectRefused(with("/accessors", 3), "glTF: accessors is no array");
-  expectRefused(with("/meshes/0/primitives", "x"), "glTF: primitives is no array");
+  expectRefused(with("/extensionsRequired", 3), "glTF: extensionsRequired is not an array");
+  expectRefused(with("/extensionsRequired", {3}),
+                "glTF: extensionsRequired has an entry that is not a name");
+  expectRefused(with("/accessors", 3), "glTF: accessors is not an array");
+  expectRefused(with("/meshes/0/primitives", "x"), "glTF: primitives is not an array");
   expectRefused(with("/meshes/0/primitives/0/attributes", 1),
                 "glTF: mesh 0, primitive 0 has no attributes");
   for (const Json& index : {Json(3), Json(-1), Json("0"), Json(0.0)})
@@ -435,9 +436,9 @@ TEST_F(GltfImport, FilesInAFolderBesideItAreReadAndOthersAreExplained) {
   const auto deep = report(triangle("a.bin", "assets/deep/t.png").dump());
   const std::string notes = deep["notes"].dump();
   if (deep["texture_bytes"] != 0) GTEST_SKIP() << "this system lacks Landlock";
-  EXPECT_NE(notes.find("assets/deep/t.png: Permission denied (read are visible files in the "
-                       "model's folder and in its visible folders, 4096 in all; put it beside the "
-                       "model); this texture is left out"),
+  EXPECT_NE(notes.find("assets/deep/t.png: Permission denied (only visible files in the "
+                       "model's folder and in its visible folders are read, 4096 in all; put it "
+                       "beside the model); this texture is left out"),
             std::string::npos)
       << notes;
 }
@@ -501,9 +502,10 @@ TEST_F(GltfImport, ARotatedTextureIsLeftAsItIsWithANote) {
   json["extensionsUsed"] = {"KHR_texture_transform"};
   json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
       {"KHR_texture_transform", {{"rotation", 1}}}};
-  EXPECT_NE(report(json.dump())["notes"].dump().find(
-                "left out: the rotations of 1 textures, which lie otherwise than in the model"),
-            std::string::npos);
+  EXPECT_NE(
+      report(json.dump())["notes"].dump().find(
+          "left out: the rotations of 1 textures, which therefore lie otherwise than in the model"),
+      std::string::npos);
 }
 
 }  // namespace

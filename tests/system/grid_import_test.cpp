@@ -383,7 +383,7 @@ TEST_F(GridImport, TheProjectionStaysInTheModelAndInThePgm) {
       "ncols 2\nnrows 2\nxllcenter 7.5\nyllcenter 46\ncellsize 0.01\n1 2\n3 4\n";
   ASSERT_EQ(import("b.asc", degrees, {"-o", dir_ / "out.mrm"}).status, 0);
   const Outcome said = run({kMerlin, "mesh", "export", dir_ / "out.mrm", "-o", dir_ / "c.obj"});
-  EXPECT_NE(said.output.find("origin    7.5 46, of the map, is not added"), std::string::npos)
+  EXPECT_NE(said.output.find("origin    7.5 46 (of the map) is not added"), std::string::npos)
       << said.output;
   ASSERT_EQ(import("a.tif", file, {"-o", dir_ / "out.pgm"}).status, 0);
   const auto again = report("out.pgm", "", {});
@@ -454,7 +454,7 @@ TEST_F(GridImport, GtopoIsReadWithTheHeaderBesideIt) {
   std::string heights;
   for (const int v : {10, 20, 30, 40, -9999, 60})
     appendBe16(heights, static_cast<std::uint16_t>(v));
-  expectRefusal("E020N40.DEM", heights, "is of no format that MERLIN reads");
+  expectRefusal("E020N40.DEM", heights, "has a format that MERLIN does not read");
   writeText(
       dir_ / "E020N40.HDR",
       "BYTEORDER      M\nLAYOUT       BIL\nNROWS         2\nNCOLS         3\nNBANDS        1\n"
@@ -484,7 +484,7 @@ TEST_F(GridImport, AFileThatNamesOthersIsNotFollowed) {
       "band=\"1\"><SimpleSource><SourceFilename>" +
       dir_ / "secret.tif" +
       "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
-  expectRefusal("a.vrt", vrt, "is of no format that MERLIN reads");
+  expectRefusal("a.vrt", vrt, "has a format that MERLIN does not read");
   std::filesystem::create_directory(dir_ / "folder");
   const Outcome own =
       run({MERLIN_BIN_DIR "/merlin-import", "grid", dir_ / "a.vrt", dir_ / "folder"});

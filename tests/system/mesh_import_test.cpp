@@ -167,7 +167,7 @@ TEST_F(MeshImport, AScanOfAModelComesBackWithItsFeaturesAndWithoutOptions) {
   const Outcome away = run({kMerlin, "mesh", "scan", dir_ / "a.ply", "--camera", "0", "0", "0", "0",
                             "0", "5", "-o", dir_ / "out.pgm"});
   EXPECT_EQ(away.status, 2);
-  EXPECT_NE(away.output.find("none of the rays meets it"), std::string::npos) << away.output;
+  EXPECT_NE(away.output.find("none of the rays meets the mesh"), std::string::npos) << away.output;
 }
 
 TEST_F(MeshImport, TheSameInputGivesTheSameBytesOnAnyNumberOfThreads) {
@@ -185,8 +185,8 @@ TEST_F(MeshImport, TheUnitIsAMetreOnlyWhereSomethingSaysSo) {
   };
   const auto counts = report({scan_, "-o", model});
   EXPECT_EQ(counts["notes"].dump(),
-            "[\"nothing says in which unit its ranges are, and they are taken as they stand; "
-            "--scale METRES_PER_UNIT makes metres of them\"]");
+            "[\"the file does not say in which unit its ranges are, so they are used unchanged; "
+            "--scale METRES_PER_UNIT converts them to metres\"]");
   EXPECT_EQ(unit(), "");
   EXPECT_EQ(report({scan_, "--scale", "0.01", "-o", model})["notes"].size(), 0U);
   EXPECT_EQ(unit(), "m");
@@ -435,7 +435,8 @@ TEST_F(MeshImport, OptionsThatDoNotFitAreRefused) {
   expectRefusal({scan_, "-o", scan_}, "is an input");
   expectRefusal({dir_ / "absent.pgm", "-o", ply_}, "No such file or directory");
   writeText(dir_ / "a.dat", "nobody knows this");
-  expectRefusal({dir_ / "a.dat", "-o", ply_}, "is of no format that MERLIN reads; read are PGM");
+  expectRefusal({dir_ / "a.dat", "-o", ply_},
+                "has a format that MERLIN does not read; supported formats are PGM");
   ASSERT_EQ(import({scan_, "-o", dir_ / "a.ply"}).status, 0);
   expectRefusal({dir_ / "a.ply", "--median", "3", "-o", ply_}, "--median is for range images");
 }

@@ -441,7 +441,7 @@ TEST_F(ModelImport, WhatIsWrongIsSaidInOneMessageThatNamesTheFile) {
   expectRefused("cyclic.iv", "#Inventor V2.1 ascii\nDEF A Separator { Cube { } USE A }\n",
                 "is cyclic: a Separator contains itself");
   expectRefused("empty.iv", "#Inventor V2.1 ascii\nSeparator { }\n", "holds no surface");
-  expectRefused("unknown.bin", "what is this", "is of no format that MERLIN reads");
+  expectRefused("unknown.bin", "what is this", "has a format that MERLIN does not read");
   expectRefused("a.iv", kSquareIv, "--angles is for range images", {"--angles", "1", "2"});
   std::string multiplies = "#Inventor V2.1 ascii\nSeparator { DEF A0 Separator { Cube { } }\n";
   for (int i = 1; i < 30; ++i)

@@ -197,7 +197,7 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
   }
   EXPECT_EQ(serviceHealth(), "failed");
   EXPECT_TRUE(merlind_->process().saysEventually("configuration: failed ("));
-  EXPECT_TRUE(merlind_->process().saysEventually("the settings before it stay in effect"));
+  EXPECT_TRUE(merlind_->process().saysEventually("the previous settings stay in effect"));
   writeText(merlind_->config(), good);
   EXPECT_EQ(reload().output, "nothing changed\n") << "none of the bad files was taken";
   EXPECT_EQ(serviceHealth(), "ok");
@@ -212,13 +212,15 @@ TEST_F(Reload, ForWhatOnlyAStartTakesItStartsAgainWithAllTheRest) {
   const Outcome would = reload({"--check"});
   EXPECT_EQ(would.output,
             "/bindings/0/action: \"grab\" -> \"fly\"\n"
-            "merlind would start again, which alone takes:\n  /state_file\n");
+            "merlind would start again, because these settings take effect only at a start:\n  "
+            "/state_file\n");
   ASSERT_TRUE(eventually([&] { return begun("grab") > 0; })) << "nothing was changed";
   const Outcome done = reload();
   EXPECT_EQ(done.status, 0) << done.output;
   EXPECT_EQ(done.output,
             "/bindings/0/action: \"grab\" -> \"fly\"\n"
-            "merlind started again, which alone takes:\n  /state_file\n");
+            "merlind started again, because these settings take effect only at a start:\n  "
+            "/state_file\n");
   EXPECT_TRUE(merlind_->process().saysEventually("/state_file changed in " + merlind_->config()));
   merlind_->openAgain();
   for (const char* device : kDevices)
@@ -281,7 +283,8 @@ TEST_F(Reload, AnAlarmHasOneLineHoweverManyOfItsSettingsChanged) {
                                  "/alarms/3" + all + reader);
   write({{"serve", {{"vrpn_port", 3999}, {"spnav_socket", dir_ / "ball"}}}});
   const Outcome start = reload({"--check"});
-  EXPECT_NE(start.output.find("which alone takes:\n  /serve ("), std::string::npos) << start.output;
+  EXPECT_NE(start.output.find("take effect only at a start:\n  /serve ("), std::string::npos)
+      << start.output;
 }
 
 // Good ones and bad ones in a random order, always the same one, while the hand moves.
@@ -373,7 +376,8 @@ TEST_F(ReloadOfTwo, TheWallAloneStartsAgainForItsContents) {
   write({{"wall", contents(model_)}});
   const Outcome done = reload();
   EXPECT_EQ(done.status, 0) << done.output;
-  EXPECT_NE(done.output.find("merlind started again, which alone takes:\n  /wall/contents"),
+  EXPECT_NE(done.output.find("merlind started again, because these settings take effect only at a "
+                             "start:\n  /wall/contents"),
             std::string::npos)
       << done.output;
   EXPECT_EQ(run({kMerlin, "show", "second", "--instance", merlind_->instance()}).status, 0);

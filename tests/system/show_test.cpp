@@ -188,8 +188,9 @@ TEST_F(ShowFile, ATestCardThatCoversTheContentIsNoted) {
   card("grid");
   const Outcome covered = run(command({"model"}));
   EXPECT_EQ(covered.status, 0);
-  EXPECT_NE(covered.output.find("a test card covers it; to end that: merlin wall testcard off"),
-            std::string::npos)
+  EXPECT_NE(
+      covered.output.find("a test card covers it; to remove the card: merlin wall testcard off"),
+      std::string::npos)
       << covered.output;
   writeScan("hill", 40, "\x10\x10\xF0");
   const Outcome file = run(scan("hill"));
@@ -227,10 +228,10 @@ TEST_F(ShowFile, PanoramaIsRefusedForWhatIsNoPictureThatIsImported) {
   for (const auto& [what, found] : refused) {
     const Outcome shown = run(command({what, "--panorama"}));
     EXPECT_NE(shown.status, 0) << what;
-    EXPECT_EQ(shown.output, fmt::format("merlin: {}: --panorama is for a picture that is imported, "
-                                        "and this is {}; import the picture by: merlin image "
-                                        "import --panorama\n",
-                                        what, found));
+    EXPECT_EQ(shown.output,
+              fmt::format("merlin: {}: --panorama is only for a picture that is imported now, and "
+                          "this is {}; import the picture with: merlin image import --panorama\n",
+                          what, found));
   }
   EXPECT_STREQ(content().kind, "model");
   const Outcome shown = run(command({*dir_ / "sky.ppm", "--panorama"}));

@@ -221,7 +221,7 @@ TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
   const Outcome calibrated = run({kMerlin, "calibrate", "tracker", "--station", "2", "--boresight",
                                   "1", "0", "0", "0", "-o", client.config()});
   EXPECT_EQ(calibrated.status, 2) << calibrated.output;
-  EXPECT_NE(calibrated.output.find("/devices/0/driver, that of \"tracker\", is \"vrpn\""),
+  EXPECT_NE(calibrated.output.find("/devices/0/driver (device \"tracker\") is \"vrpn\""),
             std::string::npos)
       << calibrated.output;
   const auto counter = client.devices()->tracker()->stations[1]->newest()->counter;

@@ -183,7 +183,8 @@ TEST(RfbStart, WithoutAWallShowsACardAndRefusesWhatIsNotSafe) {
   VncClient client(rfb.port());
   ASSERT_TRUE(client.isConnected());
   EXPECT_TRUE(client.until([&] { return client.picture().at(0, 0).red == 48; }));
-  EXPECT_TRUE(rfb.process().saysEventually("for now clients see a card: No merlind shows a wall"));
+  EXPECT_TRUE(rfb.process().saysEventually(
+      "for now clients see only this message: No merlind shows a wall"));
 
   const auto refused = [](const Arguments& arguments, int status, const std::string& why) {
     Arguments all = {kRfb};

@@ -191,7 +191,7 @@ class Panel(unittest.TestCase):
 
     def test_5_what_is_not_there_is_said(self):
         self.start(lamp_line=8)
-        until(lambda: health() == ("failed", f"{LABEL} has no line 8; it has 8, from 0 on"), "the line is missed")
+        until(lambda: health() == ("failed", f"{LABEL} has no line 8; it has 8 lines, from 0 on"), "the line is missed")
         self.the_tracker_goes_on()
         self.doCleanups()
         self.start(chip="gpiochip99")

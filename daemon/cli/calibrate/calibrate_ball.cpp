@@ -22,7 +22,8 @@ namespace {
 
 struct BallOptions {
   std::string output, device, instance = "merlin";
-  int translation = 0, rotation = 0, full = 0, dead_zone = -1;  // these values: not given
+  // These initial values mean: not given.
+  int translation = 0, rotation = 0, full = 0, dead_zone = -1;
   std::vector<int> axis_map;
   GuideTiming timing;
 
@@ -46,7 +47,7 @@ Result<CalibratedDevice> findBall(const BallOptions& o) {
                            o.output)
              : "name another ball with --device";
   return Error{Errc::kInvalidArgument,
-               fmt::format("{}: {}/driver, that of \"{}\", is \"{}\", which has no axis map and "
+               fmt::format("{}: {}/driver (device \"{}\") is \"{}\", a driver without axis map and "
                            "full scales to calibrate: {}",
                            o.output, ball->pointer, ball->name, ball->driver, instead)};
 }
@@ -106,9 +107,10 @@ class GuidedBall final : public Guided {
     const auto answer = axes_.end();
     if (!answer) return answer.error();
     if (step_ == 0) return fmt::format("at rest at most {} counts", answer->counts);
-    return fmt::format("{}{} with {} counts, next {} with {} counts", answer->axis < 0 ? '-' : '+',
-                       spaceball::nameOfAxis(answer->axis), answer->counts,
-                       spaceball::nameOfAxis(answer->next_axis), answer->next_counts);
+    return fmt::format("most {}{} with {} counts, next {} with {} counts",
+                       answer->axis < 0 ? '-' : '+', spaceball::nameOfAxis(answer->axis),
+                       answer->counts, spaceball::nameOfAxis(answer->next_axis),
+                       answer->next_counts);
   }
   std::string now() const override {
     const BallSample sample =
@@ -180,15 +182,15 @@ void addCalibrateBall(Command calibrate, Run& run) {
   addInstance(command, o->instance);
   command
       .option("--full-scale-translation", o->translation,
-              "Of a Spaceball: raw count of a translation axis at a full push")
+              "Spaceball only: raw count of a translation axis at a full push")
       .range(100, 32767);
   command
       .option("--full-scale-rotation", o->rotation,
-              "Of a Spaceball: raw count of a rotation axis at a full twist")
+              "Spaceball only: raw count of a rotation axis at a full twist")
       .range(100, 32767);
   command
       .option("--full-scale", o->full,
-              "Of a space mouse (driver spacenav): count of an axis at a full push or twist")
+              "Space mouse (driver spacenav) only: count of an axis at a full push or twist")
       .range(100, 32767);
   command.option("--dead-zone", o->dead_zone, "Largest raw count that is treated as rest")
       .range(0, 99);

@@ -22,7 +22,7 @@ using cyberglove::GuidedCalibration;
 
 struct GloveOptions {
   std::string port, output, device;
-  int baud = 0;  // 0: that of the entry
+  int baud = 0;  // 0: the entry's speed
   GuideTiming timing;
 };
 
@@ -99,10 +99,10 @@ void addCalibrateGlove(Command calibrate, Run& run) {
   const auto o = std::make_shared<GloveOptions>();
   Command command = calibrate.subcommand(
       "glove",
-      "Calibrate the glove: tells you a few poses to hold and computes "
-      "each sensor's offset and gain. One program has the line: stop merlind "
-      "first.\nExample: merlin calibrate glove -o merlin.json\nExample: merlin "
-      "calibrate glove serial:/dev/serial/by-id/usb-GLOVE -o merlin.json");
+      "Calibrate the glove: tells you a few poses to hold and computes each sensor's offset and "
+      "gain. Only one program can open the line: stop merlind first.\nExample: merlin calibrate "
+      "glove -o merlin.json\nExample: merlin calibrate glove serial:/dev/serial/by-id/usb-GLOVE -o "
+      "merlin.json");
   command.option("port", o->port,
                  "Port of the glove: serial:/dev/..., pty:PATH or tcp://HOST:PORT; the default is "
                  "that of the glove in the configuration file");

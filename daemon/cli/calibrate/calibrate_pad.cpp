@@ -41,8 +41,8 @@ Result<CalibratedDevice> findPad(const PadOptions& o) {
   if (!pad || isOneOf(pad->driver, kDrivers)) return pad;
   return Error{
       Errc::kInvalidArgument,
-      fmt::format("{}: {}/driver, that of \"{}\", is \"{}\": `merlin calibrate ball` is for "
-                  "it; name a device with the driver {} by --device",
+      fmt::format("{}: {}/driver (device \"{}\") is \"{}\", which `merlin calibrate ball` "
+                  "calibrates; for a pad, name a device with the driver {} with --device",
                   o.output, pad->pointer, pad->name, pad->driver, fmt::join(kDrivers, " or "))};
 }
 
@@ -72,14 +72,15 @@ class GuidedPadLine final : public Guided, private IgnoringSink {
   void begin(std::size_t step) override {
     step_ = step;
     pad_.begin(step);
-    pad_.add(readings_());  // what is held says nothing more
+    pad_.add(readings_());  // so that an axis that is already held does not count as moved
   }
   Result<std::string> end() override {
     const auto answer = pad_.end();
     if (!answer) return answer.error();
     if (step_ == 0)
       return fmt::format("at rest at most {:.2f} of the full deflection", answer->deflection);
-    if (answer->source == "none") return std::string("nothing moved: the model cannot be moved so");
+    if (answer->source == "none")
+      return std::string("nothing moved, so no axis will control this motion of the model");
     return fmt::format("{}, which moved by {:.2f}", answer->source, std::abs(answer->deflection));
   }
   std::string now() const override {
@@ -123,7 +124,8 @@ int guidePad(const PadOptions& o, const CalibratedDevice& pad) {
   if (const auto done = guide(padSteps(), o.timing, guided); !done) return fail(done.error());
   const auto solved = guided.solve();
   if (!solved)
-    return fail({Errc::kMalformed, "nothing was moved in any step; nothing was changed"});
+    return fail(
+        {Errc::kMalformed, "no axis was moved in any step; the configuration was not changed"});
   printOut("\n");
   return savePad(pad, {{"axes", solved->axes}, {"dead_zone", solved->dead_zone}});
 }
@@ -147,8 +149,9 @@ void addCalibratePad(Command calibrate, Run& run) {
   addDeviceOption(command, o->device, "pad");
   command
       .option("--axes", o->axes,
-              "For x, y, z and the rotations about them the axis that moves it, in the form of the "
-              "setting; commas between them. If the first is reversed: --axes=-x,...")
+              "Six axes of the device, with commas between them, that control x, y, z and the "
+              "rotations about x, y, z, written as in the setting axes. If the first is reversed, "
+              "write --axes=-x,...")
       .separated(',');
   command
       .option("--dead-zone", o->dead_zone,

@@ -40,7 +40,7 @@ class GuidedSurface final : public Guided, private IgnoringSink {
   }
   void begin(std::size_t step) override {
     corners_.begin(step);
-    corners_.add(newest_);  // a finger that is held tells nothing more
+    corners_.add(newest_);  // so that a finger that is already held does not count as a new touch
   }
   Result<std::string> end() override {
     const auto place = corners_.end();
@@ -114,21 +114,22 @@ void addCalibrateTouch(Command calibrate, Run& run) {
   Command command = calibrate.subcommand(
       "touch",
       "Set how a touch frame or touch screen is mounted (drivers touch and tuio): asks you to "
-      "touch "
-      "three corners of the picture; or writes the given values. One program has the device: stop "
-      "merlind first.\nExample: merlin calibrate touch -o merlin.json\nExample: merlin calibrate "
-      "touch --mouse-counts 3000 -o merlin.json");
+      "touch three corners of the picture; or writes the given values. Only one program can open "
+      "the device: stop merlind first.\nExample: merlin calibrate touch -o merlin.json\nExample: "
+      "merlin calibrate touch --mouse-counts 3000 -o merlin.json");
   command.option(
       "port", o->port,
       "Port of the device, evdev:/dev/input/by-id/... or udp://ADDRESS:3333; the default "
       "is that of the device in the configuration file");
   command.option("-o,--output", o->output, "The configuration file to write into").required();
   addDeviceOption(command, o->device, "touch surface");
-  command.option("--aspect", o->aspect, "The surface's width by its height, as a person sees it")
+  command
+      .option("--aspect", o->aspect,
+              "Width of the surface divided by its height, as a person sees it")
       .range(0.1, 10.0);
   command
       .option("--mouse-counts", o->mouse_counts,
-              "Of a mouse: counts of its motion that are the surface's height")
+              "Mouse only: counts of its motion that correspond to the surface's height")
       .range(100, 100000);
   addGuideTiming(command, o->timing);
   command.callback([o, &run] { run = [o] { return calibrateTouch(*o); }; });

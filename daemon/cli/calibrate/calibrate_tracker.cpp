@@ -55,11 +55,12 @@ bool isFastrak(const CalibratedDevice& tracker) { return tracker.driver == "fast
 Result<CalibratedDevice> findTracker(const TrackerOptions& o) {
   auto tracker = findDevice(o.output, SampleKind::kTracker, o.device);
   if (!tracker || isFastrak(*tracker) || (!o.hasOptions() && o.has("alignment"))) return tracker;
-  return Error{Errc::kInvalidArgument,
-               fmt::format("{}: {}/driver, that of \"{}\", is \"{}\", but alignment, boresight and "
-                           "hemisphere are a Fastrak's: name a Fastrak with --device, or leave the "
-                           "options out to have the axes and the origin of this tracker measured",
-                           o.output, tracker->pointer, tracker->name, tracker->driver)};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: {}/driver (device \"{}\") is \"{}\", but only a Fastrak has alignment, "
+                  "boresight and hemisphere: name a Fastrak with --device, or leave the options "
+                  "out to have the axes and the origin of this tracker measured",
+                  o.output, tracker->pointer, tracker->name, tracker->driver)};
 }
 
 int setFromOptions(const TrackerOptions& o, const CalibratedDevice& tracker) {
@@ -225,14 +226,11 @@ void addCalibrateTracker(Command calibrate, Run& run) {
   Command command = calibrate.subcommand(
       "tracker",
       "Set the alignment and boresight of a Fastrak's station: either tells you at which places to "
-      "hold the station, while a running merlind measures them, or writes the given values. Of a "
-      "tracker of a VRPN server or by OSC: tells you the places, measures them on the tracker's "
-      "own "
-      "line, and sets its axes and origin_m.\nExample: "
-      "merlin calibrate tracker "
-      "--station 1 "
-      "-o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight 0.7071 0 0 0.7071 "
-      "-o merlin.json");
+      "hold the station, while a running merlind measures them, or writes the given values. For a "
+      "tracker of a VRPN server or one that sends OSC: tells you the places, measures them on the "
+      "tracker's own line, and sets its axes and origin_m.\nExample: merlin calibrate tracker "
+      "--station 1 -o merlin.json\nExample: merlin calibrate tracker --station 1 --boresight "
+      "0.7071 0 0 0.7071 -o merlin.json");
   addDeviceOption(command, o->device, "tracker");
   command.option("--station", o->station).range(1, 4).showDefault();
   command.option("--steps", o->steps, "Settings to measure: alignment, boresight or both")
@@ -257,7 +255,8 @@ void addCalibrateTracker(Command calibrate, Run& run) {
       .range(-1.0, 1.0);
   command
       .option("--hemisphere", o->hemisphere,
-              "Vector in the transmitter's frame into the half-space in which the receiver is")
+              "Vector in the transmitter's frame that points into the half-space in which the "
+              "receiver is")
       .expected(3)
       .range(-1.0, 1.0);
   command.option("-o,--output", o->output, "The configuration file to write into").required();

@@ -47,23 +47,23 @@ Result<Json> readConfiguration(const std::string& path) {
   return config;
 }
 
-std::string entryText(const Json& entry, const char* key) {
+std::string entryField(const Json& entry, const char* key) {
   const auto at = entry.find(key);
   return at != entry.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
 std::optional<SampleKind> kindOf(const Json& entry) {
-  const DriverEntry* const driver = findDriver(entryText(entry, "driver"));
+  const DriverEntry* const driver = findDriver(entryField(entry, "driver"));
   return driver ? std::optional(driver->kind) : std::nullopt;
 }
 
 std::string nameOf(const Json& entry) {
-  std::string name = entryText(entry, "name");
+  std::string name = entryField(entry, "name");
   const auto kind = kindOf(entry);
   return name.empty() && kind ? kindName(*kind) : name;
 }
 
-// What to write instead of a name that the list lacks: "; its gloves are left, right".
+// The names that exist, for a message about a name that the list lacks: "its gloves: left, right".
 std::string namesOf(const Json& list, SampleKind kind) {
   std::vector<std::string> names;
   for (const Json& entry : list) {
@@ -73,10 +73,10 @@ std::string namesOf(const Json& list, SampleKind kind) {
                        : fmt::format("its {}s: {}", kindName(kind), fmt::join(names, ", "));
 }
 
-// The first of this kind with one of these drivers; nothing if there is none.
+// Index of the first device of this kind with one of these drivers; nothing if there is none.
 std::optional<std::size_t> firstOf(const Json& list, SampleKind kind, DriverNames drivers) {
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (kindOf(list[i]) == kind && isOneOf(entryText(list[i], "driver"), drivers)) return i;
+    if (kindOf(list[i]) == kind && isOneOf(entryField(list[i], "driver"), drivers)) return i;
   }
   return std::nullopt;
 }
@@ -90,15 +90,14 @@ Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKin
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: /devices/{} (\"{}\") has the driver \"{}\", which is not that of "
                              "a {}; {}",
-                             path, i, name, entryText(list[i], "driver"), kindName(kind),
+                             path, i, name, entryField(list[i], "driver"), kindName(kind),
                              namesOf(list, kind))};
   }
   if (name.empty())
-    return Error{
-        Errc::kInvalidArgument,
-        fmt::format("{}: /devices has no {}: add one first (`merlin devices` shows what is "
-                    "plugged in and its line for the file)",
-                    path, kindName(kind))};
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: /devices has no {}: add one first (`merlin devices` shows what "
+                             "is plugged in and the entry to add for it)",
+                             path, kindName(kind))};
   return Error{Errc::kInvalidArgument, fmt::format("{}: /devices has no device named \"{}\"; {}",
                                                    path, name, namesOf(list, kind))};
 }
@@ -108,10 +107,10 @@ Result<CalibratedDevice> deviceAt(const Json& list, std::size_t index, const std
   CalibratedDevice device{path,
                           fmt::format("/devices/{}", index),
                           nameOf(entry),
-                          entryText(entry, "driver"),
+                          entryField(entry, "driver"),
                           Json::object(),
                           entry.value("baud", Json(0)),
-                          entryText(entry, "port")};
+                          entryField(entry, "port")};
   const auto own = entry.find(device.driver);
   if (own == entry.end()) return device;
   if (!own->is_object())
@@ -139,7 +138,8 @@ Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
   return deviceAt(list, *index, file);
 }
 
-// The loader reads the entry alone, so that what is wrong elsewhere in the file stops nothing.
+// Only this entry is given to the loader, so that faults elsewhere in the file do not stop the
+// calibration.
 Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::string& port,
                                   int baud) {
   constexpr std::string_view kAlone = "/devices/0";
@@ -203,7 +203,7 @@ Result<Ok> saveChecked(const CalibratedDevice& device, SampleKind kind, const Js
   if (const auto allowed = settingsOf(changed, device.port, 0); !allowed) return allowed.error();
   const auto saved = saveSettings(device, kind, values);
   if (saved)
-    printOut("{}: {}, {}; `merlin reload` or a restart of merlind takes it\n", device.file,
+    printOut("{}: {}, {}; run `merlin reload` or restart merlind to apply it\n", device.file,
              device.name, values.dump());
   return saved;
 }

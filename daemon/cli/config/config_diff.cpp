@@ -63,8 +63,7 @@ void addConfigDiff(Command config, Run& run) {
   command.option("file", options->file, "The configuration").typeName("FILE").showDefault();
   command
       .option("other", options->other,
-              "A second one; without it FILE is compared with the "
-              "defaults")
+              "The configuration to compare FILE with; the default values if none is given")
       .typeName("OTHER");
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return diff(*options); }; });

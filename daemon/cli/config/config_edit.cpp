@@ -31,7 +31,7 @@ std::string editorName() {
   return "editor";  // Debian's choice of the system
 }
 
-// Ignores the signals of the keyboard, which are for the editor meanwhile.
+// Ignores SIGINT and SIGQUIT of the keyboard, which only the editor should receive while it runs.
 class KeyboardSignalsIgnored {
  public:
   KeyboardSignalsIgnored()
@@ -48,8 +48,8 @@ class KeyboardSignalsIgnored {
   void (*quit_)(int);
 };
 
-// Runs the editor, a line for the shell, on the file and waits for its end. Errors: kIo (it cannot
-// be started, or it failed).
+// Runs `editor`, a command line for the shell, on the file and waits for its end. Errors: kIo (it
+// cannot be started, or it failed).
 Result<Ok> runEditor(const std::string& editor, const std::string& file) {
   const std::string line = editor + " \"$1\"";
   const KeyboardSignalsIgnored ignored;
@@ -63,10 +63,11 @@ Result<Ok> runEditor(const std::string& editor, const std::string& file) {
   }
   const int status = waitForChild(*child);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Ok{};
-  return Error{Errc::kIo,
-               fmt::format("the editor \"{}\" (from VISUAL or EDITOR) failed{}", editor,
-                           WIFEXITED(status) ? fmt::format(", exit status {}", WEXITSTATUS(status))
-                                             : std::string(" by a signal"))};
+  return Error{
+      Errc::kIo,
+      fmt::format("the editor \"{}\" (VISUAL or EDITOR names another one) failed{}", editor,
+                  WIFEXITED(status) ? fmt::format(", exit status {}", WEXITSTATUS(status))
+                                    : std::string(": it was ended by a signal"))};
 }
 
 // Asks until the answer begins with one of `letters`; nothing at the end of the input.
@@ -79,8 +80,7 @@ std::optional<char> ask(const std::string& question, std::string_view letters) {
   return std::nullopt;
 }
 
-// Reads the copy as the configuration that it is to become, and prints its findings under the
-// name of that.
+// Loads the copy as a configuration, and prints its findings with the name of the original file.
 LoadedSettings check(const EditedFile& edited) {
   LoadedSettings loaded = loadSettingsFile(edited.copy());
   for (const Finding& finding : loaded.findings) printError("{}\n", toText(edited.path(), finding));
@@ -106,14 +106,15 @@ int offerReload(const std::string& instance) {
 int save(EditedFile& edited, const LoadedSettings& loaded) {
   if (const auto replaced = edited.replace(); !replaced) {
     edited.keepCopy();
-    printNote(fmt::format("what was edited is in {}", edited.copy()));
+    printNote(fmt::format("your edits are kept in {}", edited.copy()));
     return fail(replaced.error());
   }
   printOut("{}: saved\n", edited.path());
   return offerReload(loaded.settings.instance);
 }
 
-// Edits until the copy is valid and is to be kept, or the old file is.
+// Lets the person edit the copy until it is valid and saved, or until the person keeps the old
+// file.
 int editFile(const std::string& path) {
   auto edited = EditedFile::open(path);
   if (!edited) return fail(edited.error());
@@ -130,14 +131,14 @@ int editFile(const std::string& path) {
     if (loaded.verdict() == Verdict::kValid) return save(*edited, loaded);
     const bool invalid = loaded.verdict() == Verdict::kInvalid;
     const auto answer =
-        invalid ? ask("It is invalid. (e)dit again, (k)eep the old one:", "ek")
-                : ask("Numbers are out of their range. (e)dit again, (k)eep the old one, (s)ave:",
+        invalid ? ask("The edited file is invalid. (e)dit again, (k)eep the old one:", "ek")
+                : ask("Some numbers are out of range. (e)dit again, (k)eep the old one, (s)ave:",
                       "eks");
     if (answer == 's') return save(*edited, loaded);
     if (answer == 'k') return keepOld(*edited, invalid ? kExitBadInput : kExitDone);
     if (answer) continue;
     edited->keepCopy();  // nobody answers: the work is not lost
-    printNote(fmt::format("what was edited is in {}", edited->copy()));
+    printNote(fmt::format("your edits are kept in {}", edited->copy()));
     return keepOld(*edited, kExitBadInput);
   }
 }

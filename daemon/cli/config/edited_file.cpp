@@ -43,7 +43,8 @@ std::string copyName(const fs::path& path) {
   return (path.parent_path() / name).string();
 }
 
-// A file beside `path` without a reader until it is complete. Removed unless it was renamed.
+// A temporary file beside `path`, which nobody reads before it is complete and renamed. The
+// destructor removes it unless it was renamed.
 class NewFile {
  public:
   explicit NewFile(const std::string& path) : name_(path + ".XXXXXX") {
@@ -67,7 +68,7 @@ class NewFile {
   bool renamed_ = false;
 };
 
-// The name in a folder is on the disk only once the folder is.
+// Syncs the folder of `path`: a new name in it survives a power failure only after that.
 void syncFolder(const fs::path& path) {
   const UniqueFd folder(::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folder.valid()) ::fsync(folder.get());
@@ -90,7 +91,7 @@ Result<EditedFile> EditedFile::open(const std::string& path) {
   if (!file) return file.error();
   edited.before_ = std::string(file->text());
   edited.stamp_ = file->stamp();
-  // What an edit that was cut off has left is replaced.
+  // Replaces the copy that an interrupted edit may have left behind.
   const std::string copy = copyName(real);
   ::unlink(copy.c_str());
   const UniqueFd fd(::open(copy.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
@@ -139,7 +140,7 @@ Result<Ok> EditedFile::replace() {
                              "{}); use sudo",
                              path_, old.st_uid, old.st_gid)};
   }
-  // After fchown(), which may take bits away.
+  // After fchown(), because that may clear bits of the mode.
   if (::fchmod(fresh.fd(), old.st_mode & 07777) != 0) return fault(path_, errno);
   if (!fresh.rename(path_)) return fault(path_, errno);
   syncFolder(path_);

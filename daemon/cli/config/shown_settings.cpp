@@ -21,8 +21,9 @@ bool isOfListedEntry(const LoadedSettings& loaded, std::string at) {
   return false;
 }
 
-// What an entry in the file does not say has the default of an entry with these others (the baud
-// rate of its driver), and not that of the default list's entry, which the file's list replaces.
+// A setting that a list entry in the file omits has the default of an entry with these other
+// settings (such as the baud rate of its driver), not the value in the default list, because the
+// file's list replaces the default list.
 void findOrigin(const LoadedSettings& loaded, const std::string& file, ShownSetting& shown) {
   SettingValue& setting = shown.setting;
   const bool own = loaded.lines.contains(setting.pointer);

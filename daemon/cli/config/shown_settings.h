@@ -20,7 +20,7 @@ struct ShownSetting {
   SettingValue setting;  // if a list entry omits it, its default is the value in effect
   Origin origin = Origin::kDefault;
   std::string file;  // for kFile and kState
-  int line = 0;      // of kFile
+  int line = 0;      // for kFile
   bool differs() const { return setting.value != setting.default_value; }
 };
 

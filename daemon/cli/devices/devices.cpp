@@ -43,7 +43,7 @@ struct DevicesOptions {
 struct Configured {
   std::string name, state;
   DeviceHealth health;
-  std::string path;  // of its port's file, without links; empty: its port has none
+  std::string path;  // its port's file, with links resolved; empty: the port is no file
 };
 
 std::string pathOf(const std::string& port) {
@@ -54,7 +54,8 @@ std::string pathOf(const std::string& port) {
   return error ? address->path : real.string();
 }
 
-// Of a merlind that runs; empty otherwise.
+// Returns the devices of a running merlind. Errors: those of DevicesReader::open(); kNotFound (it
+// has ended).
 Result<std::vector<Configured>> configuredDevices(const std::string& instance) {
   const std::string segment = shm::segmentName(instance, "devices");
   const auto reader = shm::DevicesReader::open(segment);
@@ -109,7 +110,7 @@ void printPlugged(const Plugged& plugged, const Configured* reader) {
   if (reader) printOut("    is the port of \"{}\"\n", reader->name);
   if (!plugged.axes.empty()) printOut("{}", wrapped("axes:", plugged.axes));
   if (!plugged.keys.empty()) printOut("{}", wrapped("keys:", plugged.keys));
-  if (!plugged.usual.empty()) printOut("    unless told otherwise: {}\n", plugged.usual);
+  if (!plugged.usual.empty()) printOut("    by default: {}\n", plugged.usual);
   if (reader) return;
   for (const Plugged::Use& use : plugged.uses)
     printOut("    {}\n", configurationEntry(plugged, use));
@@ -141,8 +142,8 @@ Json jsonOf(const Plugged& plugged, const Configured* reader) {
           {"usual", plugged.usual},       {"as", std::move(entries)}};
 }
 
-// Of the file that the option names, or of the usual one where it can be read; otherwise the
-// defaults.
+// Returns the settings of the file that the option names; without the option, those of the usual
+// file if it can be read, otherwise the defaults.
 Result<Settings> settingsOf(const DevicesOptions& options) {
   if (options.config.empty() && !fileStamp(kUsualConfig)) return Settings{};
   const std::string file = options.config.empty() ? kUsualConfig : options.config;
@@ -156,7 +157,8 @@ Result<Settings> settingsOf(const DevicesOptions& options) {
   return Settings{};
 }
 
-// Names of configured devices. One without a port keeps its name free: it is a place for a device.
+// Names of configured devices that have a port. The name of an entry without a port stays free,
+// because a plugged-in device may take that entry.
 std::vector<std::string> takenNames(const std::vector<Configured>& running,
                                     const Settings& settings) {
   std::vector<std::string> taken;
@@ -177,7 +179,7 @@ void addRunning(const std::vector<Configured>& running, DevicesSettings& devices
   }
 }
 
-// What there is beside the devices of the running merlind, with names that are free.
+// What was found in addition to the devices of the running merlind; the names in it are free.
 struct Found {
   std::vector<Plugged> plugged;
   std::vector<VrpnListing> vrpn;

@@ -37,7 +37,7 @@ std::string firstLine(const fs::path& file) {
   return line;
 }
 
-// The path without links; itself if that cannot be found out.
+// The path with links resolved; the path itself if that fails.
 std::string withoutLinks(const fs::path& path) {
   std::error_code error;
   const fs::path real = fs::canonical(path, error);
@@ -51,17 +51,16 @@ std::string groupOf(const std::string& path) {
   return owner ? owner->gr_name : "";
 }
 
-// The links of a folder such as /dev/input/by-id, by the file that each points to. Names there stay
-// the same when a device is plugged in elsewhere. The last of several is taken: of a gamepad that
-// is
-// "...-event-joystick".
+// Maps each file to the link in the folder, such as /dev/input/by-id, that points to it. The names
+// of these links stay the same when a device is plugged in elsewhere. If several links point to one
+// file, the last one is taken, which for a gamepad is "...-event-joystick".
 std::map<std::string, std::string> linksOf(const fs::path& folder) {
   std::map<std::string, std::string> links;
   for (const fs::path& entry : entriesOf(folder)) links[withoutLinks(entry)] = entry.string();
   return links;
 }
 
-// The number of bits that a kernel's bitmap has; words of 64 bits, the last one first.
+// Reads a bitmap of the kernel: words of 64 bits in hexadecimal, the last word first.
 template <std::size_t N>
 std::bitset<N> bitmap(const fs::path& file) {
   std::istringstream words(firstLine(file));
@@ -144,7 +143,7 @@ void describeInput(const Capabilities& has, Plugged& plugged) {
 
 void addAdapters(const std::string& root, std::vector<Plugged>& all) {
   const auto links = linksOf(root + "/dev/serial/by-id");
-  std::map<std::string, std::string> found = links;  // by file: the name to be used
+  std::map<std::string, std::string> found = links;  // key: file; value: name for its port
   for (const fs::path& entry : entriesOf(root + "/sys/class/tty")) {
     const std::string name = entry.filename();
     const bool adapter = name.starts_with("ttyUSB") || name.starts_with("ttyACM");
@@ -185,7 +184,8 @@ void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
                      {},
                      {},
                      {}});
-    if (kind != "touch screen") describeInput(has, found.back());  // not of evdev's settings
+    if (kind != "touch screen")
+      describeInput(has, found.back());  // the driver touch reads that one, not evdev
   }
   std::ranges::stable_sort(found, {}, &Plugged::name);
   all.insert(all.end(), found.begin(), found.end());

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 struct Reader {
   const char *driver, *name;
   bool (*reads)(const vrpn::Measures&);
-  const std::string& (*device)(const DriverSettings&);  // that it is told to read
+  const std::string& (*device)(const DriverSettings&);  // returns the device that the settings name
 };
 constexpr Reader kReaders[] = {
     {"vrpn", "tracker", [](const vrpn::Measures& m) { return m.poses; },
@@ -151,16 +151,18 @@ Json toJson(const VrpnListing& listing) {
 std::string toText(const VrpnListing& listing) {
   if (!listing.answers) return fmt::format("  {}: {}\n", listing.port, listing.fault);
   if (listing.own) {
-    return fmt::format("  {}: merlind's own server (/serve/vrpn_port), which is no input of its\n",
-                       listing.port);
+    return fmt::format(
+        "  {}: merlind's own server (/serve/vrpn_port), which merlind does not read\n",
+        listing.port);
   }
   std::string text = fmt::format("  {}, VRPN {}{}\n", listing.port, listing.version,
                                  listing.devices.empty() ? ": no device" : "");
   for (const VrpnOffer& offer : listing.devices) text += deviceText(listing, offer);
   if (listing.left_out > 0) {
-    text +=
-        fmt::format("    {} more, whose names no configuration can have, or which are too many\n",
-                    listing.left_out);
+    text += fmt::format(
+        "    {} more devices are not listed: their names cannot be used in a configuration, or "
+        "there are too many\n",
+        listing.left_out);
   }
   if (!listing.fault.empty()) text += fmt::format("    {}\n", listing.fault);
   return text;

@@ -21,11 +21,11 @@ namespace {
 constexpr const char* kUsualHere = "tcp://127.0.0.1:3883";
 constexpr Duration kGrace = std::chrono::milliseconds(100);  // for threads that end on time
 
-// Of the caller and of the threads, which may outlive the call.
+// State that the caller shares with its threads, which may outlive the call.
 struct Round {
   std::mutex mutex;
   std::condition_variable ended;
-  std::vector<VrpnAnswer> answers;  // as they are without an answer, until one comes
+  std::vector<VrpnAnswer> answers;  // each has the fault "no answer" until one arrives
   std::size_t open = 0;             // threads that have not ended
 };
 
@@ -40,7 +40,7 @@ void ask(const PortAddress& at, Timestamp until, VrpnAnswer& answer) {
   const auto stream = io::openPort(at, 0);
   if (!stream) {
     answer.fault = faultOf(stream.error(), at);
-    if (answer.port == kUsualHere)  // which is asked though nobody may have named it
+    if (answer.port == kUsualHere)  // always asked, even if nobody named it
       answer.fault += "; no VRPN server runs on this machine";
     return;
   }

@@ -6,7 +6,7 @@
 namespace merlin::cli {
 namespace {
 
-// As merlind's follower sees it: through the smoothing of the hand.
+// Appends the performance as merlind's gesture follower sees it, with the hand's smoothing.
 void append(nn::PathRecording& recording, const hand::Performance& performance) {
   hand::Hand smooth({});
   const nn::WallAxes axes;

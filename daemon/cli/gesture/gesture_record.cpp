@@ -57,15 +57,15 @@ Result<LiveHand> openHand(const GestureRecordOptions& options) {
             "--hand: the merlind that runs as \"{}\" has no hand{}; {}", options.instance,
             options.hand.empty() ? "" : fmt::format(" named \"{}\"", printable(options.hand)),
             handsOf(**devices))};
-  // Which tracker a hand follows is not in shared memory, and nothing here asks for its health: a
-  // hand whose tracker sends nothing sends nothing itself.
+  // Shared memory does not say which tracker a hand follows, so the first tracker is taken. Its
+  // health is not read here: if the tracker of a hand sends nothing, the hand sends nothing either.
   const auto* const tracker = devices ? (*devices)->tracker() : nullptr;
   if (devices && !tracker)
     return Error{Errc::kInvalidArgument,
                  fmt::format("the merlind that runs as \"{}\" has no tracker that a hand could "
                              "follow: add one to /devices",
                              options.instance)};
-  // Without devices, this says why there are none.
+  // If merlind runs without devices, this returns the error that says why.
   auto samples = LiveSamples<HandSample>::open(options.instance, hand ? hand->name : "",
                                                tracker ? tracker->name : "");
   if (!samples) return samples.error();
@@ -73,7 +73,7 @@ Result<LiveHand> openHand(const GestureRecordOptions& options) {
                   *std::move(samples)};
 }
 
-// Records the hand for `seconds`, or passes over what it does in that time.
+// Records the poses of the hand for `seconds` into `poses`; discards them if that is null.
 Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std::uint32_t label,
                   std::vector<nn::LabelledPose>* poses) {
   const SystemClock clock;
@@ -82,7 +82,7 @@ Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std:
   while (clock.now() - began < fromSeconds(seconds)) {
     const auto taken = hand.samples.listen([&](const HandSample& s) {
       heard = clock.now();
-      // What a busy machine hands over late may be of before or after the take.
+      // On a busy machine, samples arrive late: skips those from before or after the take.
       const Timestamp received = fromNanoseconds(s.received_ns);
       if (poses && received >= began && received < began + fromSeconds(seconds))
         poses->push_back({label, axes.turned(s.received_ns, s.position_m, s.orientation_wxyz)});
@@ -98,7 +98,7 @@ Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std:
   return Ok{};
 }
 
-// Whether no part of the time between was without a pose.
+// Whether no gap between poses from `from` to `to` is longer than kLongestGap.
 bool isSeenThroughout(std::span<const nn::LabelledPose> take, Timestamp from, Timestamp to) {
   Timestamp last = from;
   for (const nn::LabelledPose& p : take) {
@@ -109,13 +109,13 @@ bool isSeenThroughout(std::span<const nn::LabelledPose> take, Timestamp from, Ti
   return to - last <= kLongestGap;
 }
 
-// Errors: kTimeout: the hand was lost for a moment, as on a busy machine; those of
-// nn::checkTake(), but ordinary motion may be none.
+// Errors: kTimeout: the hand was lost for a moment, as on a busy machine; those of nn::checkTake(),
+// which is not called for ordinary motion.
 Result<Ok> checkTaken(std::span<const nn::LabelledPose> poses, Timestamp began,
                       const GestureRecordOptions& options) {
   if (!isSeenThroughout(poses, began, began + fromSeconds(options.seconds)))
     return Error{Errc::kTimeout,
-                 "the hand was not seen all the time: `merlin status` tells of its tracker"};
+                 "the hand was not tracked all the time: see its tracker in `merlin status`"};
   if (options.label == nn::kNoGesture) return Ok{};
   return nn::checkTake({{options.label}, {poses.begin(), poses.end()}});
 }
@@ -137,10 +137,12 @@ Result<Ok> takeOne(LiveHand& hand, const GestureRecordOptions& options, const nn
     }
     const std::string& why = checked.error().what;
     if (tries == kMostTriesOfATake)
-      return Error{checked.error().code,
-                   fmt::format("hand \"{}\": {} takes in a row are of no use; of the last one: {}",
-                               hand.name, kMostTriesOfATake, why)};
-    printError("this take is of no use: {}\nonce more: hold the hand still ...\n", why);
+      return Error{
+          checked.error().code,
+          fmt::format(
+              "hand \"{}\": {} takes in a row could not be used; reason for the last one: {}",
+              hand.name, kMostTriesOfATake, why)};
+    printError("this take cannot be used: {}\nonce more: hold the hand still ...\n", why);
   }
 }
 

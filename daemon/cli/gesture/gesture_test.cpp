@@ -1,5 +1,5 @@
-// merlin gesture test: how often gestures are recognised in a recording, and how often one is
-// reported of which nobody thought.
+// merlin gesture test: how often gestures are recognised in a recording, and how often a gesture is
+// reported that nobody made.
 #include "daemon/cli/gesture/gesture.h"
 
 #include <algorithm>

@@ -115,9 +115,9 @@ void addGestureTrain(Command gesture, Run& run) {
   Command command = gesture.subcommand(
       "train",
       "Train gestures on recorded takes; without DATA, on the synthetic people that the shipped "
-      "gestures were trained on. Ordinary motion, of which no gesture is to be made, is what the "
-      "recording has with the label none, or else that of synthetic people.\nExample: merlin "
-      "gesture train gestures.csv -o gestures.json");
+      "gestures were trained on. Ordinary motion, in which no gesture must be recognised, comes "
+      "from the takes with the label none; without such takes, from synthetic people.\nExample: "
+      "merlin gesture train gestures.csv -o gestures.json");
   command.option("data", options->data, "Recorded takes, CSV").typeName("DATA.csv");
   command.option("-o", options->output, "File of the trained gestures")
       .required()

@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Gives the result its name once it is on the disk: whoever looks sees the old file or all of the
-// new one.
+// Syncs the result to the disk, then renames it, so that readers see either the old file or the
+// complete new one.
 Result<Ok> moveInto(const std::string& from, const std::string& to) {
   const UniqueFd file(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid() || ::fsync(file.get()) != 0 || ::rename(from.c_str(), to.c_str()) != 0)
@@ -129,7 +129,7 @@ Result<Ok> checkOptions(const ImageImport& options) {
 
 Result<Ok> importImage(const ImageImport& options) {
   if (const auto good = checkOptions(options); !good) return good.error();
-  const UniqueFd stop = stopSignals();  // before the folder is there, which a signal would leave
+  const UniqueFd stop = stopSignals();  // before the folder exists: a signal would leave it behind
   const auto folder = WorkFolder::make(options.output);
   if (!folder) return folder.error();
   Summary summary;
@@ -138,7 +138,8 @@ Result<Ok> importImage(const ImageImport& options) {
     printNote(fmt::format("this system lacks {}; the import ran without it", what));
   for (const std::string& note : summary.notes) printNote(options.input + ": " + note);
   if (!made) return made.error();
-  // Read as the daemon will: what it would refuse is not left behind.
+  // Opens the result as the daemon does, so that a file that the daemon would refuse is not left
+  // behind.
   const auto read = render::image::PyramidFile::open(*made);
   if (!read) return Error{Errc::kIo, "the result cannot be used: " + read.error().what};
   if (const auto moved = moveInto(*made, options.output); !moved) return moved.error();
@@ -174,8 +175,8 @@ void addImageImport(Command image, Run& run) {
       .option("--range", options->range,
               "The values that become black and white. By default measured values (floats, signed "
               "and 32-bit integers, and grey of 16 bits that ends below 16384) are shown from the "
-              "lowest to the highest of the picture, without a thousandth at either end, which a "
-              "note says; colours stay as they are")
+              "lowest to the highest value of the picture, without a thousandth of them at either "
+              "end, and a note gives the two values; colours stay as they are")
       .typeName("LOW HIGH")
       .expected(2);
   command

@@ -100,10 +100,10 @@ Result<DeviceSettings> configuredDevice(const std::string& file, const std::stri
   const LoadedSettings loaded = loadSettingsFile(file);
   const auto fault = std::ranges::find(loaded.findings, false, &Finding::adjusted);
   if (fault != loaded.findings.end())
-    return Error{Errc::kMalformed,
-                 toText(file, *fault) + fmt::format("; mend it first (`merlind --check-config {}` "
-                                                    "lists all faults)",
-                                                    file)};
+    return Error{
+        Errc::kMalformed,
+        toText(file, *fault) +
+            fmt::format("; correct it first (`merlind --check-config {}` lists all faults)", file)};
   const auto& list = loaded.settings.devices.list;
   const auto found = std::ranges::find(list, name, &DeviceSettings::name);
   if (found != list.end()) return *found;
@@ -114,8 +114,8 @@ Result<DeviceSettings> configuredDevice(const std::string& file, const std::stri
                            names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")))};
 }
 
-// What to record, and how to speak to it: the settings of the device in the configuration, or the
-// usual ones of the driver; without a driver the line is only read. What the options say counts.
+// Returns the settings for the device to record: those in the configuration, or the defaults of the
+// driver; without a driver the line is only read. The options override them.
 Result<DeviceSettings> recordedDevice(const LineRecordOptions& options) {
   DeviceSettings device;
   if (!options.config.empty()) {

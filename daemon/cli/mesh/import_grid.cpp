@@ -32,12 +32,12 @@ RangeReader readerOf(const std::optional<InputKind>& kind, const ForeignGrid& gr
     if (foreign)
       return readForeignGrid({path, grid.output, grid.memory_bytes, grid.hdu, grid.variable}, said);
     if (!grid.variable.empty())
-      return Error{Errc::kInvalidArgument,
-                   path +
-                       ": --variable is for netCDF and other files of several maps, and this "
-                       "is none"};
+      return Error{Errc::kInvalidArgument, path +
+                                               ": --variable is for netCDF and other files of "
+                                               "several maps, and this file is not one"};
     if (grid.hdu.empty()) return render::range::readRange(path, said);
-    return Error{Errc::kInvalidArgument, path + ": --hdu is for FITS files, and this is none"};
+    return Error{Errc::kInvalidArgument,
+                 path + ": --hdu is for FITS files, and this file is not one"};
   };
 }
 

@@ -28,8 +28,8 @@ struct ImportedModel {
   const render::mesh::Origin& origin() const { return cloud ? cloud->origin : loaded.origin; }
 };
 
-// The output, beside which a foreign format is read, and the memory that reading may take, in
-// merlin-import and in this program.
+// The output file, beside which merlin-import's work folder is made, and the memory limit for
+// reading, in merlin-import and in this program.
 struct ModelLimits {
   std::string output;
   std::uint64_t memory_bytes = 0;

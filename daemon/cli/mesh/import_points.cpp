@@ -13,23 +13,23 @@ void PointImport::addTo(Command command) {
   arguments_.push_back(
       command
           .option("--depth", surface.depth,
-                  "Of a point cloud: depth of the octree of its surface (Poisson reconstruction); "
-                  "guessed from the points' spacing; where there are too few points for it, cells "
-                  "stay larger")
+                  "Point cloud only: depth of the octree in which the surface is computed (Poisson "
+                  "reconstruction); by default derived from the points' spacing; where there are "
+                  "too few points for it, cells stay larger")
           .range(kLeastDepth, kMostDepth)
           .typeName("N"));
-  arguments_.push_back(
-      command
-          .option("--neighbours", surface.neighbours,
-                  "Of a point cloud: neighbours of a point that make its normal; guessed: 16")
-          .range(kLeastNeighbours, kMostNeighbours)
-          .typeName("K"));
+  arguments_.push_back(command
+                           .option("--neighbours", surface.neighbours,
+                                   "Point cloud only: number of neighbours from which the normal "
+                                   "of a point is computed; 16 by default")
+                           .range(kLeastNeighbours, kMostNeighbours)
+                           .typeName("K"));
   arguments_.push_back(
       command
           .option("--trim", surface.trim,
-                  "Of a point cloud: greatest distance of the surface from the nearest point, in "
+                  "Point cloud only: greatest distance of the surface from the nearest point, in "
                   "the file's unit; with 0 nothing is trimmed, and the surface closes over gaps; "
-                  "guessed from the points' spacing")
+                  "by default derived from the points' spacing")
           .nonNegative()
           .typeName("LENGTH"));
 }
@@ -38,7 +38,7 @@ bool PointImport::anyGiven() const { return std::ranges::any_of(arguments_, &Arg
 
 ForeignFile pointFile(const std::string& input, const std::string& output,
                       std::uint64_t memory_bytes, const render::points::SurfaceSettings& settings) {
-  constexpr std::uint64_t kBytesPerSecond = 2'000;  // a tenth and less of what was measured
+  constexpr std::uint64_t kBytesPerSecond = 2'000;  // at most a tenth of the measured speed
   return {kPointsKind,
           input,
           output,

@@ -19,8 +19,8 @@ namespace {
 
 namespace range = render::range;
 
-// Steps between pixels that the longest edge spans if nothing else is asked for: surfaces that are
-// inclined by up to 84 degrees stay connected.
+// The default of --max-edge, in steps between pixels: surfaces that are inclined by up to 84
+// degrees stay connected.
 constexpr double kSteps = 10;
 
 bool readWhole(std::string_view text, double& value) {
@@ -28,7 +28,7 @@ bool readWhole(std::string_view text, double& value) {
   return wrong == std::errc() && end == text.data() + text.size();
 }
 
-// "0.05", "3%".
+// Parses a length or a percentage of the range: "0.05", "3%".
 Result<range::Threshold> thresholdOf(const char* option, std::string_view text) {
   range::Threshold threshold;
   const bool percent = text.ends_with('%');
@@ -77,8 +77,8 @@ Result<Ok> addFeature(const std::string& text, ImportedRange& loaded) {
   return Ok{};
 }
 
-// Adds the images that the file itself names, but for those that were given. One that is missing is
-// a note only: the ranges may have been copied without it.
+// Adds the images that the file itself names, except those that were given as options. A missing
+// one only causes a note, because the ranges may have been copied without it.
 Result<Ok> addNamedFeatures(const std::string& path, const RangeImport& options, bool texture,
                             const std::vector<range::FeatureFile>& named, ImportedRange& loaded) {
   const std::size_t given = loaded.image.planes.size();
@@ -114,7 +114,8 @@ std::vector<float> valuesAtReturns(const range::RangeImage& image, std::span<con
   return some;
 }
 
-// Adds the feature "colour" of --colour-by, or, where nothing has colours, of what is there.
+// Adds the feature "colour" from what --colour-by names; without that option, and if the image has
+// no colours, from its confidence or its height.
 Result<Ok> addColours(const std::string& wanted, bool texture, range::RangeImage& image) {
   const bool coloured = texture || image.find("colour");
   const range::Plane* confidence = image.find("confidence");
@@ -147,7 +148,7 @@ std::vector<FeatureFacts> factsOfPlanes(const range::RangeImage& image) {
   return facts;
 }
 
-// Peak memory from here on [bytes]: planes are there twice, as pixels and as features.
+// Peak memory from here on [bytes]: planes are in memory twice, as pixels and as features.
 std::size_t memoryFor(const range::RangeImage& image) {
   std::size_t values = 0;
   for (const range::Plane& plane : image.planes) values += plane.dimension;
@@ -291,9 +292,9 @@ void RangeImport::addFeatures(Command command) {
       .repeatable();
   keep("--colour-by",
        command.option("--colour-by", colour_by,
-                      "Make colours of a feature: high red, low blue; or of the height of an "
-                      "elevation map; none for none. By default of confidence or height, where "
-                      "there are no colours"))
+                      "Compute colours from a feature (high values red, low values blue) or from "
+                      "the height of an elevation map; none: no colours. By default from "
+                      "confidence or height, where the input has no colours"))
       .typeName("FEATURE");
   keep("--border", command.flag("--border", border,
                                 "Add the feature border, 1 at vertices on a border, 0 elsewhere"));
@@ -381,8 +382,8 @@ Result<ImportedRange> loadRange(const std::string& path, const RangeImport& opti
   imported.in_metres = loaded->in_metres;
   if (!imported.in_metres)
     imported.notes.emplace_back(
-        "nothing says in which unit its ranges are, and they are taken as they stand; --scale "
-        "METRES_PER_UNIT makes metres of them");
+        "the file does not say in which unit its ranges are, so they are used unchanged; --scale "
+        "METRES_PER_UNIT converts them to metres");
   imported.returns_in_file = static_cast<std::size_t>(
       std::count_if(imported.image.range.begin(), imported.image.range.end(), range::isReturn));
   imported.image.join_ends = !texture;

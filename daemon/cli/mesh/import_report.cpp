@@ -20,7 +20,7 @@ nlohmann::ordered_json jsonOf(const ImportTimes& times) {
           {"reducing", times.reducing}, {"writing", times.writing},     {"all", times.all()}};
 }
 
-// What both kinds of input have in common.
+// The members of the report that both kinds of input have.
 nlohmann::ordered_json jsonOf(const ImportNames& names, const std::string& format,
                               const ImportedFile& written, const ImportTimes& times) {
   nlohmann::ordered_json json = {{"input", names.input},
@@ -140,7 +140,8 @@ void printCloud(const std::string& format, const PointFacts& cloud) {
   printOut("  normals   {}\n", cloud.normals);
   if (cloud.used.trim > 0)
     printOut(
-        "  surface   Poisson, --depth {}; --trim {:.6g} took {} triangles that no point is near\n",
+        "  surface   Poisson, --depth {}; --trim {:.6g} removed {} triangles that are not near a "
+        "point\n",
         cloud.used.depth, cloud.used.trim, cloud.trimmed);
   else
     printOut("  surface   Poisson, --depth {}; nothing was trimmed\n", cloud.used.depth);
@@ -160,7 +161,7 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
   const auto& mesh = range.mesh;
   if (written.triangles > 0)
     printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
-  else  // the image itself
+  else  // the output is the range image itself
     printOut("{}: {} x {} pixels, {} with a return\n", names.output, image.width, image.height,
              std::count_if(image.range.begin(), image.range.end(), render::range::isReturn));
   printOut("  read      {}, {} x {} pixels, {} with a return, {}\n", range.format, image.width,

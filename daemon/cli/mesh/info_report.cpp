@@ -13,11 +13,11 @@ namespace {
 using render::mesh::Hole;
 using render::mesh::Inspection;
 
-// What may be odd about a surface: its key in JSON, its name for a person, and how often it is.
+// What may be odd about a surface: its key in JSON, its name for a person, and how often it occurs.
 std::vector<Repair> oddities(const Inspection& is) {
   return {{"degenerate", "triangles with two corners at one place", is.degenerate},
           {"no_area", "triangles without area", is.no_area},
-          {"duplicate", "triangles with the corners of another", is.duplicate},
+          {"duplicate", "triangles with the same corners as another", is.duplicate},
           {"non_manifold_edges", "edges with more than two triangles", is.non_manifold_edges},
           {"turned_edges", "edges whose two triangles face different ways", is.turned_edges},
           {"non_manifold_vertices", "vertices where parts of the surface only touch",
@@ -62,9 +62,10 @@ void printSurface(const Inspection& is) {
   }
 }
 
-// What may be odd about the points themselves; "isolated" says nothing of them.
+// What may be odd about the points themselves; "isolated" is left out, because it is true of every
+// point.
 std::vector<Repair> oddities(const CloudInfo& cloud, const Inspection& is) {
-  return {{"coincident", "points at the place of an earlier one", cloud.coincident},
+  return {{"coincident", "points at the same place as an earlier point", cloud.coincident},
           {"normals_not_unit", "normals that are not of length one", is.not_unit}};
 }
 
@@ -101,7 +102,8 @@ void printAbout(std::string_view about) {
   while (!about.empty()) {
     const std::size_t n = std::min(about.find('\n'), about.size());
     const std::string_view line = about.substr(0, n);
-    if (!line.starts_with("unit=")) printOut("  made by   {}\n", line);  // is said already
+    if (!line.starts_with("unit="))
+      printOut("  made by   {}\n", line);  // the unit is printed already
     about.remove_prefix(std::min(n + 1, about.size()));
   }
 }

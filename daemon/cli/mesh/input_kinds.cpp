@@ -40,7 +40,8 @@ bool isGltf(std::string_view content) {
          });
 }
 
-// A chunk 0x4D4D, whose first chunk is the version or the editor's.
+// A 3DS file is a chunk 0x4D4D whose first subchunk is the version (0x0002) or the editor's data
+// (0x3D3D).
 bool is3ds(std::string_view content) {
   if (content.size() < 16 || !content.starts_with("MM")) return false;
   const std::string_view first = content.substr(6, 2);
@@ -69,7 +70,8 @@ bool isTiff(std::string_view content) {
   return std::ranges::any_of(kMarks, [&](std::string_view m) { return content.starts_with(m); });
 }
 
-// Two numbers of the first record: the level of the DEM, and the kind of its pattern.
+// Checks two numbers of the first record: the code of the pattern, and that of the planimetric
+// reference system.
 bool isUsgsDem(std::string_view content) {
   if (content.size() < 1024) return false;
   const std::string_view pattern = content.substr(150, 6), system = content.substr(156, 6);
@@ -77,8 +79,8 @@ bool isUsgsDem(std::string_view content) {
          system[5] >= '0' && system[5] <= '3';
 }
 
-// Whether a text of this name, but for the ending .hdr, describes rows and columns: GTOPO30 and
-// other raw grids are two files.
+// Whether a text file with the same name but the ending .hdr states rows and columns: GTOPO30 and
+// other raw grids consist of two files.
 bool hasHeaderBeside(const std::string& path) {
   constexpr std::size_t kMost = 4096;
   const std::size_t dot = path.find_last_of("./");

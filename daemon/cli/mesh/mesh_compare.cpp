@@ -130,8 +130,9 @@ Result<PlacedMesh> openMesh(const std::string& path, const LevelChoice& choice) 
   return placed;
 }
 
-// Where only one of two has an origin: the other one is relative to the same if it lies near 0, as
-// after an export with --local; else its coordinates are those of its file.
+// The origin of the coordinates of `placed`. If it has none itself, it is taken to be relative to
+// `others`, the origin of the other mesh, if it lies near 0, as after an export with --local;
+// otherwise its origin is 0 0 0.
 render::mesh::Origin originOf(const PlacedMesh& placed, const render::mesh::Origin& others) {
   const render::mesh::Origin none{};
   const std::vector<float>& p = placed.mesh.positions;

@@ -54,8 +54,8 @@ void printMapOrigin(std::string_view about) {
   const std::string at = valueIn(about, "map.origin");
   if (!at.empty())
     printOut(
-        "  origin    {}, of the map, is not added: nothing says that its unit is that of the mesh, "
-        "whose (0, 0) lies there\n",
+        "  origin    {} (of the map) is not added, because it is not known whether its unit is "
+        "that of the mesh; the (0, 0) of the mesh lies there\n",
         at);
 }
 
@@ -113,10 +113,10 @@ void addMeshExport(Command mesh, Run& run) {
       ".stl (triangles only). A texture is stored inside .glb and .gltf, and in a file of its own "
       "beside .ply, .obj and .iv. A mesh of a map or a survey gets the coordinates of the original "
       "file again: doubles in .ply, decimals in .obj, a translation in .glb and .gltf. Those of "
-      ".stl and .iv are floats, and stay relative to the model's origin, which is named.\n"
-      "Example: merlin mesh export scan.mrm --percent 5 -o scan5.ply\n"
-      "Example with all resolutions, for an Open Inventor viewer that can load SoMRFaceSet.so: "
-      "merlin mesh export scan.mrm --multiresolution -o scan.iv");
+      ".stl and .iv are floats, and stay relative to the model's origin, which is "
+      "printed.\nExample: merlin mesh export scan.mrm --percent 5 -o scan5.ply\nExample with all "
+      "resolutions, for an Open Inventor viewer that can load SoMRFaceSet.so: merlin mesh export "
+      "scan.mrm --multiresolution -o scan.iv");
   command.option("model", options->model, "The model, or a mesh").required().typeName("MODEL.mrm");
   command.option("-o", options->output, "The mesh: .ply, .obj, .glb, .gltf, .stl or .iv")
       .required()

@@ -36,15 +36,15 @@ struct MeshFuse {
   bool makesModel() const { return output.ends_with(".mrm"); }
 };
 
-// The scans, relative to a common origin, and what they say of the result.
+// The scans, relative to a common origin, and what they state about the result.
 struct Scans {
   std::vector<render::range::RangeImage> images;
   render::mesh::Origin origin{};
-  std::vector<FeatureFacts> features;  // of one value, each once
-  bool in_metres = true;               // all of them
+  std::vector<FeatureFacts> features;  // those with one value, each listed once
+  bool in_metres = true;               // whether all scans are
 };
 
-// What was written, and what it took.
+// What was written, and the seconds that each step took.
 struct FusedFile {
   render::mesh::WrittenMesh mesh{};
   std::optional<std::size_t> coarsest{};  // triangles of a model's coarsest level
@@ -60,7 +60,8 @@ Result<ImportedRange> readScan(const MeshFuse& options, std::size_t number) {
                {{}, options.output, options.limit(), options.range.hdu, options.range.variable}));
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(fmt::format("{}: {}", path, note));
-  if (options.range.filters()) {  // which check the memory of a mesh, and none is made here
+  // filterRange() also checks the memory for a mesh, which is not made here.
+  if (options.range.filters()) {
     const auto filtered =
         filterRange(path, options.range, options.limit(), {threadsOr(options.threads)}, *loaded);
     if (!filtered) return filtered.error();
@@ -75,7 +76,8 @@ Result<ImportedRange> readScan(const MeshFuse& options, std::size_t number) {
   return loaded;
 }
 
-// Joins what the scans say of each feature; features without a value of their own have no range.
+// Joins the facts that the scans state about each feature; features without any value
+// have no range. Prints a note if the units differ.
 void joinFacts(const MeshFuse& options, const std::vector<FeatureFacts>& all, Scans& scans) {
   for (const FeatureFacts& one : all) {
     if (std::ranges::find(scans.features, one.name, &FeatureFacts::name) != scans.features.end())
@@ -87,8 +89,8 @@ void joinFacts(const MeshFuse& options, const std::vector<FeatureFacts>& all, Sc
     scans.features.push_back(joined(same, differ));
     if (differ)
       printNote(
-          fmt::format("{}: the scans give the feature {} in different units; its unit is "
-                      "left out, its values are mixed as they stand",
+          fmt::format("{}: the scans give the feature {} in different units; its unit is left out, "
+                      "and its values are blended without conversion",
                       options.output, one.name));
   }
 }
@@ -131,7 +133,8 @@ Result<fuse::Fused> fuseScans(MeshFuse& options,
   for (const auto& scan : scans) pixels += scan.pixels();
   if (options.settings.voxel == 0) options.settings.voxel = fuse::voxelFor(scans);
   options.settings.background_is_empty = !options.lost_says_nothing;
-  // What is free now does not include the scans; a limit of the whole command does.
+  // The free memory, the default limit, already excludes the scans; a limit for the whole command
+  // (--memory) includes them.
   const std::size_t used = options.memory > 0 ? peakMemory() : 0;
   options.settings.memory = options.limit() - std::min(options.limit(), used);
   const SystemClock clock;
@@ -151,7 +154,7 @@ Result<Ok> writeFused(const MeshFuse& options, const Scans& scans, const render:
     file.mesh = *std::move(written);
     return Ok{};
   }
-  double reducing = 0;  // a part of writing
+  double reducing = 0;  // included in the time of writing
   const std::string about = (scans.in_metres ? "unit=m\n" : "") + aboutOrigin(scans.origin) +
                             aboutFeatures(scans.features);
   const auto coarsest = writeReduced(
@@ -223,8 +226,8 @@ void report(const MeshFuse& options, const Scans& scans, const fuse::Fused& fuse
   printOut("{}: {} triangles, {} vertices\n", options.output, fused.mesh.triangleCount(),
            fused.mesh.vertexCount());
   printOut("  read      {} scans\n", options.scans.size());
-  printOut("  volume    {} blocks of 8 x 8 x 8 voxels of {:.4g}, of {} looked at\n", fused.blocks,
-           options.settings.voxel, fused.looked_at);
+  printOut("  volume    {} blocks of 8 x 8 x 8 voxels, edge {:.4g}, of {} blocks examined\n",
+           fused.blocks, options.settings.voxel, fused.looked_at);
   const std::size_t inferred = fused.mesh.vertexCount() - fused.measured;
   if (options.settings.close)
     printOut("  closed    {} vertices that no scan saw (feature measured is 0)\n", inferred);
@@ -241,12 +244,13 @@ void report(const MeshFuse& options, const Scans& scans, const fuse::Fused& fuse
            peakMemory() >> 20);
 }
 
-// Errors: kInvalidArgument; `options` lose the scan that --angles took.
+// Checks the options. Errors: kInvalidArgument. If --angles took a scan as its value, the scan is
+// removed from the values of --angles.
 Result<Ok> checkFuse(MeshFuse& options) {
   if (const auto scan = options.range.takeInput())
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: is taken for a value of --angles, which may be a file or two "
-                             "numbers; give --angles FILE behind the scans",
+                             "numbers; give --angles FILE after the scans",
                              *scan)};
   if (options.scans.empty())
     return Error{Errc::kInvalidArgument, "no scans are given; name their files before the options"};
@@ -262,7 +266,7 @@ Result<Ok> checkFuse(MeshFuse& options) {
                  fmt::format("--pose: {} files for {} scans; give one for each, in their order",
                              options.poses.size(), options.scans.size())};
   if (options.lost_says_nothing && !options.settings.close)
-    return Error{Errc::kInvalidArgument, "--ignore-background: is for --close"};
+    return Error{Errc::kInvalidArgument, "--ignore-background: needs --close"};
   if (options.local && options.makesModel()) return localIsForMeshes(options.output);
   return Ok{};
 }
@@ -298,8 +302,8 @@ void addVolume(Command command, MeshFuse& options) {
       .typeName("LENGTH");
   command
       .option("--truncation", options.settings.truncation,
-              "Distance from a surface, in voxels, up to which a scan says how far it is: more for "
-              "noisy scans, less for thin parts")
+              "Distance from a surface, in voxels, up to which a scan contributes its distance "
+              "(truncation): more for noisy scans, less for thin parts")
       .range(1.0, 100.0)
       .showDefault();
   command
@@ -308,10 +312,11 @@ void addVolume(Command command, MeshFuse& options) {
       .positive()
       .typeName("LENGTH");
   command.flag("--close", options.settings.close,
-               "Close the surface: what no scan saw is inside. The feature measured is 0 there");
+               "Close the surface: space that no scan saw counts as inside, and the feature "
+               "measured is 0 on the surface there");
   command.flag("--ignore-background", options.lost_says_nothing,
-               "With --close: rays without a return say nothing. By default those in a "
-               "window of 3 x 3 pixels without a return went through empty space");
+               "With --close: ignore rays without a return. By default, such a ray counts as "
+               "having passed through empty space if its window of 3 x 3 pixels has no return");
 }
 
 }  // namespace

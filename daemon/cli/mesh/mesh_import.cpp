@@ -39,7 +39,7 @@ std::size_t limitOf(const MeshImport& options) {
 bool makesModel(const MeshImport& options) { return options.output.ends_with(".mrm"); }
 bool makesImage(const MeshImport& options) { return options.output.ends_with(".pgm"); }
 
-// Takes the time from one call to the next.
+// Measures the time from one call of lap() to the next.
 class Stopwatch {
  public:
   explicit Stopwatch(const Clock& clock) : clock_(clock), last_(clock.now()) {}
@@ -99,7 +99,7 @@ Result<Ok> addTexture(const MeshImport& options, render::mesh::Mesh& mesh) {
   return Ok{};
 }
 
-// A range image that is only filtered and written as PGM.
+// Filters a range image and writes it as PGM, without making a mesh.
 Result<Ok> writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& times,
                       Stopwatch& watch) {
   const auto done = render::range::writeRange(options.output, range.image);
@@ -150,7 +150,7 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
   render::mesh::Mesh& mesh = range->mesh.mesh;
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   if (range->mesh.not_numbers > 0)
-    printNote(fmt::format("{}: {} values of features were not numbers; 0 stands there",
+    printNote(fmt::format("{}: {} values of features were not numbers and were replaced by 0",
                           options.input(), range->mesh.not_numbers));
   times.meshing = watch.lap();
   const auto written = writeOutput(options, mesh, range->origin, aboutRange(*range), times);
@@ -171,10 +171,10 @@ Result<Ok> checkNotPacked(const std::string& path) {
 Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKind>& kind) {
   const std::string option = options.range.anyGiven();
   const std::string& path = options.input();
-  const std::string read =
-      fmt::format("read are {} as range images, {} as meshes, {} as point clouds, and {}",
-                  render::range::readableRanges(), render::mesh::readableEndings(),
-                  render::points::readableClouds(), foreignFormats());
+  const std::string read = fmt::format(
+      "supported formats are {} for range images, {} for meshes, {} for point clouds, and {}",
+      render::range::readableRanges(), render::mesh::readableEndings(),
+      render::points::readableClouds(), foreignFormats());
   if (const auto there = checkIsThere(path); !there) return there;
   if (!kind && path.ends_with(".mrm"))
     return Error{Errc::kUnsupported,
@@ -183,7 +183,7 @@ Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKi
                              path)};
   if (const auto plain = kind ? Result<Ok>(Ok{}) : checkNotPacked(path); !plain) return plain;
   if (!kind)
-    return Error{Errc::kUnsupported, path + ": is of no format that MERLIN reads; " + read};
+    return Error{Errc::kUnsupported, path + ": has a format that MERLIN does not read; " + read};
   if (!option.empty())
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: {} is for range images; {}", path, option, read)};
@@ -202,7 +202,7 @@ Result<Ok> scale(const std::string& path, double factor, ImportedModel& model) {
   multiply(model.loaded.origin);
   if (model.cloud) multiply(model.cloud->origin);
   if (const auto valid = validate(mesh); !valid)
-    return Error{valid.error().code, path + ": scaled, " + valid.error().what};
+    return Error{valid.error().code, path + ": after --scale, " + valid.error().what};
   return Ok{};
 }
 
@@ -235,7 +235,7 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
   return Ok{};
 }
 
-// Errors: kInvalidArgument (an option for point clouds, of anything else).
+// Errors: kInvalidArgument (an option for point clouds was given for another kind of file).
 Result<Ok> checkPointOptions(const MeshImport& options, const std::optional<InputKind>& kind) {
   if (!options.points.anyGiven() || !kind || kind->isPoints()) return Ok{};
   return Error{

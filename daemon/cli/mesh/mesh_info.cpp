@@ -35,7 +35,7 @@ struct MeshInfoOptions {
   std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
 };
 
-// Where merlin-import's result lies until it is read.
+// Path beside which merlin-import's result lies until it is read.
 std::string meanwhile() {
   std::error_code error;
   const auto folder = std::filesystem::temp_directory_path(error);
@@ -79,7 +79,7 @@ Result<FileInfo> infoOfModel(const std::string& path) {
   return info;
 }
 
-// As the file has it: no normals are added.
+// Describes the mesh as it is in the file: no normals are added.
 Result<FileInfo> infoOfMesh(const std::string& path, std::size_t limit) {
   if (const auto fits = roomToRead(path, path, limit); !fits) return fits.error();
   const auto loaded = render::mesh::readMeshByContent(path);
@@ -101,13 +101,13 @@ Result<FileInfo> infoOfForeign(const MeshInfoOptions& options, const InputKind& 
   return info;
 }
 
-// The points themselves: no surface is made.
+// Describes the points themselves: no surface is made.
 Result<FileInfo> infoOfPoints(const std::string& path) {
   auto cloud = render::points::readCloud(path);
   if (!cloud) return cloud.error();
   for (const std::string& note : cloud->notes) printNote(fmt::format("{}: {}", path, note));
   const auto next = render::mesh::coincidentVertices(cloud->positions);
-  std::size_t places = 0;  // the last point of a ring leads to its first
+  std::size_t places = 0;  // coincident points form a ring, whose last point leads to its first
   for (std::uint32_t p = 0; p < next.size(); ++p) places += next[p] <= p;
   FileInfo info{path, cloud->format};
   info.cloud = CloudInfo{cloud->size(), cloud->size() - places};

@@ -61,8 +61,9 @@ std::size_t fileSize(const std::string& path) {
   return unknown ? 0 : bytes;
 }
 
-// Peak memory of reading: the file with what is kept and what is there meanwhile, then the images,
-// of which several become one that is made beside them, then the repairs.
+// Peak memory of reading [bytes]: the program and the mesh, and in addition the larger of two: the
+// file with temporary data and the images, or the repairs. Several images are joined into one,
+// which takes three times their size.
 std::size_t needToRead(const render::mesh::MeshFileSize& size, std::size_t file_bytes,
                        std::size_t picture_bytes) {
   const std::size_t kept = size.mesh.bytes();

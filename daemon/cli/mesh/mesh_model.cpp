@@ -100,7 +100,7 @@ void printOrigin(const render::mesh::Origin& origin, bool local,
 void addLocal(Command command, bool& local) {
   command.flag("--local", local,
                "Keep the coordinates of a mesh of a map or a survey relative to its origin, which "
-               "is named, for programs that read coordinates as floats");
+               "is printed, for programs that read coordinates as floats");
 }
 
 Error localIsForMeshes(const std::string& output) {

@@ -53,12 +53,13 @@ struct ScannedFiles {
   double angle_step = 0;
 };
 
-// What is scanned, and what its file says of it.
+// What is scanned, and what its file states about it.
 struct Model {
   render::mesh::Mesh mesh;
-  // Of the file's coordinates, in which --camera and the written camera transform are.
+  // Origin of the file's coordinates. --camera and the written camera transform are in these
+  // coordinates.
   render::mesh::Origin origin{};
-  std::string about;  // of a model (.mrm)
+  std::string about;  // the text "about" of a model (.mrm)
   std::string unit;   // of the coordinates; empty: not known
 };
 
@@ -68,11 +69,11 @@ Result<Model> readByContent(const MeshScan& options) {
   if (const auto there = checkIsThere(path); !there) return there.error();
   const auto kind = inputKindOf(path);
   if (!kind)
-    return Error{Errc::kUnsupported,
-                 fmt::format("{}: is of no format of meshes that MERLIN reads; read are .mrm, {}, "
-                             "{}, {}",
-                             path, render::mesh::readableEndings(),
-                             render::points::readableClouds(), foreignFormats())};
+    return Error{
+        Errc::kUnsupported,
+        fmt::format("{}: has no mesh format that MERLIN reads; supported are .mrm, {}, {}, {}",
+                    path, render::mesh::readableEndings(), render::points::readableClouds(),
+                    foreignFormats())};
   if (kind->isGrid())
     return Error{Errc::kUnsupported,
                  fmt::format("{0}: is a range image or a map already; merlin mesh import {0} -o "
@@ -86,7 +87,8 @@ Result<Model> readByContent(const MeshScan& options) {
                kind->unit()};
 }
 
-// A model's coordinates stay its own, though an origin was taken from those of its file.
+// A model keeps its own coordinates, even if an origin was subtracted from those of the file that
+// it was made from.
 Result<Model> readModel(const MeshScan& options) {
   if (!options.model.ends_with(".mrm")) return readByContent(options);
   const auto model = render::lod::readMrm(options.model);
@@ -119,7 +121,8 @@ Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box
   const scan::Point from = relative(0);
   const scan::Point at = c.size() == 6 ? relative(3) : scan::centreOf(box);
   if (from == at)
-    return Error{Errc::kInvalidArgument, "--camera: the scanner stands where it looks at"};
+    return Error{Errc::kInvalidArgument,
+                 "--camera: the scanner's place and the point that it looks at are the same"};
   return scan::lookAt(from, at);
 }
 
@@ -144,11 +147,12 @@ Error nothingMet(const MeshScan& options, const Model& model, const std::string&
     return fmt::format("({:.10g}, {:.10g}, {:.10g})", p[0] + o[0], p[1] + o[1], p[2] + o[2]);
   };
   return {Errc::kInvalidArgument,
-          fmt::format("{}: {}; it lies within {} and {}: leave --camera out, or look there",
+          fmt::format("{}: {}; the model lies between {} and {}: leave --camera out, or look there",
                       options.model, what, corner(box.low), corner(box.high))};
 }
 
-// The planes get what the model says of their features; labels are whole numbers without a range.
+// Gives the planes the facts that the model states about their features; labels are whole numbers
+// without a range.
 void addFacts(const Model& model, range::RangeImage& image) {
   for (range::Plane& plane : image.planes) {
     if (plane.dimension != 1 || plane.name == "confidence") continue;
@@ -204,7 +208,7 @@ Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanne
       render::mesh::plainName(options.output.substr(0, options.output.rfind('.')));
   for (const range::Plane& plane : image.planes) {
     if (render::mesh::plainName(plane.name) != plane.name || plane.name.empty()) {
-      files.left_out.push_back(plane.name);  // could not be a part of a file's name
+      files.left_out.push_back(plane.name);  // its name cannot be a part of a file's name
       continue;
     }
     const std::string file = fmt::format("{}.{}{}", stem, plane.name, range::endingOf(plane));
@@ -311,7 +315,9 @@ void addScanner(Command command, MeshScan& options) {
                   "far enough to see all of the model")
           .typeName("X Y Z [X Y Z]|12 NUMBERS")
           .expected(3, 12);
-  Command turn = command.group("turn", "Turns the model before a scanner that is placed by itself");
+  Command turn = command.group(
+      "turn",
+      "Turns the model in front of a scanner that is placed automatically, without --camera");
   turn.option("--yaw", options.yaw_deg, "Rotation about the vertical axis, in degrees")
       .showDefault();
   turn.option("--pitch", options.pitch_deg,
@@ -334,13 +340,14 @@ void addFaults(Command command, MeshScan& options) {
       .showDefault();
   command
       .option("--max-incidence", options.most_incidence_deg,
-              "Surfaces whose normal is farther from the ray do not return, in degrees")
+              "Largest angle between the ray and a surface's normal, in degrees, at which the "
+              "surface gives a return")
       .range(1.0, 90.0)
       .showDefault();
   command
-      .option("--seed", options.settings.seed,
-              "Of noise and drop-outs: the same seed gives the "
-              "same files")
+      .option(
+          "--seed", options.settings.seed,
+          "Seed of the random numbers for noise and drop-outs: the same seed gives the same files")
       .showDefault();
 }
 
@@ -363,10 +370,10 @@ void addMeshScan(Command mesh, Run& run) {
       .required()
       .typeName("MODEL");
   command
-      .option("-o", options->output,
-              "The range image: PGM of 16 bits, or FITS of floats, whose ranges are exact. The "
-              "images beside it are OUT.NAME.pgm and OUT.NAME.png, and replace those that are "
-              "there")
+      .option(
+          "-o", options->output,
+          "The range image: PGM of 16 bits, or FITS of floats, whose ranges are exact. The images "
+          "beside it are OUT.NAME.pgm and OUT.NAME.png, and replace existing files of these names")
       .required()
       .typeName("OUT.pgm|OUT.fits");
   addScanner(command, *options);

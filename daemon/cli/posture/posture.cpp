@@ -57,7 +57,7 @@ void addForm(Command command, RecordingForm& form) {
       .option("--columns", form.columns,
               "What is in which column of the CSV, where its header does not say it: posture, for "
               "the label, and sensors by joint or slot, each with the column's name or its number "
-              "from 1. With a sensor among them, columns that are not named are left out: "
+              "from 1. If any sensor is named, all columns that are not named are left out: "
               "--columns posture=class,thumb-roll=3,index-mcp=IndexKnuckle")
       .typeName("WHAT=COLUMN,...")
       .repeatable()

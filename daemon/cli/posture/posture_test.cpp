@@ -77,10 +77,9 @@ Result<nn::Evaluation> evaluate(const nn::NetworkFile& file,
                                 const TestOptions& options) {
   if (!options.follow) return nn::evaluate(file.network, hands, options.margin);
   if (!file.statistics)
-    return Error{Errc::kInvalidArgument,
-                 options.network +
-                     ": has no /memory, the means of its postures, without which no "
-                     "drift is seen: train the network again"};
+    return Error{Errc::kInvalidArgument, options.network +
+                                             ": has no /memory, the means of its postures, which "
+                                             "are needed to follow drift: train the network again"};
   nn::DriftFollower follower(file.network, *file.statistics, {});
   return nn::evaluate(follower, hands, options.margin);
 }

@@ -11,7 +11,7 @@
 namespace merlin::cli {
 namespace {
 
-// Compressed or binary: no secret can stand in them as text.
+// These files are compressed or binary, so no secret can be in them as text.
 bool isPicture(const std::string& name) {
   return name.ends_with(".png") || name.ends_with(".edid");
 }

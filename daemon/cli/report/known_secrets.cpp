@@ -14,7 +14,7 @@
 namespace merlin::cli {
 namespace {
 
-constexpr std::size_t kShortest = 4;  // what is shorter stands in every text by chance
+constexpr std::size_t kShortest = 4;  // shorter texts occur anywhere by chance
 // An argument that is shorter is rather an option or a name than a token.
 constexpr std::size_t kShortestArgument = 12;
 constexpr std::size_t kMostFileBytes = 65536;
@@ -46,7 +46,8 @@ KnownSecrets::KnownSecrets(const std::vector<std::string>& texts) {
   sortByLength();
 }
 
-// Also as JSON and as messages write it, where it has quotes or other characters that they escape.
+// Adds the text, and also its forms in JSON and in messages if these escape quotes or other
+// characters in it.
 void KnownSecrets::add(std::string_view text) {
   if (text.size() < kShortest) return;
   texts_.emplace_back(text);
@@ -56,8 +57,8 @@ void KnownSecrets::add(std::string_view text) {
   }
 }
 
-// Each line as a whole, for passwords and tokens, and its last word, for "secret KEY". A line
-// "public KEY" is none.
+// Adds each line as a whole, for passwords and tokens, and its last word, for "secret KEY". A line
+// "public KEY" is not a secret.
 void KnownSecrets::addFile(const std::string& path) {
   const auto file = FileCopy::read(path, kMostFileBytes);
   if (!file && file.error().code == Errc::kNotFound)

@@ -142,7 +142,7 @@ std::string usbText(const std::string& root) {
   for (const std::string& name : namesIn(folder)) {
     const std::string at = folder + name;
     const std::string vendor = firstLine(at + "/idVendor");
-    if (vendor.empty()) continue;  // an interface of a device
+    if (vendor.empty()) continue;  // an interface of a device, no device
     text += fmt::format("{}: id {}:{}, {} {}, {} Mbit/s\n", name, vendor,
                         firstLine(at + "/idProduct"), firstLine(at + "/manufacturer"),
                         firstLine(at + "/product"), firstLine(at + "/speed"));

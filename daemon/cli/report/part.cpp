@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostMissingBytes = 65536;  // of the sentences of a part
 constexpr int kExitNotInstalled = 127;
 
-// A folder that only this user can read; it goes with this object.
+// A folder that only this user can read; the destructor removes it.
 class PrivateFolder {
  public:
   static Result<PrivateFolder> make() {
@@ -55,7 +55,7 @@ class PrivateFolder {
   std::string path_;
 };
 
-// What the part prints goes nowhere; each file is bounded, since a write beyond is an error.
+// Discards what the part prints, and limits the size of each file: a write beyond the limit fails.
 void limitChild(std::size_t most_bytes, const sigset_t& mask) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -81,12 +81,13 @@ void limitChild(std::size_t most_bytes, const sigset_t& mask) {
   std::string text;
   for (const std::string& what : folder.missing()) text += oneLine(what) + '\n';
   text.resize(std::min(text.size(), kMostMissingBytes));  // below what a pipe holds: never blocks
-  text += '\0';                                           // the part came to its end
+  text += '\0';                                           // marks that the part is complete
   const ssize_t told = ::write(to, text.data(), text.size());
   ::_exit(told < 0 ? 1 : 0);
 }
 
-// What the child tells until its end, `until` or `stop`.
+// What the child has sent until it ended, `until` was reached (`late`) or `stop` became readable
+// (`stopped`).
 struct ProgramOutput {
   std::string text;
   bool late = false, stopped = false;
@@ -179,7 +180,7 @@ Result<PartResult> runPart(const PartSettings& part, int stop, const sigset_t& m
   if (!folder) return folder.error();
   auto pipe = makePipe();
   if (!pipe) return pipe.error();
-  std::fflush(nullptr);  // what is buffered is printed once
+  std::fflush(nullptr);  // otherwise the child would print buffered output again
   const auto child = startChild();
   if (!child) return child.error();
   if (*child == 0) collectInChild(part, folder->path(), pipe->to.get(), mask);

@@ -1,4 +1,4 @@
-// merlin report: packs what somebody who is to help needs into one file.
+// merlin report: collects in one file what somebody needs to help with a fault.
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -28,7 +28,7 @@ struct ReportOptions {
   bool json = false;
 };
 
-// The folder of the sockets of the daemon that runs; of one that does not, the configured or the
+// The folder of the running daemon's sockets; if it does not run, the configured folder or the
 // usual one.
 std::string runDirectoryOf(const std::string& instance, const Settings& settings) {
   constexpr std::string_view kIpc = "ipc://";
@@ -77,7 +77,7 @@ Result<std::vector<CollectedPart>> collect(const ReportSubject& subject,
     auto result = runPart(part.settings, stop.get(), mask);
     if (!result) return result.error();
     parts.push_back({part.settings.name, part.about, *std::move(result)});
-    makeFit(parts, secrets);  // also what fits with the parts before it
+    makeFit(parts, secrets);  // also limits the size of all parts together
     if (print) printPart(parts.back());
   }
   return parts;
@@ -117,9 +117,10 @@ void addReport(Command app, Run& run) {
   const auto options = std::make_shared<ReportOptions>();
   Command command = app.subcommand(
       "report",
-      "Pack into one file what somebody who is to help needs: configuration without secrets, "
-      "versions, status, journal, flight recordings, trace, frame and hardware. Where merlind does "
-      "not run, the file has the rest.\nExample: merlin report -o wall.tar.gz");
+      "Collect in one file what somebody needs to help you with a fault: configuration without "
+      "secrets, versions, status, journal, flight recordings, trace, frame and hardware. If "
+      "merlind does not run, the file has only the parts that can be collected without "
+      "it.\nExample: merlin report -o wall.tar.gz");
   command.option("-o", options->output, "The report").required().typeName("FILE.tar.gz");
   command.option("-c,--config", options->config, "The daemon's configuration")
       .typeName("FILE")

@@ -35,8 +35,8 @@ constexpr const char* kUnits[] = {"merlin-devices.service", "merlin-wall.service
                                   "merlin-page.service",    "merlin-alarms.service",
                                   "merlin-rfb.service",     "merlin.target"};
 
-// The settings without what may be a secret in them. Of an alarm's program only its path stays,
-// also where somebody wrote arguments behind it.
+// The settings without what may be a secret in them. Only the path of an alarm's program is kept,
+// even if somebody wrote arguments into the same text.
 Settings forStrangers(Settings settings) {
   for (AlarmSettings& alarm : settings.alarms) {
     for (std::size_t i = 1; i < alarm.run.size(); ++i) alarm.run[i] = kSecretLeftOut;
@@ -57,7 +57,8 @@ std::string changesText(const Settings& settings) {
   return text;
 }
 
-// Why there are no settings of the configuration's file, and those of the last good ones.
+// Adds a sentence that says why the settings of the configuration are missing, and the last good
+// settings.
 void collectKept(const ReportSubject& subject, PartFolder& folder) {
   const std::string findings = findingsText(subject.config, subject.loaded);
   folder.lacks(fmt::format("settings.json: the configuration is invalid: {}; {}",
@@ -116,7 +117,7 @@ void collectVersions(const ReportSubject& subject, PartFolder& folder) {
   if (!packages) folder.lacks("packages.txt: " + packages.error().what);
 }
 
-// A role that crashed a moment ago does not answer; the other's part is kept.
+// A role that crashed a moment ago does not answer; the status of the other role is kept.
 void collectStatus(const ReportSubject& subject, PartFolder& folder) {
   const auto roles = findRoles(subject.instance);
   if (!roles) return folder.put("status.json", Result<std::string>(roles.error()));
@@ -135,7 +136,7 @@ void collectStatus(const ReportSubject& subject, PartFolder& folder) {
   if (!fault.empty()) folder.lacks("status.json: " + fault);
 }
 
-// Keeps what the program has said, also of a failure.
+// Runs the program and keeps its output, even if it failed.
 void collectOutput(const std::string& name, const std::vector<std::string>& arguments,
                    PartFolder& folder) {
   const auto status = runInto(folder.path(name), arguments);
@@ -144,7 +145,7 @@ void collectOutput(const std::string& name, const std::vector<std::string>& argu
   const std::string first(said ? said->text().substr(0, said->text().find('\n')) : "");
   if (first.starts_with("-- No entries") || first.starts_with("No journal files"))
     folder.lacks(
-        fmt::format("{}: {} (who may read the journal: group systemd-journal)", name, first));
+        fmt::format("{}: {} (the group systemd-journal may read the journal)", name, first));
 }
 
 // sd_booted(3)
@@ -168,8 +169,8 @@ void collectJournal(PartFolder& folder) {
   collectOutput("journal.txt", arguments, folder);
 }
 
-// What the last day left in the daemon's folder for it, the newest first: devices' recordings
-// (devices_role), and the last frames of walls that crashed (crash_frame).
+// The files of the last day in the daemon's folder for recordings, the newest first: devices'
+// recordings (devices_role), and the last frames of walls that crashed (crash_frame).
 std::vector<std::string> recordings(const ReportSubject& subject) {
   std::vector<std::pair<fs::file_time_type, std::string>> found;
   const auto day_ago = fs::file_time_type::clock::now() - std::chrono::hours(24);
@@ -187,7 +188,7 @@ std::vector<std::string> recordings(const ReportSubject& subject) {
   return paths;
 }
 
-// First those that are there: asking for new ones may remove the oldest.
+// Copies the existing recordings first, because requesting new ones may remove the oldest.
 void collectFlight(const ReportSubject& subject, PartFolder& folder) {
   std::set<std::string> taken;
   for (const std::string& path : recordings(subject)) {
@@ -215,7 +216,8 @@ void collectFrame(const ReportSubject& subject, PartFolder& folder) {
       render::image::writePng(folder.path("frame.png"), frame->width, frame->height, frame->pixels);
   if (!written) folder.lacks("frame.png: " + written.error().what);
   for (const LostRole& lost : lostRoles(subject.instance)) {
-    if (lost.role == "wall") folder.lacks("frame.png is the wall's last frame: it " + lost.what());
+    if (lost.role == "wall")
+      folder.lacks("frame.png is the last frame of a wall that " + lost.what());
   }
 }
 

@@ -42,7 +42,7 @@ bool add(archive* a, const PackedFile& file, std::int64_t time_s) {
   return written == static_cast<la_ssize_t>(file.content.size());
 }
 
-// pax: names of any length and any characters.
+// Uses the format pax, which allows names of any length with any characters.
 bool open(archive* a, const WriteBytes& write) {
   void* const to = const_cast<WriteBytes*>(&write);  // libarchive hands it back to writeBytes()
   return archive_write_set_format_pax_restricted(a) == ARCHIVE_OK &&

@@ -48,7 +48,7 @@ Result<Ok> giveToGroup(const std::string& made, gid_t group) {
   return give(made, 0770);
 }
 
-// What was written is on the disk before it gets its name.
+// Syncs the file or folder to the disk, to be called before it is renamed.
 Result<Ok> sync(const std::string& path) {
   const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid() || ::fsync(file.get()) != 0) return failedWith(path, errno);
@@ -125,7 +125,8 @@ Result<Ok> handOver(const std::string& made, const ContentFolder& folder, const 
   if (const auto written = sync(made); !written) return written;
   const std::string to = folder.path + "/" + name;
   if (std::rename(made.c_str(), to.c_str()) == 0) return Ok{};
-  // A folder cannot replace one that is not empty: the old one goes with the work folder.
+  // rename() cannot replace a folder that is not empty: moves the old one into the work folder,
+  // with which it is removed.
   const bool other = errno == ENOTEMPTY || errno == EEXIST || errno == EISDIR || errno == ENOTDIR;
   if (!other || std::rename(to.c_str(), (made + ".old").c_str()) != 0 ||
       std::rename(made.c_str(), to.c_str()) != 0)

@@ -25,10 +25,10 @@ bool isIn(const ContentFolder& folder, const std::string& path);
 // folder). Errors: kIo, with the folder, its group and a remedy; kUnsupported (full).
 Result<std::uint64_t> roomIn(const ContentFolder& folder);
 
-// Gives what was made, a file or a folder of files beside which nothing else is used, to the group
-// of the content folder, and then its name there, in place of what had that name. Readers see
-// either the old one or the complete new one. REQUIRES: `made` is in a work folder in the content
-// folder. Errors: kIo.
+// Gives `made` (a file, or a folder that contains files only) to the group of the content folder,
+// then moves it there under `name`, where it replaces what had that name. Readers see either the
+// old one or the complete new one. REQUIRES: `made` is in a work folder in the content folder.
+// Errors: kIo.
 Result<Ok> handOver(const std::string& made, const ContentFolder& folder, const std::string& name);
 
 // Copies a file, by sharing its blocks where the file system can. `on_progress` may be empty.

@@ -70,11 +70,11 @@ std::string slideFor(const std::string& folder, const std::string& name) {
   return fs::exists(slide, error) ? folder + "/" + name + ".tif" : slide;
 }
 
-// A picture that cannot be read is a note; what else goes wrong ends the import.
+// A picture that cannot be read only causes a note; any other error ends the import.
 Result<Ok> addSlide(const Conversion& slide, const ImageImport& image,
                     const ProgressListener& listener) {
   if (slide.kind != FileKind::kPicture && slide.kind != FileKind::kPyramid) {
-    printNote(slide.input + ": is no picture; it is left out of the slides");
+    printNote(slide.input + ": is not a picture; it is left out of the slides");
     return Ok{};
   }
   const auto made = convertFile(slide, {}, image, listener);

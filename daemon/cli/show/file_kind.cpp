@@ -27,7 +27,7 @@ bool isTiffFile(std::string_view content) {
   return content.starts_with("II") || content.starts_with("MM");
 }
 
-// The comments stand before the pixels; what they say must be read as readRange() reads it.
+// The header's comments precede the pixels; they must be parsed in the same way as by readRange().
 bool pgmSaysGeometry(std::string_view content) {
   render::range::ImageHeader header;
   constexpr std::size_t kMostHeader = 1 << 20;
@@ -37,7 +37,7 @@ bool pgmSaysGeometry(std::string_view content) {
     const std::size_t end = std::min(content.find('\n', at + 1), content.size());
     std::string_view line = content.substr(at + 2, end - at - 2);
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    if (!render::range::applyLine(line, header)) return true;  // a fault to be told by mesh import
+    if (!render::range::applyLine(line, header)) return true;  // mesh import reports the fault
     at = end < content.size() ? end : std::string_view::npos;
   }
   return header.scanner || header.angles_deg || header.cell || header.camera ||
@@ -77,7 +77,7 @@ class TiffBytes {
   bool little_;
 };
 
-// Looks at the first directory.
+// Reads the first image file directory only.
 bool tiffIsMap(std::string_view content) {
   constexpr std::uint64_t kSamples = 277, kGeoKeys = 34735;
   const TiffBytes bytes(content);

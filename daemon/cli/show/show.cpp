@@ -44,13 +44,13 @@ struct ShowFileOptions {
 
 constexpr Duration kLook = std::chrono::milliseconds(5);
 
-// Refuses --panorama for what is shown as it is, since whether a picture is a panorama stands in
-// its pyramid. `found`: what it is.
+// Refuses --panorama for anything that is not converted to a pyramid now, because the pyramid
+// states whether its picture is a panorama. `found`: what it is, for the message.
 Result<Ok> checkPanorama(const ShowFileOptions& options, const char* found) {
   if (!options.image.panorama) return Ok{};
   return Error{Errc::kInvalidArgument,
-               fmt::format("{}: --panorama is for a picture that is imported, and this is {}; "
-                           "import the picture by: merlin image import --panorama",
+               fmt::format("{}: --panorama is only for a picture that is imported now, and this is "
+                           "{}; import the picture with: merlin image import --panorama",
                            options.what(), found)};
 }
 
@@ -65,9 +65,9 @@ Result<Ok> checkPanorama(const ShowFileOptions& options, FileKind kind) {
   return Ok{};
 }
 
-// What became of a request, once the wall says and has shown another frame, or a period later is at
-// rest with all its detail: who looks late sees no other frame. Nothing before the end of the time
-// to wait.
+// Waits until the wall has finished the request and then refused it, has shown another frame, or is
+// at rest with all its detail (no further frame follows then). Returns the content with the result
+// of the request; nothing if that takes longer than the time to wait.
 std::optional<shm::WallContent> awaitDone(const ShowFileOptions& options, std::uint32_t request) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
@@ -92,7 +92,7 @@ std::optional<shm::WallContent> awaitDone(const ShowFileOptions& options, std::u
   return std::nullopt;
 }
 
-// Asks the wall to show it, and waits until it does.
+// Asks the wall to show the content, and waits until it does.
 Result<Ok> ask(const ShowFileOptions& options, const RoleRequest& request) {
   const auto asked = askRole(options.instance, "wall", request);
   if (!asked) return asked.error();
@@ -109,16 +109,18 @@ Result<Ok> ask(const ShowFileOptions& options, const RoleRequest& request) {
   return Ok{};
 }
 
-// A test card stays when another content is chosen: who adjusts projectors is not interrupted.
+// A test card stays when another content is chosen, so that a person who adjusts projectors is not
+// interrupted: prints a note about it.
 void noteTestCard(const ShowFileOptions& options) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
   const auto idle = segment ? (*segment)->idle.read() : std::nullopt;
   if (idle && idle->testcard != 0)
-    printNote("a test card covers it; to end that: merlin wall testcard off");
+    printNote("a test card covers it; to remove the card: merlin wall testcard off");
 }
 
-// Has the wall say how far it is, about once a second. A wall that does not answer holds nobody up.
+// Has the wall show the progress of the import, about once a second. If the wall does not answer,
+// the import continues without it.
 class WallNotices {
  public:
   WallNotices(const ShowFileOptions& options, const Clock& clock)
@@ -157,7 +159,8 @@ class WallNotices {
   Timestamp sent_{};
 };
 
-// Signals end the conversion instead of this process, until what it left is cleared up.
+// While this object exists, signals end the conversion instead of this process, so that the files
+// of the conversion can be removed.
 class HeldStop {
  public:
   HeldStop() {
@@ -170,7 +173,7 @@ class HeldStop {
 
   int stop() const noexcept { return stop_.get(); }
   const sigset_t& before() const noexcept { return before_; }
-  // The signal that came has done what it was for.
+  // Consumes the signal that has ended the conversion.
   void take() const {
     signalfd_siginfo info{};
     [[maybe_unused]] const auto n = ::read(stop_.get(), &info, sizeof info);
@@ -186,7 +189,7 @@ Result<Ok> put(const ShowFileOptions& options, const ContentFolder& folder, File
                const std::string& name, WallNotices& notices) {
   const auto room = roomIn(folder);
   if (!room) return room.error();
-  const HeldStop signals;  // before the work folder is there, which a signal would leave
+  const HeldStop signals;  // before the work folder exists: a signal would leave it behind
   const auto work = WorkFolder::make(fs::path(folder.path) / name);
   if (!work) return work.error();
   const Conversion conversion{options.what(), work->path() + "/" + name, kind, *room};
@@ -234,7 +237,7 @@ int showFile(const ShowFileOptions& options) {
   const auto shown = ask(options, {"show_file", *name});
   const std::string put = folder->path + "/" + *name;
   if (!shown) {
-    // What cannot be shown does not stay.
+    // Removes a file that cannot be shown from the content folder.
     std::error_code error;
     if (!there && shown.error().code != Errc::kTimeout) fs::remove_all(put, error);
     return cannot(shown.error());
@@ -265,7 +268,8 @@ int showName(const ShowFileOptions& options) {
   return fail(shown.error());
 }
 
-// The name of a content comes first; a file is told by a '/', or by its ending if it is there.
+// The argument is the name of a content unless it has a '/', or an ending and either exists as a
+// file or was given with an option for imports.
 int showContent(ShowFileOptions& options) {
   std::vector<std::string>& inputs = options.mesh.inputs;
   if (const auto input = options.mesh.range.takeInput()) inputs.push_back(*input);

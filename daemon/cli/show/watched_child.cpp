@@ -34,8 +34,8 @@ void sendAll(int to, std::string_view bytes) {
   }
 }
 
-// The child tells lines "SHARE TITLE", and at its end a zero byte and the error: its code as one
-// byte and its text; no text: none.
+// The child sends lines "SHARE TITLE"; at its end it sends a zero byte and, after an error only,
+// one byte (1 + its code) and the text of the error.
 [[noreturn]] void workInChild(const WatchedWork& watched, int to, const sigset_t& mask) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   ::sigprocmask(SIG_SETMASK, &mask, nullptr);
@@ -64,7 +64,7 @@ class Told {
  public:
   explicit Told(const ProgressListener& listener) : listener_(listener) {}
 
-  // Takes what is there; false at the end.
+  // Reads the bytes that have arrived; false at the end of the pipe.
   bool read(int from) {
     std::array<char, 4096> bytes{};
     const ssize_t n = ::read(from, bytes.data(), bytes.size());
@@ -73,7 +73,7 @@ class Told {
   }
   void report() const { listener_(title_, share_); }
 
-  // Nothing if the child did not come to its end.
+  // The result of the work; nothing if the child ended before it was done.
   std::optional<Result<Ok>> result() const {
     if (!ended_) return std::nullopt;
     if (line_.empty()) return Result<Ok>(Ok{});
@@ -104,7 +104,8 @@ class Told {
   bool ended_ = false;
 };
 
-// Asks the child to end, which lets it end its own, and makes it after two seconds.
+// Sends SIGTERM to the child, which can then end its own child processes; kills it after two
+// seconds.
 void endChild(pid_t child, int from, Told& told) {
   ::kill(child, SIGTERM);
   const SystemClock clock;
@@ -116,7 +117,7 @@ void endChild(pid_t child, int from, Told& told) {
   ::kill(child, SIGKILL);
 }
 
-// False if it was stopped.
+// Passes the reports on until the child ends; returns false if `stop` became readable before.
 bool follow(int from, int stop, Told& told) {
   const SystemClock clock;
   Timestamp looked{};
@@ -136,7 +137,7 @@ bool follow(int from, int stop, Told& told) {
 Result<Ok> runWatched(const WatchedWork& watched, int stop, const sigset_t& mask) {
   auto pipe = makePipe();
   if (!pipe) return pipe.error();
-  std::fflush(nullptr);  // what is buffered is printed once
+  std::fflush(nullptr);  // otherwise the child would print buffered output again
   const auto child = startChild();
   if (!child) return child.error();
   if (*child == 0) workInChild(watched, pipe->to.get(), mask);

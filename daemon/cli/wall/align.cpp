@@ -74,7 +74,7 @@ int print(const AlignOptions& options, AlignAnswer answer) {
   return kExitDone;
 }
 
-// Whether nothing is asked for that a script asks for.
+// Whether no option for scripts was given and there is a terminal, so that keys are used.
 bool isInteractive(const AlignOptions& o) {
   const bool scripted = !o.by.empty() || !o.corner.empty() || !o.point.empty() || o.undo ||
                         o.redo || o.reset || o.list || o.json;
@@ -141,19 +141,18 @@ void addAlign(Command wall, Run& run) {
   Command command = wall.subcommand(
       "align",
       "Move the corners of the picture that an output shows, while the wall runs: in a terminal "
-      "with "
-      "keys, which are shown there; by a script with --by, --undo, --redo, --reset. What is "
-      "changed "
-      "is shown at once and is there after a restart; the configuration stays as it is, and its "
-      "correction is the base. A test card helps: merlin wall testcard grid.\n"
-      "Example: merlin wall align --output left --corner top_left --by 2.5 -1");
+      "with keys, which are shown there; by a script with --by, --undo, --redo, --reset. Changes "
+      "are shown at once and are kept after a restart; they are added to the configuration's "
+      "correction, and the configuration stays as it is. A test card helps: merlin wall testcard "
+      "grid.\nExample: merlin wall align --output left --corner top_left --by 2.5 -1");
   addInstance(command, options->instance);
   command.option("--output", options->output, "Name of the output, as in merlin status")
       .typeName("NAME");
   command
-      .option("--corner", options->corner,
-              "The corner that is moved, of the picture that the output is sent (after mirror and "
-              "turn_deg; keys and the web page have corners as they are seen on the wall)")
+      .option(
+          "--corner", options->corner,
+          "The corner to move, named as in the picture that is sent to the output, after mirror "
+          "and turn_deg (keys and the web page name corners as they are seen on the wall)")
       .oneOf({std::begin(state::kCornerNames), std::end(state::kCornerNames)});
   command
       .option("--point", options->point,

@@ -30,7 +30,7 @@ struct AlignKey {
   bool operator==(const AlignKey&) const = default;
 };
 
-// For people, a line each.
+// Explains the keys to people, in one line per entry.
 inline constexpr const char* kAlignKeyHelp[] = {
     "arrows or h j k l   move the corner by a step      Shift or H J K L   by ten steps",
     "Tab, 1 2 3 4        choose the corner              n, p               next, previous output",

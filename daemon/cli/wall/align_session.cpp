@@ -24,16 +24,15 @@ AlignSession::~AlignSession() {
 }
 
 Result<Ok> AlignSession::begin() {
-  // Choosing an output that is not there says which there are.
+  // If the selected output does not exist, the error names the outputs that do.
   const auto answer = link_.ask(first_output_.empty()
                                     ? state::AlignRequest{state::ListRequest{}}
                                     : state::AlignRequest{state::SelectRequest{first_output_, {}}});
   if (!answer) return answer.error();
   if (answer->outputs.empty()) {
-    return Error{
-        Errc::kInvalidArgument,
-        "this wall has no output that can be aligned: those of kind shared_memory hold the "
-        "frame as it was meant"};
+    return Error{Errc::kInvalidArgument,
+                 "this wall has no output that can be aligned: outputs of kind shared_memory hold "
+                 "the frame without correction"};
   }
   answer_ = *answer;
   const auto found = std::ranges::find(answer_.outputs, first_output_, &AlignedPicture::name);
@@ -43,7 +42,7 @@ Result<Ok> AlignSession::begin() {
   return Ok{};
 }
 
-// An answer with other outputs than before is one of a wall that was started anew.
+// If the answer has other outputs than before, the wall was restarted.
 void AlignSession::ask(const state::AlignRequest& request) {
   auto answer = link_.ask(request);
   message_ = answer ? answer->done : answer.error().what;

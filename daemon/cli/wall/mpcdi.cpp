@@ -36,7 +36,8 @@ struct MpcdiExportOptions {
   std::string file, config, output;
 };
 
-// The first finding that makes it invalid, as an error. The wall is as it is drawn.
+// Returns the settings, with the wall as it is drawn (drawnWall()). Errors: kInvalidArgument, with
+// the first finding that makes the configuration invalid.
 Result<Settings> readSettings(const std::string& path) {
   const LoadedSettings loaded = loadSettingsFile(path);
   for (const Finding& finding : loaded.findings) {
@@ -47,8 +48,9 @@ Result<Settings> readSettings(const std::string& path) {
   return settings;
 }
 
-// What merlin wall align has moved of the wall that runs under this name. Of one that does not run
-// it is in a file whose place depends on the user who runs merlind.
+// What merlin wall align has moved on the running wall of this name. If the wall does not run,
+// nothing and a note: the moves are then in a file whose place depends on the user who runs
+// merlind.
 AlignAnswer movesOf(const std::string& instance) {
   auto answer = AlignedWall(instance).ask(state::ListRequest{});
   if (answer) return *std::move(answer);
@@ -59,7 +61,7 @@ AlignAnswer movesOf(const std::string& instance) {
   return {};
 }
 
-// The correction with what was moved; nothing if that was moved from another one.
+// The correction including the moves; nothing if they were made with another size, mesh or corners.
 std::optional<render::correct::CorrectionSettings> movedCorrection(
     render::correct::CorrectionSettings correction, const render::out::PictureSize& size,
     const AlignedPicture& moved) {
@@ -81,7 +83,7 @@ std::optional<render::correct::CorrectionSettings> movedCorrection(
   return correction;
 }
 
-// Adds to the output's correction what was moved of it, and says so.
+// Adds the moves of the output to its correction, and prints a note about it.
 void addMoves(render::out::OutputSettings& output, const render::out::PictureSize& size,
               const AlignAnswer& moves) {
   const std::string name = output.shownName();
@@ -123,7 +125,7 @@ Result<render::correct::MpcdiOutput> exported(const render::out::OutputSettings&
                                       measured ? &*measured : nullptr, threadsOr(0));
 }
 
-// The outputs that are wanted, at least one. Errors also name those that there are.
+// The requested outputs, at least one. Errors also name the existing outputs.
 Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const MpcdiExportOptions& options,
                                                                   const Settings& settings) {
   const AlignAnswer moves = movesOf(settings.instance);
@@ -142,8 +144,8 @@ Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const MpcdiExp
   if (!outputs.empty()) return outputs;
   return Error{Errc::kInvalidArgument,
                options.output.empty()
-                   ? fmt::format("{}: no output has a correction; --output NAME writes one "
-                                 "without: {}",
+                   ? fmt::format("{}: no output has a correction; --output NAME also exports an "
+                                 "output without one: {}",
                                  options.config, fmt::join(names, ", "))
                    : fmt::format("{}: no output is named \"{}\"; there are {}", options.config,
                                  options.output, fmt::join(names, ", "))};
@@ -172,13 +174,11 @@ void addExport(Command mpcdi, Run& run) {
   const auto options = std::make_shared<MpcdiExportOptions>();
   Command command = mpcdi.subcommand(
       "export",
-      "Write the warp, blend and black level of a configuration's outputs as an "
-      "MPCDI file (profile "
-      "2d), with a region for each output that has a correction. What was moved "
-      "by merlin wall align is in it if the wall runs, and is said: once the "
-      "configuration uses the file, run merlin wall align --reset --output NAME, or "
-      "it is moved twice.\n"
-      "Example: merlin wall mpcdi export wall.mpcdi -c /etc/merlin/merlin.json");
+      "Write the warp, blend and black level of a configuration's outputs as an MPCDI file "
+      "(profile 2d), with a region for each output that has a correction. If the wall runs, the "
+      "file includes what was moved with merlin wall align, and a note says so: once the "
+      "configuration uses the file, run merlin wall align --reset --output NAME, or it is moved "
+      "twice.\nExample: merlin wall mpcdi export wall.mpcdi -c /etc/merlin/merlin.json");
   command.option("file", options->file, "The MPCDI file").required().typeName("FILE.mpcdi");
   command.option("-c,--config", options->config, "The configuration").required().typeName("CONFIG");
   command.option("--output", options->output, "Only this output, corrected or not")
@@ -230,7 +230,8 @@ Json correctionJson(const std::string& file, const render::correct::MpcdiRegion&
   return correction;
 }
 
-// What a person wants to know of a region before it is used, to stderr: the JSON goes to stdout.
+// Prints what a person wants to know about a region before using it; to stderr, because the JSON
+// goes to stdout.
 void printRegion(const std::string& file, const render::correct::MpcdiRegion& region,
                  const render::correct::MeasuredCorrection& measured) {
   const WarpFigures figures = figuresOf(region, measured.warp);
@@ -249,9 +250,9 @@ void printRegion(const std::string& file, const render::correct::MpcdiRegion& re
   }
   if (figures.mirrored) {
     printNote(
-        fmt::format("region {} shows the picture mirrored. For a mirrored projector that is "
-                    "right; else its file has the rows of its warp from the top, and the "
-                    "format has them from below",
+        fmt::format("region {} shows the picture mirrored. For a mirrored projector this is right; "
+                    "otherwise the file lists the rows of its warp from the top, while the format "
+                    "requires them from the bottom",
                     region.id));
   }
 }
@@ -292,7 +293,8 @@ void addImport(Command mpcdi, Run& run) {
       "Example: merlin wall mpcdi import wall.mpcdi");
   command.option("file", options->file, "The MPCDI file").required().typeName("FILE.mpcdi");
   command.option("--region", options->region, "Only this region").typeName("ID");
-  command.option("-o", options->output, "Write the JSON there instead").typeName("FILE.json");
+  command.option("-o", options->output, "Write the JSON into this file instead of printing it")
+      .typeName("FILE.json");
   command.callback([options, &run] { run = [options] { return importFile(*options); }; });
 }
 

@@ -192,7 +192,8 @@ std::string frusta(const std::vector<DrawnTile>& tiles, const Vector2d& eye, con
   return out;
 }
 
-// Pictures stand side by side with their panel, towards the viewer, so that overlaps are seen.
+// Draws the pictures of the tiles in front of their panels, alternately at two distances, so that
+// overlaps can be seen.
 std::string pictures(const std::vector<DrawnTile>& tiles, const Scale& scale) {
   std::string out;
   for (std::size_t i = 0; i < tiles.size(); ++i) {

@@ -21,7 +21,7 @@ constexpr std::string_view kLeave = "\033[?25h\033[?1049l";
 // Signals that end the process at once; those of stopSignals() arrive as a descriptor.
 constexpr int kFatal[] = {SIGQUIT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE};
 
-// What a signal handler needs to put the terminal back: it has no other way to know.
+// Globals, because a signal handler that restores the terminal has no other access to this state.
 termios terminal_before{};                        // NOLINT
 volatile std::sig_atomic_t terminal_changed = 0;  // NOLINT
 

@@ -162,7 +162,8 @@ std::vector<std::string> together(const std::vector<Reloaded>& all, const char* 
 
 std::string itself(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
 
-// Of a list or group of which all changed only its own name.
+// Removes the settings of a list or group whose own name is in `settings` too, since all of it
+// changed.
 void leaveOutMembers(std::vector<std::string>& settings) {
   const std::vector<std::string> whole = settings;
   std::erase_if(settings, [&](const std::string& setting) {
@@ -171,14 +172,15 @@ void leaveOutMembers(std::vector<std::string>& settings) {
   });
 }
 
-// What makes a start necessary.
+// The changed settings that make a restart necessary.
 std::vector<std::string> restartSettings(const std::vector<Reloaded>& all) {
   std::vector<std::string> settings = together(all, "restart", itself);
   leaveOutMembers(settings);
   return settings;
 }
 
-// Changed settings that no running process of these reads: each would think them another's.
+// Changed settings that none of these running processes reads, although each reports them as read
+// elsewhere.
 std::vector<std::string> readByNone(const std::vector<Reloaded>& all, reload::Readers running) {
   std::vector<std::string> settings = together(all, "elsewhere", itself);
   std::erase_if(settings, [&](const std::string& setting) {
@@ -194,7 +196,8 @@ const char* whoTakes(reload::Readers readers) {
   return "is taken by a merlind of another role when it starts";
 }
 
-// Settings of one group or entry of a list that follow one another, with what is said of them.
+// Settings of one group or entry of a list that follow one another, with the text that is printed
+// after them.
 struct SettingsTogether {
   std::string group;               // "/alarms/0"
   std::vector<std::string> names;  // "run", "kinds"
@@ -220,7 +223,7 @@ void printTogether(const char* before, const std::vector<std::string>& settings,
   for (const SettingsTogether& line : lines) printOut("{}{}\n", before, line.text());
 }
 
-// `tense`: of the sentence that names what merlind starts again for.
+// `tense`: "started", "starts" or "would start", for the sentence about a restart.
 void printDone(const std::vector<Reloaded>& all, reload::Readers running, const char* tense) {
   const auto swapped = together(all, "swapped", changeText);
   const auto unread = readByNone(all, running);
@@ -229,12 +232,13 @@ void printDone(const std::vector<Reloaded>& all, reload::Readers running, const 
     return fmt::format(": {}", whoTakes(reload::takerOf(setting).readers));
   });
   const auto restart = restartSettings(all);
-  if (!restart.empty()) printOut("merlind {} again, which alone takes:\n", tense);
+  if (!restart.empty())
+    printOut("merlind {} again, because these settings take effect only at a start:\n", tense);
   printTogether("  ", restart, [](const std::string&) { return std::string(); });
   if (swapped.empty() && unread.empty() && restart.empty()) printOut("nothing changed\n");
 }
 
-// Why nothing was swapped.
+// Prints why nothing was swapped.
 void printRefusal(const std::vector<Reloaded>& all) {
   for (const Reloaded& reloaded : all) {
     const std::string file = reloaded.answer.value("file", ""), outcome = reloaded.outcome();
@@ -252,7 +256,8 @@ void printRefusal(const std::vector<Reloaded>& all) {
   }
 }
 
-// Findings as `merlind --check-config` prints them, also numbers that were adjusted.
+// Prints the findings as `merlind --check-config` does, including numbers that were adjusted, then
+// the result.
 void print(const std::vector<Reloaded>& all, reload::Readers running, const char* tense) {
   for (const std::string& finding : together(all, "findings", itself))
     printError("{}\n", printable(finding));
@@ -266,13 +271,15 @@ int exitStatusOf(const std::vector<Reloaded>& all) {
   return invalid ? kExitBadInput : kExitFailed;
 }
 
-// Whether the process will be another instance, which is not to be found under its old name.
+// Whether the process will have another instance name after its restart, so that it cannot be found
+// under the old one.
 bool renames(const std::vector<Reloaded>& all) {
   const auto restart = restartSettings(all);
   return std::ranges::find(restart, "/instance") != restart.end();
 }
 
-// Asks the processes of the instance once. `roles` receives theirs, as far as they are known.
+// Asks the processes of the instance once. `roles` receives the roles of these processes, as far as
+// they are known.
 Result<std::vector<Reloaded>> askOnce(ReloadOptions& options, std::vector<FoundRole>& roles) {
   roles.clear();
   if (options.pid > 0) {
@@ -287,7 +294,7 @@ Result<std::vector<Reloaded>> askOnce(ReloadOptions& options, std::vector<FoundR
   return reloadAll(options, processesOf(roles));
 }
 
-// Whether the process of this role starts again or has just done so. Meanwhile nobody answers.
+// Whether the process of this role starts again or has just done so. It does not answer until then.
 bool startsAgain(const std::string& instance, const FoundRole& before) {
   const auto roles = findRoles(instance);
   const bool is_same = roles && std::ranges::any_of(*roles, [&](const FoundRole& now) {
@@ -296,7 +303,7 @@ bool startsAgain(const std::string& instance, const FoundRole& before) {
   return !is_same && isMerlind(before.pid);
 }
 
-// Asks again where a process starts again: another request may have had it do so.
+// Asks again if a process is restarting, which another request may have caused.
 Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>& roles) {
   SystemClock clock;
   for (const Timestamp until = clock.now() + kReloadPatience;;) {
@@ -310,8 +317,8 @@ Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>
   }
 }
 
-// Says which roles were not asked, and what follows for the exit status of the others. Of one
-// process (--pid) nobody else is expected to run.
+// Says which roles were not asked, and what follows for the exit status of the others. With --pid,
+// no other process is expected to run, so nothing is printed.
 int withLostRoles(const ReloadOptions& options, const std::vector<Reloaded>& asked, int status) {
   if (options.pid > 0) return status;
   const auto lost = lostRoles(options.instance);
@@ -320,8 +327,8 @@ int withLostRoles(const ReloadOptions& options, const std::vector<Reloaded>& ask
                options.instance, role.role, role.what());
     if (status != kExitDone || asked.empty()) continue;
     printError(
-        "merlin: {}: the role {} {} it; the exit status is {} until the role {} has been started "
-        "again. Without that role: merlin reload --pid {}\n",
+        "merlin: {}: the role {} {} the reload; the exit status is {} until the role {} has been "
+        "started again. To reload without that role: merlin reload --pid {}\n",
         options.instance, asked.front().process.role, options.check ? "can do" : "has done",
         kExitFailed, role.role, asked.front().process.pid);
   }
@@ -373,7 +380,8 @@ void addReload(Command app, Run& run) {
       .option("--pid", options->pid,
               "The daemon of this process, instead of --instance (for systemd's ExecReload=)")
       .typeName("PID");
-  command.flag("--check", options->check, "Only say what would be swapped, or needs a start");
+  command.flag("--check", options->check,
+               "Only print what would be swapped and what needs a restart");
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return reloadInstance(*options); }; });
 }

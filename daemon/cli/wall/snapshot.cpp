@@ -67,11 +67,10 @@ Result<render::out::CapturedFrame> frameOf(const SnapshotOptions& options) {
   *frame = render::out::wallPicture(*frame);
   if (!frame->pixels.empty()) return frame;
   if (frame->width > 0) {
-    return Error{
-        Errc::kUnsupported,
-        fmt::format("the wall's tiles in rows and columns are {} x {} pixels; a picture of "
-                    "at most {} pixels is written; without --wall it is the frame",
-                    frame->width, frame->height, render::out::kMostWallPixels)};
+    return Error{Errc::kUnsupported,
+                 fmt::format("the wall's tiles in rows and columns are {} x {} pixels; at most {} "
+                             "pixels can be written; leave --wall out to write the frame",
+                             frame->width, frame->height, render::out::kMostWallPixels)};
   }
   return Error{Errc::kUnsupported, "this wall has no tile of kind wall, only the operator's view"};
 }

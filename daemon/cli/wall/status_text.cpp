@@ -69,7 +69,8 @@ std::string givenWay(const Json& s) {
   return text;
 }
 
-// "; the next one in 12 s" of what is due at s[key]; empty if nothing is.
+// Returns `what` with the time until it is due, which is s[key], as in ", the next one in 12 s";
+// empty if nothing is due.
 std::string dueIn(const Json& s, const char* key, const char* what) {
   const auto due = s.find(key);
   if (due == s.end() || !due->is_number()) return {};
@@ -85,7 +86,7 @@ std::string playlistWords(const Json& s) {
   return begins.empty() ? "; the playlist waits" : begins;
 }
 
-// What is shown, and what the wall will show by itself.
+// The line about the content that is shown, and when the playlist goes on.
 std::string contentLine(const Json& s) {
   const Json content = s.value("content", Json::object());
   const std::string slide = content.value("slide", "");
@@ -152,7 +153,7 @@ void mergeServices(Json& both) {
   if (!merged.empty()) both["services"] = std::move(merged);
 }
 
-// A line for each role that has ended without a word.
+// A line for each role that was killed, crashed or hangs.
 std::string lostLines(const Json& s) {
   const Json lost = s.value("lost_roles", Json::object());
   std::string text;

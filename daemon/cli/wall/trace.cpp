@@ -62,7 +62,8 @@ void addSamples(const shm::Channel<T>& channel, const std::string& device,
   }
 }
 
-// Of a tracker, the samples of its first station that sends any: all stations send together.
+// Adds the samples of the devices; of a tracker only those of the first station that sends any,
+// because all stations send together.
 void addDevices(const shm::DeviceSlots& devices, std::span<const shm::FrameTrace> frames,
                 std::vector<SampleInstant>& out) {
   for (const auto& glove : devices.gloves) addSamples(*glove.samples, glove.name, frames, out);

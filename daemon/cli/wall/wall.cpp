@@ -20,7 +20,7 @@ struct WallOptions {
   std::string triangles, rate, move;
 };
 
-// What became of a number: another one may be used.
+// Prints the number that the wall uses, which may differ from the given one.
 void printSet(const char* name, const std::string& value, const std::string& answer) {
   const auto json = nlohmann::json::parse(answer, nullptr, false);
   const bool says = json.is_object() && json.contains("used");
@@ -64,7 +64,7 @@ void addWall(Command app, Run& run) {
       .option(
           "--triangles", options->triangles,
           "Number of triangles per frame while anything moves, from /wall/rate/min_triangles to "
-          "/wall/rate/max_triangles (least detail of a picture, in its unit), or auto")
+          "/wall/rate/max_triangles (for a picture: its least detail, in its own unit), or auto")
       .typeName("N|auto");
   command.option("--rate", options->rate, "Frames per second, or auto for the configured rate")
       .typeName("HZ|auto");
@@ -79,7 +79,8 @@ void addWall(Command app, Run& run) {
   addTestcard(command, run);
   addMpcdi(command, run);
   addGpus(command, run);
-  // A subcommand's callback comes first, and this one then as well.
+  // CLI11 calls the callback of a subcommand first and then this one too, which must not replace
+  // it.
   command.callback([options, &run] {
     if (!run) run = [options] { return wall(*options); };
   });

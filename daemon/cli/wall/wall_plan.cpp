@@ -49,8 +49,8 @@ Result<WallSettings> configuredWall(const std::string& path) {
   return Error{Errc::kInvalidArgument, path + ": the configuration is invalid"};
 }
 
-// The wall of the preset or of the configuration; without both that of merlind's usual
-// configuration, and where there is no such file, the one that merlind shows without settings.
+// The wall of the preset or of the configuration; without both, that of merlind's usual
+// configuration; if that file does not exist, the wall that merlind shows without settings.
 Result<WallSettings> wallOf(const PlanOptions& options) {
   if (!options.preset.empty() && !options.config.empty())
     return Error{Errc::kInvalidArgument, "wall plan: give --config or --preset, not both"};
@@ -106,14 +106,15 @@ Json tableJson(const WallPlan& wall) {
   return json;
 }
 
-// Lengths to a micrometre: computed ones end in 0.0000000000001.
+// Rounds lengths in metres to a micrometre, because computed ones have digits such as
+// 0.0000000000001 at their end.
 void roundNumbers(Json& value) {
   if (value.is_number_float()) value = std::round(value.get<double>() * 1e6) / 1e6;
   if (value.is_structured())
     for (Json& part : value) roundNumbers(part);
 }
 
-// The settings of `item` that differ from a new one's.
+// The settings of `item` that differ from those of a new entry.
 Json statedOf(const Json& item, const Json& new_one) {
   Json stated = Json::object();
   for (const auto& [key, value] : item.items()) {
@@ -129,7 +130,8 @@ Json roomOf(const render::room::RoomSettings& room) {
   return Json::parse(settingsText(settings))["wall"]["room"];
 }
 
-// The room as a configuration that has nothing else, without settings that only say "none".
+// Prints a configuration that has only the room, without settings of panels and displays that have
+// their defaults.
 int printPanels(const WallSettings& wall) {
   if (!wall.room.isGiven()) {
     return fail({Errc::kInvalidArgument,
@@ -195,14 +197,14 @@ void addPlan(Command wall, Run& run) {
       .oneOf(presets);
   command
       .option("--overlap", options->overlap_m,
-              "Of presets flat and six: width of the strip that neighbouring projectors both show, "
-              "in metres")
+              "Presets flat and six only: width of the strip that neighbouring projectors both "
+              "show, in metres")
       .typeName("METRES");
-  command.option("-o", options->output, "Write the drawing there").typeName("FILE.svg");
+  command.option("-o", options->output, "Write the drawing into this file").typeName("FILE.svg");
   command.flag("--json", options->json, "Print the table as JSON");
   command.flag("--panels", options->panels,
-               "Only print the room with explicit panels and displays, as a configuration; "
-               "with a preset, that is where one's own room may begin");
+               "Only print the room with explicit panels and displays, as a configuration; with a "
+               "preset, this is a starting point for your own room");
   command.callback([options, &run] { run = [options] { return plan(*options); }; });
 }
 

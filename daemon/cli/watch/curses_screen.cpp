@@ -76,8 +76,8 @@ CursesScreen::~CursesScreen() {
 Result<Ok> CursesScreen::opened() const {
   if (screen_) return Ok{};
   return Error{Errc::kUnsupported,
-               fmt::format("the terminal type \"{}\" (the environment's TERM) is not known; "
-                           "merlin watch --lines needs none",
+               fmt::format("the terminal type \"{}\" (the environment's TERM) is not known; use "
+                           "merlin watch --lines, which works on any terminal",
                            terminalType())};
 }
 

@@ -52,8 +52,8 @@ bool StatusPoller::poll(Timestamp now, WatchedState& state) {
   return true;
 }
 
-// A daemon that was restarted has the same addresses, or the same instance has other ones: the
-// roles are looked for in each round.
+// A restarted daemon may have the same addresses or other ones, so the roles are looked up in each
+// round.
 void StatusPoller::beginRound(Timestamp now) {
   next_ = now + kPeriod;
   waiting_ = true;
@@ -81,7 +81,7 @@ void StatusPoller::findAgain() {
   std::erase_if(roles_, [&](const auto& role) { return !present.contains(role.first); });
 }
 
-// True if it took an answer and the role was asked something else.
+// Takes the answer of the role if it has arrived. True if the role was then asked for its events.
 bool StatusPoller::takeAnswer(Role& role, Timestamp now) {
   auto answer = role.sender->answer(now);
   if (!answer) return false;

@@ -64,7 +64,8 @@ int watchLines(const WatchOptions& options) {
   return kExitDone;
 }
 
-// The same of a daemon on another machine, which publishes no status there: it is asked.
+// The same for a daemon on another machine, which does not publish its status over the network and
+// is therefore asked.
 int askLines(const WatchOptions& options, const DaemonAddress& daemon) {
   SystemClock clock;
   const Timestamp began = clock.now();
@@ -78,10 +79,11 @@ int askLines(const WatchOptions& options, const DaemonAddress& daemon) {
   return kExitDone;
 }
 
-// The table. Runs until it is quit, also while no daemon runs.
+// Shows the table until the person quits, even while no daemon runs.
 int watchScreen(const WatchOptions& options, const DaemonAddress& daemon) {
   const auto possible = findRoles(daemon);
-  // Keys that are missing or wrong do not come by waiting; a daemon does.
+  // Ends if keys are missing or wrong, which waiting would not change; a daemon may still start
+  // (kIo).
   if (!possible && possible.error().code != Errc::kIo) return fail(possible.error());
   const SystemClock clock;
   const Timestamp began = clock.now();

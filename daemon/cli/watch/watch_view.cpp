@@ -87,7 +87,7 @@ Row contentRow(const Json& s) {
   return labelled("content", rest);
 }
 
-// Late frames are worth a colour only while they happen: of the last second.
+// Late frames are coloured only while they happen: only those of the last second count.
 CellStyle lateStyle(const Json& s) {
   const double now = number(s, "late_percent_1s").value_or(0);
   return now > 10 ? CellStyle::kBad : now > 0 ? CellStyle::kWarning : CellStyle::kGood;
@@ -146,7 +146,7 @@ std::vector<Row> table(const Json& s, const char* key, const char* heading, Make
   return rows;
 }
 
-// A row for each role that has ended without a word, above all others.
+// A row for each role that was killed, crashed or hangs; shown above all other rows.
 std::vector<Row> lostRows(const Json& s) {
   std::vector<Row> rows;
   for (const auto& [role, lost] : object(s, "lost_roles").items())
@@ -207,7 +207,7 @@ std::string clockOf(const std::string& time_utc) {
 // A screen being filled from above.
 struct Page {
   CellGrid grid;
-  bool dim = false;  // what is shown is not of now
+  bool dim = false;  // what is shown is out of date
   int next = 0;      // row
 
   void add(const Row& row) {
@@ -240,7 +240,7 @@ void addChart(Page& page, const WatchedState& state, int rows, bool blocks) {
   page.next += rows;
 }
 
-// The newest events that there is room for.
+// Adds the newest events, as many as there is room for.
 void addEvents(Page& page, const std::vector<WatchedEvent>& events) {
   if (page.left() < 3 || events.empty()) return;
   page.add({});
@@ -251,9 +251,9 @@ void addEvents(Page& page, const std::vector<WatchedEvent>& events) {
         {{fmt::format("  {:9} ", clockOf(events[i].time_utc)), CellStyle::kDim}, {events[i].what}});
 }
 
-// The rows that the chart's bars get of those that are left: what the events do not need.
+// The number of rows for the chart's bars: those of `left` that the events do not need.
 int chartRows(int left, const std::vector<WatchedEvent>& events, bool has_wall) {
-  constexpr int kHeadings = 2;  // a blank and the heading, of the chart and of the events
+  constexpr int kHeadings = 2;  // a blank row and a heading, for the chart and for the events
   const int for_events =
       events.empty() ? 0 : kHeadings + std::min(kLeastEvents, static_cast<int>(events.size()));
   const int rows = std::min(left - for_events - kHeadings, kMostChartRows);

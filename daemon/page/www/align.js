@@ -4,7 +4,7 @@ import {command} from "./api.js";
 
 const kCorners = ["top_left", "top_right", "bottom_left", "bottom_right"];
 const kMargin = 0.18;     // around the output in the drawing, as a share of its size
-const kRest_ms = 250;     // a corner that rests so long while it is dragged is moved on the wall
+const kRest_ms = 250;     // a dragged corner that rests for this time is moved on the wall
 const svgName = "http://www.w3.org/2000/svg";
 const byId = id => document.getElementById(id);
 const readable = name => name.replace("_", " ");
@@ -64,7 +64,7 @@ export class Alignment {
     this.plane.addEventListener("keydown", event => this.key(event));
   }
 
-  // Once: a corner that is drawn anew keeps the keyboard's focus and a finger on it.
+  // Makes the shapes once; draw() only changes them, so that a corner keeps the keyboard's focus and a finger on it.
   makeShapes() {
     this.frame = make("rect", {class: "frame"});
     this.quad = make("polygon", {class: "quad"});
@@ -135,13 +135,13 @@ export class Alignment {
     return kCorners[(right[0] * x + down[0] * y > 0 ? 1 : 0) + (right[1] * x + down[1] * y > 0 ? 2 : 0)];
   }
 
-  // Its name as it is seen.
+  // The name of the corner of the wall where this corner of the signal is seen.
   readableSeen(corner) { return readable(kCorners.find(c => this.cornerSeenAt(c) === corner)); }
 
-  // The corner is marked on the test card, and bound inputs move it.
+  // Selects the corner: the test card marks it, and bound inputs move it.
   select() { if (this.current()) this.ask(`select ${this.corner} ${this.output}`); }
 
-  // Steps to the right and down as they are seen.
+  // Moves a corner by steps to the right and down, as seen on the wall.
   moveBy([x, y], corner = this.corner) {
     const output = this.current(), step = Number(byId("align-step").value);
     if (!output) return undefined;
@@ -171,7 +171,7 @@ export class Alignment {
     this.plane.setAttribute("viewBox",
         `${-margin} ${-margin} ${seen.width + 2 * margin} ${seen.height + 2 * margin}`);
     this.group.setAttribute("transform", `matrix(${seen.matrix.join(" ")})`);
-    const unit = (seen.width + 2 * margin) / (this.plane.clientWidth || 400);  // of one pixel on the screen
+    const unit = (seen.width + 2 * margin) / (this.plane.clientWidth || 400);  // size of one pixel on the screen
     const at = Object.fromEntries(kCorners.map(c => [c, this.place(output, c)]));
     const points = ["top_left", "top_right", "bottom_right", "bottom_left"].map(c => at[c].join(",")).join(" ");
     set(this.frame, {width, height, "stroke-width": unit});
@@ -186,7 +186,7 @@ export class Alignment {
     const moved = output.corners[this.corner].moved.map((v, i) => v + now[i]);
     const {right, down} = output.seen, along = ([x, y]) => (x * moved[0] + y * moved[1]).toFixed(2);
     byId("align-state").textContent = `${this.readableSeen(this.corner)} moved by ${along(right)}, ` +
-        `${along(down)} px${output.pending ? ", being shown" : ""} · ` +
+        `${along(down)} px${output.pending ? ", not yet shown" : ""} · ` +
         `${this.report.undo} to undo, ${this.report.redo} to redo`;
   }
 
@@ -214,7 +214,7 @@ export class Alignment {
     this.draw();
   }
 
-  // One step, so that one undo takes it back.
+  // Sends what was dragged as one step, so that one undo takes it back.
   async send() {
     const {corner, by} = this.dragged;
     const sent = by.map(v => Number(v.toFixed(2)));

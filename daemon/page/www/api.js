@@ -37,7 +37,7 @@ async function request(path, options = {}) {
   let text = "";
   try {
     text = (await response.json()).error;
-  } catch { /* not ours */ }
+  } catch { /* no answer of the page's server */ }
   throw new ApiError(response.status, text || "status " + response.status);
 }
 

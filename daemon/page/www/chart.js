@@ -39,7 +39,7 @@ export class FrameChart {
     this.frames = this.frames.concat(answer.frames).slice(-600);
   }
 
-  // Until there are newer ones.
+  // Shows no frames until new ones are added.
   clear() {
     this.frames = [];
     this.period_ms = 0;

@@ -39,7 +39,7 @@ export class Contents {
       try {
         if (c.thumbnail && c.thumbnail !== tile.number) await this.picture(tile, c.thumbnail);
       } catch (error) {
-        fault = error;  // the others' pictures do not wait for this one
+        fault = error;  // the other pictures are read all the same
       }
     }
     if (fault) throw fault;
@@ -63,7 +63,7 @@ export class Contents {
     return {button, frame, note, place, number: 0, url: ""};
   }
 
-  // The number is taken once the picture is there, so that what failed is tried again.
+  // The tile takes the number once it has the picture, so that a picture that failed is tried again.
   async picture(tile, number) {
     const url = URL.createObjectURL(await getThumbnail(tile.place)), image = new Image();
     image.alt = "";

@@ -40,7 +40,7 @@ export function projectorText(p) {
   return [words, more, !works ? (p.health === "opening" ? "opening" : "failed") : busy ? "stale" : p.power === "on" ? "ok" : "off"];
 }
 
-// "off today at 18:00", "on on Monday at 09:00".
+// "Next by the schedule: off, today at 18:00", "Next by the schedule: on, Monday at 09:00".
 export function scheduleText(next, now = new Date()) {
   const [day, time] = next.at.split("T"), two = n => String(n).padStart(2, "0");
   const dateOf = d => `${d.getFullYear()}-${two(d.getMonth() + 1)}-${two(d.getDate())}`;

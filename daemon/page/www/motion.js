@@ -1,11 +1,11 @@
-// What drags, pinches, the wheel and buttons ask the wall to move: arguments of the command move. Without a document.
+// Turns drags, pinches, the wheel and buttons into arguments of the command move. Uses no document.
 
-const kDegreesPerHeight = 180;  // of a drag over the picture's height; merlind moves a picture 1.5 radii by them
-// A model turns and a panorama goes by at most as on a picture of this height [px]: the picture of a wide wall is a low
-// strip, on which a swipe of a thumb would turn a model round. A picture goes with the finger.
+const kDegreesPerHeight = 180;  // for a drag over the picture's height; merlind moves a picture by 1.5 radii for them
+// Least height [px] that a drag of a model or a panorama is measured by: the picture of a wide wall is a low strip, on
+// which a swipe of a thumb would otherwise turn a model round. A picture follows the finger whatever the height.
 const kLeastHeight = 300;
 const kRadiiPerNotch = 0.1, kPxPerNotch = 100;  // of the wheel, as for windows and VNC clients
-const kRadiiPerSpread = 2;  // for the logarithm of a pinch: at the default distance of two radii as large as the fingers say
+const kRadiiPerSpread = 2;  // for the logarithm of a pinch: at the default distance of two radii the model grows as it does
 const kMostRadii = 10, kMostDegrees = 360;  // of a command
 
 const kDragDoes = {model: "turn the model", picture: "move the picture", panorama: "look around"};
@@ -19,7 +19,7 @@ export function moveHint(kind, open) {
 export const degreesPerPx = (kind, height) =>
     kDegreesPerHeight / (kind === "picture" ? Math.max(height, 1) : Math.max(height, kLeastHeight));
 
-// The motion that no command has asked for yet. What is added while a command is under way becomes one more.
+// The motion that no command has asked for yet. What is added while a command is under way goes into the next one.
 export class Motion {
   constructor() {
     this.fingers = new Map();  // by pointer: its place [px]
@@ -32,7 +32,7 @@ export class Motion {
   press(id, x, y) { this.fingers.set(id, [x, y]); }
   release(id) { this.fingers.delete(id); }
 
-  // It has moved there. One drags, two pinch; more do nothing.
+  // The finger has moved there. One finger drags, two pinch; more have no effect.
   drag(id, x, y, degrees_per_px) {
     const from = this.fingers.get(id);
     if (!from) return;
@@ -53,7 +53,7 @@ export class Motion {
     return Math.hypot(ax - bx, ay - by);
   }
 
-  // The page would be scrolled down by so much.
+  // The wheel was turned such that it would scroll a page down by so many pixels.
   wheel(px) { this.notch(-px / kPxPerNotch); }
   notch(count) { this.nearer += kRadiiPerNotch * count; }
 

@@ -23,7 +23,7 @@ const state = {
 };
 const chart = new FrameChart(byId("frames"), 150);
 
-// ---- what is said -----------------------------------------------------------------------------
+// ---- messages ---------------------------------------------------------------------------------
 
 let toast_timer = 0;
 function toast(text, bad = false) {
@@ -228,15 +228,15 @@ function showOutputs(wall) {
            o.reason || o.picture_reason || (o.kind === name ? "" : o.kind))));
 }
 
-const kLeastArgument = 4;  // of the command
+const kLeastArgument = 4;  // of the command triangles
 const leastCost = detail => Math.max(kLeastArgument, Math.min(detail.least_cost, detail.full_cost));
 
-// The slider of the cost has a logarithmic scale from the least to all of it.
+// The slider of the cost has a logarithmic scale from the least cost to the full cost.
 const range = detail => Math.max(detail.full_cost / leastCost(detail), 1.001);
 const costOf = (place, detail) => Math.round(leastCost(detail) * range(detail) ** (place / 1000));
 const placeOf = (cost, detail) => Math.round(1000 * Math.log(Math.max(cost / leastCost(detail), 1)) / Math.log(range(detail)));
 
-// Not by the keyboard's focus: not every browser gives it to a slider that is dragged.
+// Does not ask for the keyboard's focus, because not every browser gives it to a slider that is dragged.
 const isUsed = id => Date.now() < (state.used[id] || 0);
 
 function showDetail(wall) {
@@ -272,7 +272,7 @@ function showContents(wall) {
   picture.showHint();
 }
 
-// Of the wall's content folder: what `merlin show FILE` has shown.
+// The names of the files in the wall's content folder, which `merlin show FILE` has shown.
 const shownFiles = () => wallStatus() && wallStatus().shown_folder && wallStatus().shown_folder.names || [];
 
 async function showContent(name) {
@@ -291,7 +291,7 @@ function showFrames(wall) {
   if (wall.work_histogram) drawHistogram(byId("work"), wall.work_histogram, 70);
 }
 
-// What was known of a wall that is gone would be taken for present.
+// Clears what the page shows of a wall that is gone: it would be taken for the present state.
 function showNoWall() {
   for (const id of ["rate-value", "triangles-value"]) byId(id).textContent = "–";
   for (const id of ["detail-facts", "content-name", "frames-legend", "frame-facts"]) byId(id).replaceChildren();
@@ -321,11 +321,11 @@ function showStatus() {
 
 // ---- reading ----------------------------------------------------------------------------------
 
-// Whether the server answered; says in a banner if it did not.
+// Notes why a request failed, and says so in a banner.
 function failed(error) {
   state.online = error.status !== 0;
   state.crowded = error.status === 429;
-  state.refused = error.status === 401 ? "Reading needs the token at this address. Use the button Locked." :
+  state.refused = error.status === 401 ? "At this address, reading needs the token, too: press Locked and enter it." :
       error.status >= 400 && error.status !== 429 && error.status !== 503 ? error.message : "";
   if (error.status === 401 && token()) setOpen(false);
   showBanners();

@@ -1,7 +1,7 @@
 // Which events of the pointer belong to the operator's panel, and the command operator_pointer that tells merlind of them:
-// daemon/base/panel_pointer.h for a browser. Without a document.
+// daemon/base/panel_pointer.h for a browser. Uses no document.
 
-const kRepeat = 500;  // ms after which a held button is told again
+const kRepeat = 500;  // ms after which a button that is held is reported again
 const kMostWaiting = 32;
 
 export class PanelPointer {
@@ -30,7 +30,7 @@ export class PanelPointer {
     if (this.waiting.length > kMostWaiting) this.waiting.shift();
   }
 
-  // The pointer is at a pixel of the picture. Returns true if the panel takes the event: it is to have no other effect.
+  // The pointer is at a pixel of the picture. True if the panel takes the event, which then must have no other effect.
   point(x, y, pressed) {
     const was = this.pressed, p = this.shown_at;
     this.pressed = pressed;

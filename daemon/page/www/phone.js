@@ -3,8 +3,8 @@
 import {phoneCode} from "./api.js";
 
 const byId = id => document.getElementById(id);
-const kShown = 60000;  // ms: who sees the code may command the wall
-const kMargin = 4;     // modules, as the standard wants
+const kShown = 60000;  // ms, because whoever sees the code may command the wall
+const kMargin = 4;     // modules, as the standard requires
 
 // The dark modules of rows "1011..." as one path.
 const pathOf = rows => rows.map((row, y) => [...row.matchAll(/1+/g)].map(run =>

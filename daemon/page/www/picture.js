@@ -10,7 +10,7 @@ const wait = ms => new Promise(done => setTimeout(done, ms));
 const kWidths = [320, 640, 960, 1280, 1920];
 const kAskAgain = 5000;  // ms until a size that the server refused is asked for again
 const kHeldAfter = 400, kHeldAgain = 150;  // ms after which a button that is held acts again
-const kTellAgain = 500;  // ms after which the panel is told again what is held
+const kTellAgain = 500;  // ms after which a button that is held is reported to the panel again
 const kPxOfDelta = [1, 33, 300];  // of a wheel, by its deltaMode: pixels, lines, pages
 
 // Calls `act` when the button is pressed, and again and again while it is held.
@@ -29,7 +29,7 @@ function repeatWhileHeld(button, act) {
   });
   for (const end of ["pointerup", "pointercancel", "pointerleave"])
     button.addEventListener(end, () => clearTimeout(timer));
-  button.addEventListener("contextmenu", event => event.preventDefault());  // of a finger that rests
+  button.addEventListener("contextmenu", event => event.preventDefault());  // a resting finger would open the menu
   // A click of the keyboard or a screen reader comes without a press.
   button.onclick = event => {
     if (!pressed || event.detail === 0) act();
@@ -38,7 +38,7 @@ function repeatWhileHeld(button, act) {
 }
 
 export class Picture {
-  // `run`: sends a command. `page`: what is known: {open, online, kind of the content}, each a function.
+  // `run`: sends a command. `page`: functions that return the page's state: {open, online, kind (of the content)}.
   constructor(run, page) {
     this.run = run;
     this.page = page;
@@ -66,8 +66,8 @@ export class Picture {
     return kWidths.find(width => width >= wanted) || kWidths.at(-1);
   }
 
-  // The next picture: in a smaller size while the server makes no more sizes of it, for others look
-  // at too many. Fails with what the server says if it makes not even the smallest.
+  // The next picture, in a smaller size while the server refuses this one because others look at too many sizes. Fails
+  // with the server's reason if it refuses even the smallest.
   async next(view, after) {
     const widths = kWidths.slice(0, kWidths.indexOf(this.width()) + 1), least = widths[0];
     for (const width of widths.reverse()) {

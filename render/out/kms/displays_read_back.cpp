@@ -61,7 +61,7 @@ Result<Displays::Reading> Displays::readOne(Scanout& scanout, const Target& targ
     reading.found.digest = *digest;
     if (after && *after == *out) return reading;
   }
-  return Error{Errc::kBusy, fmt::format("{} shows another frame each time", place.name)};
+  return Error{Errc::kBusy, fmt::format("{} shows another frame each time it is read", place.name)};
 }
 
 void Displays::showAgain(std::size_t i) {

@@ -177,7 +177,7 @@ void WindowLink::execute(std::string_view command) const {
   const std::size_t space = std::min(command.find(' '), command.size());
   const auto done = acts_.command(std::string(command.substr(0, space)),
                                   std::string(command.substr(std::min(space + 1, command.size()))));
-  if (!done) logWarning("a command that was given in a window: {}", done.error().what);
+  if (!done) logWarning("a command that was given in a window failed: {}", done.error().what);
 }
 
 // Sends one frame at a time, so that the program always gets the newest one next.

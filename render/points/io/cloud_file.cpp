@@ -55,7 +55,7 @@ Result<PointCloud> parseCloud(std::string_view bytes) {
     if (const auto good = keepFinite(*cloud); !good) return good.error();
     return cloud;
   }
-  return Error{Errc::kUnsupported, "is no point cloud; read are " + readableClouds()};
+  return Error{Errc::kUnsupported, "is not a point cloud; supported are " + readableClouds()};
 }
 
 Result<PointCloud> readCloud(const std::string& path) {

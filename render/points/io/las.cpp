@@ -66,8 +66,9 @@ Result<Ok> checkVersion(const LasBytes& b, std::size_t size, LasHeader& h) {
   const int major = b.u8(24);
   h.minor = b.u8(25);
   if (major != 1 || h.minor < 2 || h.minor > 4)
-    return lasError(Errc::kUnsupported, fmt::format("version {}.{}; read are 1.2, 1.3 and 1.4; {}",
-                                                    major, h.minor, kConvert));
+    return lasError(
+        Errc::kUnsupported,
+        fmt::format("version {}.{}; supported are 1.2, 1.3 and 1.4; {}", major, h.minor, kConvert));
   const std::size_t least = kLeastHeader[h.minor - 2], said = b.u16(94);
   if (said < least || said > size)
     return lasError(Errc::kMalformed,
@@ -121,7 +122,7 @@ Result<LasHeader> parseLasHeader(std::string_view bytes) {
                  "is LAZ, compressed LAS; convert it with: laszip -i IN.laz -o OUT.las"};
   if (h.format >= std::size(kFormats))
     return lasError(Errc::kUnsupported,
-                    fmt::format("point format {}; read are 0 to 10; {}", h.format, kConvert));
+                    fmt::format("point format {}; supported are 0 to 10; {}", h.format, kConvert));
   h.record = b.u16(105);
   if (h.record < kFormats[h.format].bytes)
     return lasError(Errc::kMalformed,
@@ -226,7 +227,8 @@ class LasPoints {
     if (!dropped.empty()) cloud_.notes.push_back("left out: " + dropped);
     const std::string names = leftOut();
     if (!names.empty())
-      cloud_.notes.push_back(fmt::format("left out of each point, as no feature: {}", names));
+      cloud_.notes.push_back(
+          fmt::format("left out of each point, and not kept as features: {}", names));
     cloud_.side = Side::kAbove;
     cloud_.format = fmt::format("LAS 1.{}, point format {}", h_.minor, h_.format);
   }

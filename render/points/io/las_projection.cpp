@@ -113,8 +113,8 @@ LasProjection lasProjection(std::string_view bytes) {
   if (!usable) projection.text.clear();
   if (projection.text.empty() && (!found.wkt.empty() || !found.keys.empty()))
     projection.note =
-        "its projection is left out: its records have neither a text of up to 4096 bytes nor a "
-        "number of EPSG";
+        "its projection is left out: its records have neither a text of up to 4096 bytes nor an "
+        "EPSG number";
   return projection;
 }
 

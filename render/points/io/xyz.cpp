@@ -74,7 +74,7 @@ class XyzReader {
       return Error{Errc::kMalformed,
                    fmt::format("line {}: has {} numbers; {}", line, row.count,
                                row.count == columns_ ? "a point has 3, 4, 6 or 7"
-                                                     : "the lines before have another number")};
+                                                     : "the lines before have a different number")};
     if (cloud_.size() == kMostPoints)
       return Error{Errc::kUnsupported, fmt::format("has more than {} points", kMostPoints)};
     for (std::size_t k = 0; k < 3; ++k)
@@ -105,8 +105,8 @@ class XyzReader {
       three.name = "normal";
     } else {
       return Error{Errc::kMalformed,
-                   "its last three columns are neither colours (whole numbers of 0 to 255) nor, of "
-                   "six columns, normals (of length 1)"};
+                   "its last three columns are neither colours (whole numbers from 0 to 255) nor, "
+                   "if there are six columns, normals (of length 1)"};
     }
     cloud_.features.push_back(std::move(three));
     return Ok{};

@@ -197,7 +197,7 @@ Result<Plane> readPlane(const std::string& name, const std::string& path, const 
   const auto picture = image::readImage(path);
   if (!picture && picture.error().code == Errc::kUnsupported)
     return Error{Errc::kUnsupported, path +
-                                         ": is none of PGM, PPM, PNG and JPEG, of which features "
+                                         ": is not a PGM, PPM, PNG or JPEG file, of which features "
                                          "are read"};
   if (!picture) return picture.error();
   const auto width = static_cast<std::size_t>(picture->width);

@@ -214,7 +214,7 @@ Result<LoadedRange> load(const std::string& path, const RangeOptions& options) {
   if (!options.raw && hasPoints(bytes)) return loadPoints(bytes, options);
   const RangeFormat* format = options.raw ? nullptr : formatOf(bytes, nameIn(path));
   if (!options.raw && !format)
-    return Error{Errc::kUnsupported, "is not a range image; read are " + readableRanges()};
+    return Error{Errc::kUnsupported, "is not a range image; supported are " + readableRanges()};
   auto stored = options.raw ? parseRaw(bytes, *options.raw) : format->read(bytes, path);
   if (!stored) return stored.error();
   auto loaded = loadStored(*std::move(stored), options);

@@ -201,7 +201,9 @@ Result<Ok> readPixels(const ply::Element& element, ply::Body& body, Points& poin
                    fmt::format("pixel {} has {:g} vertices; allowed are 0 and 1", i, count)};
     if (!body.next(list.type, vertex)) return endsIn(element, i, body);
     if (!(vertex >= 0 && vertex < kNoVertex) || vertex != std::floor(vertex))
-      return Error{Errc::kMalformed, fmt::format("pixel {} has vertex {:g}", i, vertex)};
+      return Error{
+          Errc::kMalformed,
+          fmt::format("pixel {} has vertex {:g}, which is not a vertex's number", i, vertex)};
     points.of_pixel[i] = static_cast<std::uint32_t>(vertex);
   }
   return Ok{};

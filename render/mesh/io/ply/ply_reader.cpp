@@ -85,8 +85,8 @@ Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   if (faces.corners.empty() && !findOf(mesh, "texcoord", 2)) return loaded;
   if (faces.numbers.empty() && faces.pictures.size() > 1) {
     loaded->notes.push_back(
-        fmt::format("left out: {} texture images, since no property texnumber of the faces says "
-                    "which is whose",
+        fmt::format("left out: {} texture images, since the faces have no property texnumber "
+                    "that says which of them each one has",
                     faces.pictures.size()));
     return loaded;
   }
