@@ -64,9 +64,9 @@ Measured scaled(const Measured& measured, double factor);
 struct Slope {
   Measured value, half_width;
 };
-// Of points (x, y) in the order of x. What is sampled often, such as a process's memory, changes in
-// steps, so neighbouring residuals are alike: as many points count as independent ones as the
-// correlation of neighbours leaves. Throws DidNotRun if there are fewer than ten points.
+// The slope of points (x, y), which are in the order of x. Values that are sampled often, such as a
+// process's memory, change in steps, so neighbouring residuals are correlated; the number of points
+// that count as independent is reduced accordingly. Throws DidNotRun for fewer than ten points.
 Slope slopeOf(const std::vector<std::pair<double, double>>& points, std::string_view what);
 
 // The results so far, held back until everything has been measured. Thread-bound.

@@ -78,7 +78,7 @@ TEST(Needs, WhatIsNeededIsThere) {
     EXPECT_EQ(found(json), "") << json;
 }
 
-// As merlind --print-config does, also of what only the driver's speed makes different.
+// As merlind --print-config does, also for settings whose default depends on the driver's speed.
 TEST(Needs, ADefaultThatIsWrittenOutIsValid) {
   for (const char* json :
        {"{}", R"({"devices": [{"driver": "cyberglove", "port": "tcp://lab:4001"}]})"}) {

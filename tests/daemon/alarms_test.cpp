@@ -207,7 +207,7 @@ TEST(ChildProgram, OfWhatItWritesTheBeginningIsKept) {
   EXPECT_EQ(lines.back(), "... and 2997952 bytes more, left out");
 }
 
-// What the check says before is what the start says.
+// The check reports the same reason as the start.
 TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
   const TempDir dir;
   const std::string script = dir / "script";
@@ -234,7 +234,7 @@ TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
     EXPECT_EQ(whatOf(text), "started") << text;
 }
 
-// Of a program that is no script the kernel knows more than its beginning tells.
+// If a program is not a script, only the kernel can say whether it can be executed.
 TEST(ChildProgram, IsNotJudgedByBytesThatAreNoScript) {
   const TempDir dir;
   test::writeText(dir / "program", std::string("MZ\0\1", 4));

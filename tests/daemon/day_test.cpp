@@ -25,8 +25,8 @@ constexpr pjlink::LocalMinute kMonday = 20605 * 24 * 60;  // 2026-06-01 00:00
 
 constexpr int at(int hour, int minute) { return 60 * (60 * hour + minute); }
 
-// Each second of it something is done, whoever lets it pass: a projector that answers slowly holds
-// up nothing else, as its thread does not in merlind.
+// A clock that runs the acts of each second, whoever lets the time pass. So a projector that
+// answers slowly delays nothing else, as in merlind, where it has a thread of its own.
 class DayClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return now_; }
@@ -64,7 +64,7 @@ struct Link {
 
 class Day : public testing::Test {
  protected:
-  // What people and the world do at a second of the day, with the row that says so.
+  // Adds what is done at a second of the day, and the row of the report that says so.
   void when(int second, const std::string& row, std::function<void()> act) {
     acts_.insert({second, {row, std::move(act)}});
   }

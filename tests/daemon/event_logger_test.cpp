@@ -1,4 +1,4 @@
-// What of the events gets into the log, and how.
+// Tests which events are logged, and how.
 #include "daemon/base/event_logger.h"
 
 #include <gtest/gtest.h>

@@ -21,7 +21,7 @@ TEST(Handover, TheNewestOfferIsTakenOnce) {
   EXPECT_FALSE(handover.take(mine));
 }
 
-// What was given back is freed by whoever offers, and never lost: the leak sanitizer counts.
+// The offering thread frees values that were given back, and loses none: the leak sanitizer checks.
 TEST(Handover, BetweenThreadsNothingIsTornOrLost) {
   constexpr int kOffers = 20'000;
   Handover<std::vector<int>> handover;

@@ -136,7 +136,7 @@ TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {
   const SystemClock clock;
   int tries = 0;
   const auto make = [&](std::size_t place, const std::string& path) -> Result<ReadyModel> {
-    // As where a file is being written: the folder's stamp does not change any more.
+    // As while a file is being written: the folder's time stamp no longer changes.
     if (path == folder && ++tries == 1) return Error{Errc::kMalformed, "is cut"};
     if (path == folder) return ReadyModel{place, folder + "/first", nullptr, nullptr};
     if (test::readText(path) == "good") {

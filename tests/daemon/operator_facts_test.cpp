@@ -1,4 +1,4 @@
-// What the operator's tile is told: from the wall's slots, and from the message board.
+// Tests what the operator's tile shows: facts of the wall's slots, and of the message board.
 #include <cstring>
 #include <memory>
 

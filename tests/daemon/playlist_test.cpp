@@ -233,7 +233,7 @@ std::string nameFindings(const std::string& wall) {
   return text;
 }
 
-// Of two with one name, commands and playlists would only find the first.
+// If two contents had one name, commands and playlists would find only the first.
 TEST(ContentNames, ThoseOfFilesAreComparedToo) {
   EXPECT_EQ(
       nameFindings(R"("contents": [{"model": "bust.mrm"}, {"picture": "bust.tif"}])"),

@@ -130,7 +130,7 @@ class RunPart : public testing::Test {
   ~RunPart() override { ::sigprocmask(SIG_SETMASK, &mask_, nullptr); }
   RunPart(const RunPart&) = delete;
   RunPart& operator=(const RunPart&) = delete;
-  // What the report has of the configuration merlin.json of the folder.
+  // The files in the report about the configuration merlin.json of the folder.
   std::vector<PackedFile> configurationFiles(const TempDir& dir) {
     const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
                                 "merlin-report-none", dir.path()};

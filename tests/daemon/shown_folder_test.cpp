@@ -126,7 +126,7 @@ TEST_F(Folder, AFileIsAContentByItsNameAndItsEnding) {
   EXPECT_EQ(whyUnread(*slides), "");
 }
 
-// Of two of one name the newer one counts; what is no content has none.
+// If two contents have one name, the newer one counts; files that are no contents have no name.
 TEST_F(Folder, WhatCanBeShownAgainHasANameTheNewestFirst) {
   put("photo 1.tif", 30);
   put("scan.mrm", 20);

@@ -1,4 +1,4 @@
-// What the wall gave way, as sentences.
+// Tests the sentences about what the wall reduced for lack of time.
 #include "daemon/status/wall_events.h"
 
 #include <cstring>

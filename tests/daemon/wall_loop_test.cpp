@@ -105,7 +105,7 @@ TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentIsInTime) {
   EXPECT_EQ(costOf(at_change + 3), costOf(at_change - 1));
 }
 
-// So that what is drawn over the frame (the operator's plates) does not name the content before.
+// Otherwise the text over the frame (the operator's plates) would name the previous content.
 TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentFindsItsNamePublished) {
   contents_.push_back({&detail_, &painter_});
   contents_[0].name = "first";

@@ -10,7 +10,7 @@ namespace {
 class WallPaceTest : public FakeWall {
  protected:
   WallPaceTest() : FakeWall(microseconds(10), 40, {.min_triangles = 100}) {}
-  // Of pictures; the painter takes as long as for a fine model, at each step.
+  // The detail axis of pictures; the painter takes as long as for a fine model, at each step.
   struct PictureSteps final : render::content::DetailAxis {
     std::size_t steps() const noexcept override { return 9; }
     std::size_t costOf(std::size_t step) const noexcept override { return 4096U >> step; }
@@ -142,7 +142,7 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   EXPECT_GT(frames_.frames.back().cost, 2300u);
 }
 
-// What a person may ask for is what is used.
+// The number that a person may set is the number that is used.
 TEST_F(WallPaceTest, TheLimitsOfTrianglesByHandAreThoseOfTheContent) {
   contents_.push_back({&picture_, &painter_});
   std::vector<std::size_t> least;

@@ -183,7 +183,7 @@ std::size_t deviceBytes(const io::Transcript& transcript) {
   return bytes;
 }
 
-// What a device says that is opened on the transcript, until it ends.
+// Opens `device` on the transcript; returns as text what it reports until the transcript ends.
 std::string readBy(Device& device, const io::Transcript& transcript, FakeClock& clock,
                    Lines& lines) {
   lines.text.clear();

@@ -83,7 +83,7 @@ TEST_F(OscTest, TheSendersFrameMayLieOtherwise) {
   for (int i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(newest().orientation_wxyz[i], wxyz[i]) << i;
 }
 
-// What is turned in the sender's frame and then placed is what is placed and then turned.
+// To turn in the sender's frame and then place gives the same as to place and then turn.
 TEST(TrackerPlacement, TurnsPlacesAndRotationsAlikeAlsoIfItMirrors) {
   using Vector = std::array<float, 3>;
   const auto turned = [](const float(&q)[4], const Vector& v) {  // q v q*

@@ -182,7 +182,7 @@ TEST(SpaceballDevice, StreamsOnPastGarbageAndCountsIt) {
   Ball ball("turning", "2003", 5);
   ASSERT_TRUE(ball.device->open(ball.stream));
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(20)));
-  // Of 400: a burst of garbage destroys the packet after it.
+  // The ball sent 400 packets; each burst of garbage destroys the packet after it.
   EXPECT_GT(ball.sink.ball.size(), 300u);
   EXPECT_GT(ball.device->counters().bad_packets, 50u);
   EXPECT_GT(ball.device->counters().bad_bytes, 50u * 16);

@@ -153,7 +153,7 @@ TEST(VrpnCatalog, WhatWasUnderstoodStaysWhenTheServerTurnsToNonsense) {
             "the greeting \"HTTP/1.1 400 Bad Request\" is not that of a server of VRPN 7");
 }
 
-// Of a description of a type the damage may make that of a sender.
+// The damage may turn the description of a type into that of a sender.
 TEST(VrpnCatalog, OneDamagedByteAddsNoMoreThanADevice) {
   const std::string good = vrpnCookie() + sender(1, "Wand0") + types() + message(1, kPose, "x");
   for (std::size_t i = 0; i < good.size(); ++i) {

@@ -315,8 +315,8 @@ void driverBytes(Device& device, test::FakeClock& clock, std::string_view bytes)
     goes_on = device.poll(stream).ok();
 }
 
-// Of a VRPN server, to the driver of a tracker, to that of buttons and analogs, and to who asks for
-// its devices.
+// Gives the bytes of a VRPN server to the driver of a tracker, to that of buttons and analogs, and
+// to the catalog of its devices.
 void vrpnServerBytes(Bytes bytes) {
   PlausibleSink sink;
   test::FakeClock clock;
@@ -356,7 +356,7 @@ void oscBytes(Bytes bytes) {
   driverBytes(device, clock, textOf(bytes));
 }
 
-// Of a client of MERLIN's own space-mouse socket.
+// Gives the bytes of a client to MERLIN's own space-mouse socket.
 void spnavBytes(Bytes bytes) {
   serve::SpnavClient client({});
   std::string out;

@@ -67,7 +67,7 @@ class ShaderOf : public ::testing::TestWithParam<gl::GlBackend> {
   void expectTheCpusPicture(const std::string& name, const CorrectionMap& map) {
     const auto picture = noise(map.source_width, map.source_height);
     correct::OutputCorrection cpu(map, 1), gpu(map, 1, &pass_);
-    // So that a pass that refuses does not pass for one that agrees.
+    // Asserts that the pass runs, so that a pass that refuses is not taken for one that agrees.
     auto shared = std::make_shared<const CorrectionMap>(map);
     std::vector<std::uint8_t> there(static_cast<std::size_t>(4 * map.width * map.height));
     ASSERT_TRUE(pass_.run(shared, picture, there)) << name << ": " << pass_.fault();

@@ -21,7 +21,7 @@ namespace {
 
 using Node = std::uint32_t;
 using Triangle = std::array<Node, 3>;
-// Of node numbers in the log; each triangle begins with its smallest.
+// Triangles of node numbers in the log; each triangle begins with its smallest number.
 using Triangles = std::multiset<Triangle>;
 
 struct Reduced {

@@ -1,4 +1,4 @@
-// What a card's displays are really sent, read back past the books of `Displays`.
+// Tests the read-back of what a card's displays really show, without the records of `Displays`.
 #include <gtest/gtest.h>
 
 #include "render/out/kms/displays.h"

@@ -38,7 +38,7 @@ mesh::Mesh richSquare() {
   return mesh;
 }
 
-// What could not be stored in the file at `path`.
+// Writes the mesh to `path`; returns the names of what the format could not store.
 Names written(const std::string& path, const mesh::Mesh& mesh) {
   const auto result = mesh::writeMesh(path, mesh);
   EXPECT_TRUE(result) << result.error().what;

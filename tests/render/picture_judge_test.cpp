@@ -1,4 +1,4 @@
-// What is found on an output, judged by what it was meant to show.
+// Tests the verdict on what an output shows, compared with what it was meant to show.
 #include "render/out/picture/picture_judge.h"
 
 #include <vector>

@@ -175,7 +175,7 @@ TEST(PlyAscii, NamesTheRowThatHasMoreNumbersThanTheHeaderPromises) {
   EXPECT_EQ(fault(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\nmore\n"), "");
 }
 
-// Of the square 0 1 3 2 and one corner more: all triangles face the way of the first.
+// Strips of the square 0 1 3 2 and one more corner: all triangles face the same way as the first.
 TEST(PlyRead, StripsBecomeTrianglesThatFaceOneWay) {
   const auto strips = [](const std::string& rows, const std::string& list) {
     return read(

@@ -439,7 +439,7 @@ TEST(OwnViews, ShowTheContentAlongTheWallsAxes) {
   const tiles::TilePlan plan = planned(s);
   const Vector3f centre(3, -1, -7);
   const Vector3f right = Vector3f::UnitX(), up = Vector3f::UnitY(), near = Vector3f::UnitZ();
-  // Of the picture: to the right, upwards, and away from its camera.
+  // Directions of each view's picture: to the right, upwards, and away from its camera.
   const struct {
     Vector3f right, up, away;
   } expected[] = {{right, -near, -up}, {-near, up, -right}, {right, up, -near}};

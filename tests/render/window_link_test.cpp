@@ -197,8 +197,8 @@ TEST_F(WindowLinkTest, AProgramThatCannotBeStartedIsNamed) {
   EXPECT_TRUE(becomes((dir_ / "program") + " cannot be started: Permission denied"));
 }
 
-// It neither reads nor answers. Presenting goes on, the health tells, and the end waits for
-// nothing.
+// The program neither reads nor answers. Presenting goes on, the health says so, and the end does
+// not wait for the program.
 TEST_F(WindowLinkTest, AProgramThatHangsHoldsNothingUp) {
   start("echo $$ >" + (dir_ / "pid") + "; exec sleep 1000");
   ASSERT_TRUE(show());
@@ -216,7 +216,7 @@ TEST_F(WindowLinkTest, AProgramThatHangsHoldsNothingUp) {
   EXPECT_EQ(::kill(second, 0), -1) << "it has ended with its output";
 }
 
-// Each frame is of one value. The program looks at its slot again and again before it answers.
+// All pixels of a frame have one value. The program reads its slot repeatedly before it answers.
 TEST_F(WindowLinkTest, AFramesPixelsStayUntilTheProgramHasAnswered) {
   const std::string script = dir_ / "double.py", torn = dir_ / "torn", seen = dir_ / "seen";
   test::writeText(script, R"(

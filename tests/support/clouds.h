@@ -64,7 +64,7 @@ inline std::string pcdCloud(const std::string& viewpoint, const std::string& poi
          viewpoint + " 1 0 0 0\nPOINTS 2\nDATA ascii\n" + points;
 }
 
-// One of each format, to be damaged.
+// A small file of each format, for tests that damage it.
 inline std::vector<std::string> goodClouds() {
   return {las(2, 3, 4),
           las(3, 5, 2),

@@ -29,7 +29,7 @@ class EmulatedProjector {
   std::string errors = "000000", lamps = "1234 1", name = "Epsilon";
   std::string inputs;  // each input that was selected
 
-  // It has warmed up, or cooled down, by now.
+  // Ends warming up or cooling down at once.
   void endPhase() { phase_until_ = {}; }
 
   // The first bytes of a connection.

@@ -87,7 +87,7 @@ struct FakeScanout final : Scanout {
     if (!bench.there) return Error{Errc::kIo, "the card has gone"};
     return bench.scanned[crtc];
   }
-  // Of buffers of 640x480 alone.
+  // Reads only buffers of 640x480.
   Result<PictureDigest> read(Id buffer, int width, int height) override {
     const PictureDigest digest =
         digestOf({width, height, *bench.buffers.at(buffer), 640 * 4, PixelOrder::kBgrx});

@@ -49,7 +49,7 @@ class FakePainter final : public render::frame::FramePainter {
   float furthest_seen_m = 50;
   std::function<void()> on_draw = [] {};
   bool gives_way = false;
-  // What its frames leave out; what has arrived is in the next one that is refined.
+  // What its frames lack; data that have arrived are drawn in the next frame that is refined.
   render::content::Pending left_out = render::content::Pending::kNothing;
   render::content::Pending pending() const noexcept override { return left_out; }
   int refined = 0;  // times that a frame of full detail was begun

@@ -54,7 +54,7 @@ inline std::string oscBundle(const std::vector<std::string>& elements) {
   return bytes;
 }
 
-// As the port udp: has it.
+// The datagram as a record of the port udp:.
 inline std::string datagram(std::string_view bytes, std::uint32_t sender = 1) {
   std::string out;
   append({sender, std::as_bytes(std::span(bytes))}, out);

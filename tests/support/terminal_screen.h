@@ -163,7 +163,7 @@ class TerminalScreen {
     top_ = std::min(first, bottom_) - 1;
     place(1, 1);
   }
-  // One row down; at the end of the rows that scroll these move up.
+  // Moves the cursor one row down; in the last row of the scrolling region, scrolls the region up.
   void index() {
     if (row_ + 1 == bottom_)
       moveRows(top_, 1, false);

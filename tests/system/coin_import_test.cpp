@@ -180,7 +180,7 @@ TEST_F(CoinImport, AColourThatIsNotThereIsRefused) {
                   "its 2 faces");
 }
 
-// As Coin draws them; what lies in memory behind the last would be another colour at each run.
+// Coin draws them so. Memory behind the last material would give another colour at each run.
 TEST_F(CoinImport, FacesBeyondTheLastMaterialHaveIt) {
   const auto all = vertices(
       inventor("Material { diffuseColor [ 1 0 0, 0 0 1 ] } MaterialBinding { value PER_FACE }\n"

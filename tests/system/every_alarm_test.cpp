@@ -108,7 +108,7 @@ void crowdVrpn(Stage& stage) {
   }
 }
 
-// What it says while it starts, before anybody can follow it, is told too.
+// Events that merlind reports while it starts, before anybody can follow it, cause alarms too.
 void restartWithDamagedState(Stage& stage) {
   if (stage.again) return;
   EXPECT_EQ(stage.merlind->process().kill(SIGTERM), 0);

@@ -476,7 +476,7 @@ TEST_F(GltfImport, AMeshThatANodeMovesToAMapKeepsItsDigitsByAnOrigin) {
   EXPECT_EQ(info["box"]["high"], (Json{0.375, 0.25, 0.0}));
 }
 
-// What merlin mesh export has written of it lies at the same place, with and without a round trip.
+// A map that merlin mesh export wrote is at the same place, with and without a round trip.
 TEST_F(GltfImport, AnExportOfAMapIsImportedAtTheSamePlace) {
   writeText(dir_ / "far.obj",
             "v 500000.125 5200000.25 10\nv 500002.125 5200000.25 10\nv 500002.125 5200002.25 "

@@ -106,8 +106,8 @@ class Install : public testing::Test {
     return arguments;
   }
 
-  // One of the two processes of the wall, under its unit. With the unit's command line but for the
-  // configuration.
+  // Starts one of the two processes of the wall under its unit's restrictions, with the unit's
+  // command line except for the configuration.
   std::unique_ptr<Process> start(const std::string& role, const std::string& configuration,
                                  const std::vector<std::string>& drop_ins = {}) {
     auto process = std::make_unique<Process>(
@@ -187,7 +187,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
   EXPECT_EQ(readText(root_ + "/etc/merlin/merlin.json"), "{\"instance\": \"mine\"}");
 }
 
-// As its first lines say, with nothing but what is installed.
+// Compiles the example as its first lines say, with only the installed files.
 TEST_F(Install, TheExampleInCppIsCompiledFromThePackage) {
   ASSERT_EQ(install().status, 0);
   const std::string documents = root_ + "/usr/share/doc/merlin";
@@ -225,7 +225,7 @@ TEST_F(Install, EveryLinkToAFileInAnInstalledDocumentResolves) {
     const fs::path source = fs::path(kSource) / folder.lexically_relative(top);
     const std::string text = readText(entry.path());
     for (const std::string& name : namedIn(text, "`([A-Za-z0-9_./-]+\\.(md|json|py|c|png))[`: ]")) {
-      // What is no file of ours is another program's, or one that somebody makes.
+      // A name that is no file of ours is a file of another program, or one that a user makes.
       if (isOfTheRepository(name) || !isFile(name, source, kSource)) continue;
       ++links;
       EXPECT_TRUE(isFile(name, folder, top)) << name << " in " << entry.path();

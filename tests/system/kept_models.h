@@ -18,7 +18,8 @@ std::string keptModel(const std::string& name,
 // The demo's scan at all resolutions, as a copy of the test's own: FOLDER/full.mrm.
 std::string makeFullModel(const TempDir& dir);
 
-// Of `percent` of its triangles, so that a sanitizer's build can draw it: FOLDER/model.mrm.
+// Makes FOLDER/model.mrm with `percent` of the triangles, so few that a build with a sanitizer can
+// draw it. Returns its path.
 std::string makeModel(const TempDir& dir, int percent = 20);
 
 }  // namespace merlin::test

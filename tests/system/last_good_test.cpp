@@ -93,7 +93,7 @@ TEST_F(LastGood, OfTheWallIsWhatThePageStartsWith) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
-// What is kept lies in another folder than the configuration, and names the same files.
+// The last good settings are in another folder than the configuration, and name the same files.
 TEST_F(LastGood, NamesFilesThatTheConfigurationNamesFromItsFolder) {
   json config = valid(7);
   config["wall"]["model"] = fs::path(model_).filename();
@@ -112,7 +112,7 @@ TEST_F(LastGood, NamesFilesThatTheConfigurationNamesFromItsFolder) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
-// It may have a token, among the arguments of an alarm's program.
+// The kept settings may contain a token, among the arguments of an alarm's program.
 TEST_F(LastGood, IsReadableByNoMoreThanEachFileOfTheConfiguration) {
   const std::string more = dir_ / "conf.d/more.json";
   fs::create_directories(dir_ / "conf.d");
@@ -142,7 +142,7 @@ TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
   writeText(config_, "{");
   EXPECT_EQ(start({})->wait(), 2) << "a person at a terminal wants to hear of it";
-  // What it names is gone as well: the wall is shown without it.
+  // The file that it names is gone as well: the wall is shown without that content.
   fs::remove(model_);
   const auto bare = start();
   EXPECT_TRUE(bare->saysEventually("ready")) << bare->output();

@@ -50,7 +50,7 @@ class Emulators {
   }
   void kill(const std::string& name) { processes_.at(name)->kill(SIGKILL); }
 
-  // Of one with the option --step: its person goes on to the next phase of the script.
+  // For an emulator with the option --step: its person goes on by `phases` phases of the script.
   void step(const std::string& name, int phases) {
     for (int i = 0; i < phases; ++i) {
       const std::size_t said = processes_.at(name)->output().size();
@@ -257,7 +257,7 @@ TEST_F(ManyDevices, AnInputIsThatOfItsDeviceOrOfAny) {
   EXPECT_EQ(begun("near", kFreeze), 0u);
 }
 
-// Of the newest samples since the `from`-th none is missing.
+// Expects that none of the newest samples since the `from`-th is missing.
 template <typename T>
 void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const std::string& what) {
   const std::uint64_t to = channel.count();
@@ -422,7 +422,7 @@ TEST_F(TwoPeople, TakeTurnsAtTheWall) {
   emulators_->step("one", 1);
   ASSERT_TRUE(moves(false));
 
-  // It is a's turn for a minute yet.
+  // It is still a's turn for a minute.
   emulators_->step("two", 1);
   ASSERT_TRUE(isPushed("two"));
   aFewPeriodsPass();

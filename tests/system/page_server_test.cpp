@@ -265,7 +265,7 @@ class PageAlone : public testing::Test {
   std::string instance_ = privateName("page");
 };
 
-// It serves nothing, whatever it served before, until the configuration has a page again.
+// The process serves nothing, whatever it served before, until the page is switched on again.
 TEST_F(PageAlone, SwitchedOffItWaitsForAConfigurationWithAPage) {
   Process page({kMerlind, "--last-good", "--config",
                 config("page.json", {{"enabled", false}, {"metrics", false}}), "--role", "page"});
@@ -467,8 +467,8 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
         std::string("\x16\x03\x01\x02\x00\x01", 6)})
     join(bytes);
   good("garbage");
-  // What is answered once there is a place: without one the answer is 429, or the connection is
-  // closed (0).
+  // Returns the status of the answer once a place is free: without one the answer is 429, or the
+  // connection is closed (0).
   const auto statusOf = [&](const std::string& request) {
     int status = 0;
     const auto answered = [&] {

@@ -363,7 +363,7 @@ TEST_F(PictureWall, OpensAPictureOf100Gigapixels) {
   const Outcome shown = show(huge);
   EXPECT_EQ(shown.status, 0) << shown.output;
   EXPECT_TRUE(isShown("huge", "picture"));
-  // As near as it goes: a pixel of it is as large as eight of the wall.
+  // Zooms in as far as possible: one pixel of the picture is as large as eight of the wall.
   run({kMerlin, "wall", "--move=0 0 10 0 0 0", "--instance", m_->instance()});
   EXPECT_TRUE(eventually([&] { return m_->status()["full_detail"] == true; }));
 }

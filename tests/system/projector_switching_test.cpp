@@ -75,7 +75,7 @@ TEST_F(ProjectorSwitching, ByCommandAllAtOnceAndStatusShowsThem) {
   EXPECT_EQ(left_.projector.log, "10");
 }
 
-// As under systemd, where the wall is a process of its own.
+// Runs the roles as under systemd, where the wall is a process of its own.
 TEST_F(ProjectorSwitching, ThePanelOfAWallInAnotherProcessSwitchesThem) {
   start();
   EXPECT_TRUE(is("left", "off") && is("right", "off"));

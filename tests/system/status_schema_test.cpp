@@ -67,7 +67,7 @@ TEST(StatusSchema, SaysWhatIsWrong) {
             2U);
 }
 
-// Of each topic of both roles several documents, while an emulated person works.
+// Checks several documents of each topic of both roles, while an emulated person works.
 TEST(StatusSchema, MerlindKeepsTo) {
   const TempDir dir;
   const json projectors = json::array({{{"name", "left"}, {"address", "127.0.0.1:1"}}});

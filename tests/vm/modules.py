@@ -57,7 +57,7 @@ def fetch(at, release, cache):
     for file in files:
         if file != source:
             subprocess.run(["dpkg-deb", "-x", file, at], check=True)
-    # It names its other half where it would be installed.
+    # The header package names its other half by the path where that would be installed.
     makefile = f"{at}/usr/src/{headers}/Makefile"
     with open(makefile, encoding="utf-8") as file:
         text = file.read()

@@ -157,7 +157,7 @@ class Line:
         """The next match after the last one; AssertionError with what came instead."""
         pattern, until = re.compile(regex.encode(), re.MULTILINE), time.monotonic() + deadline_s
         while True:
-            # Of whole lines: one may arrive in pieces.
+            # Searches only whole lines, since a line may arrive in pieces.
             found = pattern.search(self.seen, self.at, self.seen.rfind(b"\n") + 1)
             if found:
                 self.at = found.end()

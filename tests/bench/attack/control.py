@@ -232,7 +232,7 @@ class Unauthorised:
         work()
         time.sleep(max(0, began + seconds - time.monotonic()))
         took, after = time.monotonic() - began, wall.deadlines()
-        # Of the rate that is asked: a wall that has halved its rate has missed every second frame.
+        # Relative to the configured rate: a wall that halved its rate missed every second frame.
         asked = RATE_HZ * took
         deadlines, late = (b - a for a, b in zip(before, after))
         if deadlines < asked / 8:

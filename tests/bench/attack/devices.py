@@ -78,7 +78,7 @@ class Flood:
         began, before, cores = time.monotonic(), wall.deadlines(), wall.cores()
         time.sleep(options.seconds)
         after, cores = wall.deadlines(), wall.cores() - cores
-        # Of the rate that is asked: a wall that has halved its rate has missed every second frame.
+        # Relative to the configured rate: a wall that halved its rate missed every second frame.
         asked = RATE_HZ * (time.monotonic() - began)
         deadlines, late = (b - a for a, b in zip(before, after))
         status = wall.status()
