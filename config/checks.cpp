@@ -104,6 +104,10 @@ void checkStereo(const WallSettings& wall, LoadedSettings& loaded) {
       render::stereo::validate(wall.stereo, wall.tiles, wall.outputs, distance_m);
   addFaults(faults, "/wall", loaded);
   if (!faults.empty()) return;
+  for (const SettingFault& doubt : doubtsOf(wall.stereo)) {
+    const std::string at = "/wall" + doubt.pointer;
+    loaded.add({true, loaded.lineOf(at), at, doubt.what});
+  }
   const auto eyes = render::stereo::eyeTiles(wall.stereo, wall.tiles, wall.outputs, distance_m);
   addFaults(validate(eyes.tiles), "/wall/stereo", loaded, "cannot be used: ");
   SettingFaults of_outputs = validate(eyes.outputs, eyes.tiles);

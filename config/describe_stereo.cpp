@@ -49,14 +49,17 @@ void describeStereo(render::stereo::StereoSettings& s, bool from_room, SettingsV
       "frame: with half, the pair of pictures of each tile is in the place of that tile, as "
       "several projectors on one signal need it; with full, the left eye's pictures of all tiles "
       "come first, then the right eye's, as one 3D display that shows several tiles needs it.");
-  v.number("eye_separation_m", s.eye_separation_m, {0, 10},
-           "Distance between the viewer's eyes in metres, usually 0.05 to 0.075.");
+  v.number("eye_separation_m", s.eye_separation_m,
+           {0, 10, "it is in metres, people's are 0.05 to 0.075"},
+           "Distance between the viewer's eyes in metres, usually 0.05 to 0.075. 0: both eyes see "
+           "the same picture, without depth.");
   if (from_room) {
     v.excluded("screen_distance_m",
                "is given together with /wall/room, which says how far away each screen is: leave "
                "out one of the two");
   } else {
-    v.number("screen_distance_m", s.screen_distance_m, {0, 1000},
+    v.number("screen_distance_m", s.screen_distance_m,
+             {0, 1000, "it is in metres, usually 1 to 10; 0 is /wall/scene/wall_distance_m"},
              "Distance from the eye to the screen of each tile that has no screen_m, in metres: "
              "objects at this distance appear in the plane of the screen. 0: the distance "
              "/wall/scene/wall_distance_m.");

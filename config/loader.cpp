@@ -47,8 +47,11 @@ class Loader final : public SettingsVisitor {
   Loader& operator=(const Loader&) = delete;
 
   void number(const char* key, double& value, Range range, const char*) override {
-    if (const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a number"))
-      value = clamp(*node, key, range);
+    const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a number");
+    if (!node) return;
+    const bool within = node->number >= range.low && node->number <= range.high;
+    if (range.refused && !within) return addRefused(*node, key, range);
+    value = clamp(*node, key, range);
   }
   void integer(const char* key, int& value, Range range, const char*) override {
     const JsonNode* node = take(key, JsonNode::Kind::kNumber, "a whole number");
@@ -230,6 +233,12 @@ class Loader final : public SettingsVisitor {
   void addWrongKind(const JsonNode& node, std::string_view key, std::string_view allowed) {
     loaded_.add({false, node.line, pointer(key),
                  fmt::format("is {}; allowed is {}", describe(node), allowed), true});
+  }
+
+  void addRefused(const JsonNode& node, std::string_view key, Range range) {
+    loaded_.add({false, node.line, pointer(key),
+                 fmt::format("is {}; allowed is {} to {}; {}", node.number, range.low, range.high,
+                             range.refused)});
   }
 
   double clamp(const JsonNode& node, std::string_view key, Range range) {

@@ -106,11 +106,23 @@ void checkOutput(const render::out::OutputSettings& output, const std::string& a
         fmt::format("has no effect without a mesh: {}/correction/mesh has no points", at));
 }
 
+void checkEyeSize(const render::stereo::StereoSettings& stereo, LoadedSettings& loaded) {
+  using render::stereo::StereoMode;
+  const bool one_each =
+      stereo.mode == StereoMode::kAnaglyph || stereo.mode == StereoMode::kTwoOutputs;
+  if (!one_each || stereo.size != render::stereo::EyeSize::kFull) return;
+  loaded.addFinding("/wall/stereo/size",
+                    fmt::format("is full, which has no effect in stereo mode {}: it is for "
+                                "side_by_side and top_bottom; leave it out",
+                                nameOf(stereo.mode)));
+}
+
 }  // namespace
 
 void checkNeeds(LoadedSettings& loaded) {
   checkTable(loaded);
   const Settings& s = loaded.settings;
+  checkEyeSize(s.wall.stereo, loaded);
   for (std::size_t i = 0; i < s.devices.list.size(); ++i)
     checkSpeed(s.devices.list[i].line, fmt::format("/devices/{}/baud", i), loaded);
   for (std::size_t i = 0; i < s.wall.outputs.size(); ++i)

@@ -175,7 +175,7 @@ void Daemon::connectRoles() {
         DatedFiles(settings_.wall.snapshots, settings_.instance, ".png",
                    static_cast<std::size_t>(settings_.wall.snapshots_kept)),
         threads_);
-    wall_->onSnapshot([this] { snapshots_->take(); });
+    wall_->onSnapshot([this] { snapshots_->take(); }, [this] { return snapshots_->written(); });
   }
   // The main loop waits for SIGCHLD anyway; sending it starts a round of the loop.
   const auto wake = [main = ::pthread_self()] { ::pthread_kill(main, SIGCHLD); };
@@ -184,9 +184,9 @@ void Daemon::connectRoles() {
     wall_fault_ = std::make_unique<devices::WallFault>(settings_.instance);
   if (wall_ && !devices_ && !remote_devices_)
     devices_beside_ = std::make_unique<DevicesBeside>(settings_.instance);
-  reloader_.emplace(
-      file_, options_, std::move(configured_), settings_,
-      Reloader::Parts{devices_.get(), wall_.get(), services_, threads_, clock_, wake});
+  reloader_.emplace(file_, options_, std::move(configured_), settings_,
+                    Reloader::Parts{devices_.get(), wall_.get(), services_, threads_, clock_, wake,
+                                    keeper_.get()});
   commands_.emplace(RoleCommands::Parts{devices_.get(), wall_.get(), snapshots_.get(),
                                         keeper_.get(), &*reloader_, devices_beside_.get()},
                     clock_);

@@ -6,8 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "config/drawn_wall.h"
 #include "config/effective.h"
 #include "daemon/base/log.h"
+#include "daemon/wall/alignment_fit.h"
 #include "daemon/wall/wall_checks.h"
 
 namespace merlin {
@@ -186,6 +188,7 @@ Reloader::ReadFile Reloader::read() const {
   file.answer.outcome = judge(loaded, file.named, file.answer.plan);
   file.answer.findings = findingLines(file_, loaded);
   file.settings = std::move(loaded.settings);
+  file.answer.set_aside = setAside(file);
   if (file.answer.outcome != Outcome::kDone || !options_.devices) return file;
   if (auto trained = devices::loadTrained(file.settings)) {
     file.trained = *std::move(trained);
@@ -195,6 +198,18 @@ Reloader::ReadFile Reloader::read() const {
         fmt::format("{}: /postures or /gestures cannot be used: {}", file_, trained.error().what));
   }
   return file;
+}
+
+// The alignments that the settings of the file set aside, if they are valid.
+std::vector<reload::AsideAlignment> Reloader::setAside(const ReadFile& file) const {
+  std::vector<reload::AsideAlignment> aside;
+  const bool valid =
+      file.answer.outcome == Outcome::kDone || file.answer.outcome == Outcome::kRestarts;
+  if (!options_.wall || !parts_.keeper || !valid) return aside;
+  const state::Alignment alignment = parts_.keeper->state().alignment;
+  for (wall::Misfit& misfit : wall::misfitsOf(drawnWall(file.settings.wall), alignment))
+    aside.push_back({std::move(misfit.output), std::move(misfit.why)});
+  return aside;
 }
 
 Reloader::Done Reloader::finish(const Request& request, ReadFile file) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "config/effective.h"
 #include "config/loader.h"
@@ -20,6 +21,7 @@
 #include "daemon/devices/devices_role.h"
 #include "daemon/named_files.h"
 #include "daemon/reload/answer.h"
+#include "daemon/state/state_keeper.h"
 #include "daemon/status/services.h"
 #include "daemon/wall/wall_role.h"
 
@@ -42,6 +44,7 @@ class Reloader {
     ThreadWatch& watch;
     const Clock& clock;
     std::function<void()> wake;  // makes the main thread call tend() soon; called on any thread
+    const state::StateKeeper* keeper = nullptr;  // of the wall's alignment; null: there is none
   };
   // The settings of the file, and the state of the files that they name before any part of the
   // process read them. So a file that changed while the process started counts as changed,
@@ -87,6 +90,7 @@ class Reloader {
   void checkStart(LoadedSettings& loaded, const std::vector<SettingChange>& changes) const;
   reload::Outcome judge(LoadedSettings& loaded, const NamedFiles& named, reload::Plan& plan) const;
   reload::Readers process() const;
+  std::vector<reload::AsideAlignment> setAside(const ReadFile& file) const;
   Result<std::string> add(bool only_check, bool is_command);
   void read(const std::stop_token& stop, Progress& progress);
   Done finish(const Request& request, ReadFile file);

@@ -181,8 +181,10 @@ std::optional<Error> invalid(std::span<const LabelledHand> hands,
   if (!(s.validation_share >= 0 && s.validation_share <= 0.5))
     return error(fmt::format("validation share {}; allowed: 0 to 0.5", s.validation_share));
   if (names.size() < 2 || names.size() > kCodes)
-    return error(fmt::format("{} postures; allowed: 2 to {}, one for each code of five bits",
-                             names.size(), kCodes));
+    return error(fmt::format(
+        "the hands show {} posture{}; needed are 2 to {}, one for each code of five bits: {}",
+        names.size(), names.size() == 1 ? "" : "s", kCodes,
+        names.size() < 2 ? "record hands of other postures too" : "leave some out"));
   for (std::size_t n = 0; n < hands.size(); ++n) {
     for (std::size_t i = 0; i < kInputs; ++i) {
       if (std::isfinite(hands[n].value[i])) continue;

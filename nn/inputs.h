@@ -26,7 +26,7 @@ struct InputRange {
 using InputRanges = std::array<InputRange, kInputs>;
 
 extern const std::array<const char*, kInputs> kInputNames;  // "thumb-roll" ... "wrist-yaw"
-extern const InputRanges kGloveRanges;                      // sources: nn/README.md, "Inputs"
+extern const InputRanges kGloveRanges;                      // sources: nn/README.md, "Slots"
 
 // x_i = (value_i - low_i) / (high_i - low_i), clamped to [0, 1], so that the inputs are never far
 // from those of training, even if a joint is bent past its range. A NaN stays NaN. Allocation-free.

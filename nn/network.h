@@ -9,7 +9,7 @@
 
 namespace merlin::nn {
 
-inline constexpr std::size_t kInputs = 23;  // order and ranges: nn/README.md, "Inputs"
+inline constexpr std::size_t kInputs = 23;  // order and ranges: nn/README.md, "Slots"
 inline constexpr std::size_t kHidden = 15;
 inline constexpr std::size_t kOutputs = 5;  // five bits, thresholded at 0.5: up to 32 postures
 

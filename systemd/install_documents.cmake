@@ -6,7 +6,7 @@ foreach(folder config daemon drivers nn render systemd)
   list(APPEND files ${found})
 endforeach()
 file(GLOB found RELATIVE "${source}" "${source}/config/*.png" "${source}/config/*.json"
-  "${source}/daemon/shm/read_merlin.*")
+  "${source}/daemon/shm/read_merlin.*" "${source}/tests/vm/*.png")
 list(APPEND files ${found} daemon/base/field_table.h daemon/shm/channel.h daemon/shm/layout.h daemon/shm/seq_slot.h
   drivers/port/samples.h daemon/status/read_status.py daemon/status/status.schema.json
   drivers/cyberglove/CALIBRATION-LICENSE.txt)

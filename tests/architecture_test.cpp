@@ -46,6 +46,7 @@ const std::map<std::string, Folders> kMayInclude = {
       "daemon/shm",
       "daemon/state",
       "drivers/hand",
+      "drivers/port/health_reasons.h",
       "render/content",
       "render/content/picture",
       "render/correct",

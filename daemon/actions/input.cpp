@@ -1,6 +1,7 @@
 #include "daemon/actions/input.h"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <utility>
 
@@ -10,6 +11,8 @@ namespace merlin::actions {
 namespace {
 
 constexpr unsigned kMostButtons = 12;
+constexpr SampleKind kDeviceKinds[] = {SampleKind::kGlove, SampleKind::kTracker, SampleKind::kBall,
+                                       SampleKind::kTouch};
 
 std::optional<std::uint32_t> buttonBit(std::string_view number) {
   unsigned button = 0;
@@ -48,6 +51,13 @@ std::optional<std::uint32_t> axisBit(std::string_view name) {
   if (found == std::end(kAxes)) return std::nullopt;
   const auto index = static_cast<unsigned>(found - std::begin(kAxes));
   return 1U << (kMostButtons + 2 * index + (name.back() == '-' ? 1 : 0));
+}
+
+// The index of the axis of a bit of pushedAxes(), which has two for each; nothing for a button's.
+std::optional<unsigned> axisOf(std::uint32_t bit) {
+  const auto place = static_cast<unsigned>(std::countr_zero(bit));
+  if (place < kMostButtons) return std::nullopt;
+  return (place - kMostButtons) / 2;
 }
 
 std::optional<Input> axis(std::string_view name) {
@@ -130,6 +140,18 @@ bool Input::isOf(const Source& source) const {
 bool Input::overlaps(const Input& other) const {
   return kind == other.kind && button == other.button && name == other.name &&
          (device.empty() || other.device.empty() || device == other.device);
+}
+
+bool Input::rulesOut(const Input& other) const {
+  const auto hasBoth = [&](SampleKind device_kind) {
+    const Source source{device, device_kind};
+    return isOf(source) && other.isOf(source);
+  };
+  if (std::ranges::none_of(kDeviceKinds, hasBoth)) return true;
+  if (kind != other.kind || *this == other) return false;
+  if (kind == Kind::kPosture || kind == Kind::kPinch) return true;
+  const auto axis = kind == Kind::kButton ? axisOf(button) : std::nullopt;
+  return axis && axis == axisOf(other.button);
 }
 
 std::uint32_t pushedAxes(const BallSample& ball, std::uint32_t before) noexcept {

@@ -37,6 +37,9 @@ struct Input {
   bool isMomentary() const { return kind == Kind::kPanelButton || kind == Kind::kGesture; }
   // Whether one event can be both inputs, i.e. they are the same part of the same device.
   bool overlaps(const Input& other) const;
+  // Whether a device never has both at a time: an axis is pushed one way, a hand has one posture,
+  // fingers move together or apart, and a device has inputs of some kinds only.
+  bool rulesOut(const Input& other) const;
   bool operator==(const Input&) const = default;
 };
 

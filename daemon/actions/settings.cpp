@@ -35,14 +35,47 @@ bool exclude(std::string_view a, std::string_view b) {
          areOpposites(a, b);
 }
 
+// The actions that happen once and change what is shown, or what the ball moves.
+constexpr std::string_view kOfView[] = {"reset_view",       "next_mode",    "next_content",
+                                        "previous_content", "blank",        "freeze",
+                                        "operator_panel",   "next_testcard"};
+
+bool isOfView(std::string_view action) { return std::ranges::count(kOfView, action) > 0; }
+
+// Whether one moment of an input cannot be meant to trigger both: they exclude each other, or one
+// hides what the other one changes.
+bool clash(std::string_view a, std::string_view b) {
+  return exclude(a, b) || (isOfView(a) && isOfView(b));
+}
+
 bool atLeave(const Binding& b) { return b.when == When::kLeave; }
+
+// Whether one event can be both inputs; texts that are no inputs are faults of their own.
+bool overlap(const std::string& a, const std::string& b) {
+  const auto first = actions::parseInput(a), second = actions::parseInput(b);
+  return !first || !second || first->overlaps(*second);
+}
+
+// Whether the bindings need the same two inputs, named in the other order.
+bool areSameChord(const Binding& a, const Binding& b) {
+  return !a.with.empty() && !b.with.empty() && overlap(a.with, b.input) && overlap(a.input, b.with);
+}
 
 std::string conflictText(const Binding& a, const Binding& b) {
   const char* when = isHeldAction(b.action) ? "held" : atLeave(b) ? "left" : "entered";
   if (a.action == b.action)
     return fmt::format("\"{}\" would {} twice when {}", b.input, b.action, when);
-  return fmt::format("\"{}\" would both {} and {} when {}, which exclude each other", b.input,
-                     a.action, b.action, when);
+  if (exclude(a.action, b.action))
+    return fmt::format("\"{}\" would both {} and {} when {}, which exclude each other", b.input,
+                       a.action, b.action, when);
+  if (areSameChord(a, b))
+    return fmt::format(
+        "\"{}\" with \"{}\" is the same chord, named in the other order, and would both {} and {}",
+        b.input, b.with, a.action, b.action);
+  return fmt::format(
+      "\"{}\" would both {} and {} when {}; of the actions that change what is shown or what the "
+      "ball moves, an input triggers only one at a time",
+      b.input, a.action, b.action, when);
 }
 
 // The second input of a chord, the time of a long press, and what repeats.
@@ -57,6 +90,13 @@ void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) 
     faults.push_back({at + "/with", fmt::format("is \"{}\"; allowed is another input of the device "
                                                 "of \"{}\"",
                                                 b.with, b.input)});
+  } else if (input && with && !input->isMomentary() && input->rulesOut(*with)) {
+    faults.push_back(
+        {at + "/with",
+         fmt::format(
+             "is \"{}\", which is never held together with \"{}\", so the chord would never "
+             "happen",
+             b.with, b.input)});
   }
   if (b.repeat_s > 0 && b.repeat_s < kShortestRepeat_s)
     faults.push_back({at + "/repeat_s", fmt::format("is {}; allowed are 0 and {} to {}", b.repeat_s,
@@ -107,20 +147,9 @@ std::string partOf(const actions::Input& input) {
   return fmt::format("{} {} {}", static_cast<int>(input.kind), input.button, input.name);
 }
 
-// Whether one event can be both inputs; texts that are no inputs are faults of their own.
-bool overlap(const std::string& a, const std::string& b) {
-  const auto first = actions::parseInput(a), second = actions::parseInput(b);
-  return !first || !second || first->overlaps(*second);
-}
-
 // Whether one event can be the second input of both, or neither has one.
 bool needSameSecond(const Binding& a, const Binding& b) {
   return a.with.empty() == b.with.empty() && (a.with.empty() || overlap(a.with, b.with));
-}
-
-// Whether the bindings need the same two inputs, named in the other order.
-bool areSameChord(const Binding& a, const Binding& b) {
-  return !a.with.empty() && !b.with.empty() && overlap(a.with, b.input) && overlap(a.input, b.with);
 }
 
 // The bindings before one, by what their inputs have in common with others.
@@ -134,22 +163,27 @@ class BindingsBefore {
     if (!b.with.empty()) by_with_[keyOf(b.with, b)].push_back(i);
   }
 
-  // One that may not be triggered together with `b`, and would be.
+  // One that cannot be meant to be triggered together with `b`, and would be.
   std::optional<std::size_t> excluded(const Binding& b) {
-    const auto meets = [&](std::size_t k, const std::string& mine, const std::string& its) {
-      return exclude(all_[k].action, b.action) && overlap(mine, its);
+    // Whether `b` lasts and may not do so together with what the other one does.
+    const auto lastsBeside = [&](std::size_t k) {
+      return isHeldAction(b.action) && exclude(all_[k].action, b.action);
     };
     for (const std::size_t k : by_input_[keyOf(b.input, b)]) {
       const bool same_time = needSameSecond(all_[k], b) && all_[k].after_s == b.after_s;
-      if ((same_time || isHeldAction(b.action)) && meets(k, b.input, all_[k].input)) return k;
+      const bool meet = (same_time && clash(all_[k].action, b.action)) || lastsBeside(k);
+      if (meet && overlap(b.input, all_[k].input)) return k;
     }
     // A chord before it has its input as the second one.
-    for (const std::size_t k : by_with_[keyOf(b.input, b)])
-      if (areTogether(all_[k], b) && meets(k, b.input, all_[k].with)) return k;
+    for (const std::size_t k : by_with_[keyOf(b.input, b)]) {
+      const bool same_chord = areSameChord(all_[k], b);
+      const bool meet = (same_chord && all_[k].after_s == b.after_s) ||
+                        ((same_chord || b.with.empty()) && lastsBeside(k));
+      if (meet && overlap(b.input, all_[k].with)) return k;
+    }
     if (b.with.empty()) return std::nullopt;
     for (const std::size_t k : by_input_[keyOf(b.with, b)])
-      if (all_[k].with.empty() && isHeldAction(b.action) && meets(k, b.with, all_[k].input))
-        return k;
+      if (all_[k].with.empty() && lastsBeside(k) && overlap(b.with, all_[k].input)) return k;
     return std::nullopt;
   }
 
@@ -159,11 +193,6 @@ class BindingsBefore {
   static std::pair<std::string, bool> keyOf(const std::string& text, const Binding& b) {
     const auto input = actions::parseInput(text);
     return {input ? partOf(*input) : text, atLeave(b)};
-  }
-  // `chord` has the first input of `b` as its second one.
-  static bool areTogether(const Binding& chord, const Binding& b) {
-    if (areSameChord(chord, b)) return chord.after_s == b.after_s || isHeldAction(b.action);
-    return b.with.empty() && isHeldAction(b.action);
   }
 
   const std::vector<Binding>& all_;

@@ -46,10 +46,12 @@ inline std::vector<Binding> defaultBindings() {
           {"panel.button", "next_mode"}};
 }
 
-// Finds unknown inputs, actions that cannot be combined with their `when` or times, and pairs of
-// actions that one input would trigger at the same moment although they exclude each other or are
-// the same. A binding without an action is no fault here: only the caller knows whether the file
-// gives no action or an unknown one. Pointers: "/INDEX/input" ... Cost: linear.
+// Finds unknown inputs, chords that cannot happen, actions that cannot be combined with their
+// `when` or times, and pairs of actions that one input would trigger at the same moment although
+// they exclude each other, are the same, or both change what is shown or what the ball moves. Two
+// bindings to one chord that name its inputs in the two orders are a fault whatever they do. A
+// binding without an action is no fault here: only the caller knows whether the file gives no
+// action or an unknown one. Pointers: "/INDEX/input" ... Cost: linear.
 SettingFaults validate(const std::vector<Binding>& bindings);
 
 }  // namespace merlin

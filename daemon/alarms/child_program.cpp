@@ -112,18 +112,21 @@ Result<Ok> checkProgram(const std::string& path) {
 
 Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
                                          const std::string& input, Timestamp deadline) {
+  const auto notStarted = [&](const Error& why) {
+    return Error{why.code, fmt::format("{}: {}", run.front(), why.what)};
+  };
   const auto file = fileOf(input);
-  if (!file) return file.error();
+  if (!file) return notStarted(file.error());
   std::vector<char*> arguments;
   for (const std::string& a : run) arguments.push_back(const_cast<char*>(a.c_str()));
   arguments.push_back(nullptr);
   auto failures = makePipe(), output = makePipe();
-  if (!failures) return failures.error();
-  if (!output) return output.error();
+  if (!failures) return notStarted(failures.error());
+  if (!output) return notStarted(output.error());
   ::fcntl(output->from.get(), F_SETFL, O_NONBLOCK);
   const pid_t parent = ::getpid();
   const auto child = startChild();
-  if (!child) return child.error();
+  if (!child) return notStarted(child.error());
   if (*child == 0) become(arguments, file->get(), output->to.get(), failures->to.get(), parent);
   ::setpgid(*child, *child);  // in both processes: either may be first
   failures->to.reset();

@@ -25,9 +25,9 @@ Result<Ok> checkProgram(const std::string& path);
 class ChildProgram {
  public:
   // Starts the program `run[0]` with the arguments that follow it, in a process group of its own,
-  // with `input` as its standard input. Errors: kNotFound (there is no such program, or it cannot
-  // be executed, for example a script whose interpreter is missing), kIo. The process may have
-  // several threads.
+  // with `input` as its standard input. Errors, each a sentence that begins with the program's
+  // path: kNotFound (there is no such program, or it cannot be executed, for example a script whose
+  // interpreter is missing), kIo. The process may have several threads.
   static Result<ChildProgram> start(const std::vector<std::string>& run, const std::string& input,
                                     Timestamp deadline);
   ChildProgram(ChildProgram&& other) noexcept;

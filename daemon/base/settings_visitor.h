@@ -15,6 +15,9 @@ namespace merlin {
 
 struct Range {
   double low, high;
+  // If set: of number(), a value beyond the range is refused, with this end of the sentence (what
+  // is usual), and not replaced by the nearest one, because that has another meaning.
+  const char* refused = nullptr;
 };
 
 class SettingsVisitor {

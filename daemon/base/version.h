@@ -1,8 +1,9 @@
+// The version of the program, which CMakeLists.txt states.
 #pragma once
 
 namespace merlin {
 
-// MERLIN's version as CMakeLists.txt states it: "0.1.0". Any thread.
+// "0.1.0". Any thread.
 const char* programVersion();
 
 }  // namespace merlin

@@ -1,6 +1,7 @@
 // The signals that end a long-running subcommand, as a descriptor to wait on.
 #pragma once
 
+#include <poll.h>
 #include <signal.h>
 #include <sys/signalfd.h>
 
@@ -15,6 +16,12 @@ inline UniqueFd stopSignals() {
   for (const int s : {SIGTERM, SIGINT, SIGHUP}) ::sigaddset(&set, s);
   ::sigprocmask(SIG_BLOCK, &set, nullptr);
   return UniqueFd(::signalfd(-1, &set, SFD_CLOEXEC));
+}
+
+// Whether one of these signals has arrived. `stop`: the descriptor of stopSignals().
+inline bool stopArrived(int stop) {
+  pollfd waiting{stop, POLLIN, 0};
+  return ::poll(&waiting, 1, 0) > 0;
 }
 
 }  // namespace merlin::cli

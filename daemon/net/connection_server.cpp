@@ -97,7 +97,7 @@ void ConnectionServer::accept(Listener& listener) {
     if (!fd.valid()) {
       if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
         accept_from_ = now + kWithoutDescriptors;
-        count(End::kRefused, {}, std::strerror(errno));
+        count(End::kRefused, std::nullopt, std::strerror(errno));
       }
       return;
     }
@@ -250,7 +250,7 @@ void ConnectionServer::end(Client& c, End why, const std::string& reason) {
   if (why != End::kGone) count(why, c.occupant.peer, reason);
 }
 
-void ConnectionServer::count(End why, const Peer& peer, const std::string& reason) {
+void ConnectionServer::count(End why, const std::optional<Peer>& peer, const std::string& reason) {
   const std::lock_guard lock(mutex_);
   switch (why) {
     case End::kGone: return;
@@ -260,9 +260,8 @@ void ConnectionServer::count(End why, const Peer& peer, const std::string& reaso
     case End::kBroken: ++report_.broken; break;
     case End::kSlow: ++report_.slow; break;
   }
-  report_.last = fmt::format(
-      "{} {}: {}", why == End::kRefused ? "refused a connection of" : "closed a connection of",
-      peerName(peer), reason);
+  report_.last = fmt::format("{} a connection{}: {}", why == End::kRefused ? "refused" : "closed",
+                             peer ? " of " + peerName(*peer) : "", reason);
 }
 
 void ConnectionServer::removeEnded() {

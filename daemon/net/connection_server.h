@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -137,7 +138,8 @@ class ConnectionServer {
   void process(Client& client, Timestamp now);
   void write(Client& client, Timestamp now);
   void end(Client& client, End why, const std::string& reason);
-  void count(End why, const Peer& peer, const std::string& reason);
+  // `peer`: nothing if it is not known who it was.
+  void count(End why, const std::optional<Peer>& peer, const std::string& reason);
   void removeEnded();
   std::vector<Occupant> occupants() const;
 

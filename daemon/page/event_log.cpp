@@ -13,7 +13,7 @@
 namespace merlin::page {
 namespace {
 
-constexpr std::size_t kKept = 500, kSent = 200, kLongest = 1000;
+constexpr std::size_t kKeptEvents = 500, kSentEvents = 200, kLongest = 1000;
 constexpr std::size_t kTime = 27, kUsual = 160;  // characters of a time and of a usual sentence
 
 std::string utcNow() {
@@ -32,7 +32,7 @@ std::string cut(std::string_view text) {
 }  // namespace
 
 EventLog::EventLog(std::uint64_t first) : next_(first) {
-  for (std::size_t i = 0; i < kKept; ++i) {
+  for (std::size_t i = 0; i < kKeptEvents; ++i) {
     LoggedEvent& event = events_.emplace_back();
     event.time_utc.reserve(kTime);
     event.what.reserve(kUsual);
@@ -75,8 +75,8 @@ std::vector<LoggedEvent> EventLog::after(std::uint64_t number) const {
 std::string EventLog::since(std::uint64_t since) const {
   const std::lock_guard lock(mutex_);
   auto from = std::ranges::upper_bound(events_, since, {}, &LoggedEvent::number);
-  if (events_.end() - from > static_cast<std::ptrdiff_t>(kSent))
-    from = events_.end() - static_cast<std::ptrdiff_t>(kSent);
+  if (events_.end() - from > static_cast<std::ptrdiff_t>(kSentEvents))
+    from = events_.end() - static_cast<std::ptrdiff_t>(kSentEvents);
   std::string list;
   for (; from != events_.end(); ++from) {
     list += fmt::format(R"({}{{"number":{},"role":{},"time_utc":{},"kind":{},"what":{}}})",

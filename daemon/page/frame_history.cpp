@@ -7,7 +7,7 @@
 namespace merlin::page {
 namespace {
 
-constexpr std::size_t kKept = 2400, kSent = 1200;
+constexpr std::size_t kKeptFrames = 2400, kSentFrames = 1200;
 
 }  // namespace
 
@@ -29,13 +29,13 @@ void FrameHistory::add(const shm::FrameTrace& frame) {
   const double work_ms = static_cast<double>(frame.end_ns - frame.begin_ns) * 1e-6;
   frames_.push_back(
       {next_++, std::clamp(work_ms, 0.0, 1e6), frame.cost, frame.moving != 0, frame.late != 0});
-  if (frames_.size() > kKept) frames_.pop_front();
+  if (frames_.size() > kKeptFrames) frames_.pop_front();
 }
 
 std::string FrameHistory::since(std::uint64_t since) const {
   auto from = std::ranges::upper_bound(frames_, since, {}, &FrameTime::number);
-  if (frames_.end() - from > static_cast<std::ptrdiff_t>(kSent))
-    from = frames_.end() - static_cast<std::ptrdiff_t>(kSent);
+  if (frames_.end() - from > static_cast<std::ptrdiff_t>(kSentFrames))
+    from = frames_.end() - static_cast<std::ptrdiff_t>(kSentFrames);
   std::string list;
   for (; from != frames_.end(); ++from) {
     list += fmt::format("{}[{},{:.2f},{},{}]", list.empty() ? "" : ",", from->number, from->work_ms,

@@ -34,6 +34,12 @@ Json pointersOf(const std::vector<SettingChange>& changes) {
   return list;
 }
 
+Json asideOf(const std::vector<AsideAlignment>& alignments) {
+  Json list = Json::array();
+  for (const AsideAlignment& a : alignments) list.push_back({{"output", a.output}, {"why", a.why}});
+  return list;
+}
+
 // The first text and the number of those after it.
 std::string firstOf(const std::string& first, std::size_t count) {
   return count > 1 ? fmt::format("{} (and {} more)", first, count - 1) : first;
@@ -53,6 +59,7 @@ std::string answerText(const Answer& answer) {
                   {"swapped", valuesOf(answer.plan.swapped)},
                   {"restart", pointersOf(answer.plan.restart)},
                   {"elsewhere", pointersOf(answer.plan.elsewhere)},
+                  {"set_aside", asideOf(answer.set_aside)},
                   {"failure", answer.failure}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

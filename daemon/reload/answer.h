@@ -14,19 +14,26 @@ namespace merlin::reload {
 enum class Outcome { kDone, kInvalid, kRestarts, kFailed };
 inline constexpr const char* kOutcomeNames[] = {"done", "invalid", "restarts", "failed"};
 
+// An alignment of the wall (merlin wall align) that does not fit its output any more.
+struct AsideAlignment {
+  std::string output, why;
+};
+
 struct Answer {
   Outcome outcome = Outcome::kDone;
   bool only_checked = false;  // only a check was requested: `plan` has what would be swapped
   std::string file;           // the configuration
   std::vector<std::string> findings;  // a line each, as merlind --check-config prints them
   Plan plan;
-  std::string failure;  // for kFailed: the reason
+  std::string failure;                      // for kFailed: the reason
+  std::vector<AsideAlignment> set_aside{};  // what the new settings set aside
 };
 
 // {"outcome": "done", "only_checked": false, "file": "merlin.json", "findings": [...], "swapped":
 // [{"setting": "/bindings/0/action", "from": "\"grab\"", "to": "\"fly\""}], "restart":
-// ["/wall/render/gpu"], "elsewhere": [...], "failure": ""}. `from` and `to` are values as JSON
-// text; empty: there is no such setting.
+// ["/wall/render/gpu"], "elsewhere": [...], "set_aside": [{"output": "left", "why": "it was made
+// for 640 x 480 pixels ..."}], "failure": ""}. `from` and `to` are values as JSON text; empty:
+// there is no such setting.
 std::string answerText(const Answer& answer);
 
 // What makes a restart necessary, by name: "/wall/outputs/0/path (and 2 more)". REQUIRES:

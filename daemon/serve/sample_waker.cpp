@@ -14,15 +14,15 @@
 namespace merlin::serve {
 namespace {
 
-constexpr Duration kRound = std::chrono::milliseconds(50);
+constexpr Duration kWakerRound = std::chrono::milliseconds(50);
 constexpr long kWithoutWaitv_ns =
     2'000'000;  // poll interval before Linux 5.16, which has no futex_waitv
 
-// Waits until one of the words differs from its value in `seen`, or kRound has passed.
+// Waits until one of the words differs from its value in `seen`, or kWakerRound has passed.
 void waitForAny(const std::vector<const std::atomic<std::uint32_t>*>& words,
                 const std::vector<std::uint32_t>& seen) {
   if (words.empty()) {  // no device is configured that could send samples
-    const timespec round{0, kRound.count()};
+    const timespec round{0, kWakerRound.count()};
     ::nanosleep(&round, nullptr);
     return;
   }
@@ -35,7 +35,7 @@ void waitForAny(const std::vector<const std::atomic<std::uint32_t>*>& words,
   }
   timespec until{};
   ::clock_gettime(CLOCK_MONOTONIC, &until);
-  until.tv_nsec += kRound.count();
+  until.tv_nsec += kWakerRound.count();
   if (until.tv_nsec >= 1'000'000'000) {
     ++until.tv_sec;
     until.tv_nsec -= 1'000'000'000;

@@ -12,7 +12,7 @@
 namespace merlin::serve {
 namespace {
 
-constexpr Duration kRound = std::chrono::milliseconds(20);
+constexpr Duration kSpnavRound = std::chrono::milliseconds(20);
 constexpr Duration kCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kQuiet = std::chrono::milliseconds(60);
 constexpr Duration kLongestQuiet =
@@ -20,7 +20,7 @@ constexpr Duration kLongestQuiet =
 constexpr unsigned kMode = 0666;     // any user's programs may read the ball, as with spacenavd
 constexpr std::size_t kMostPending = 4096;
 
-net::ServerLimits limits() {
+net::ServerLimits spnavLimits() {
   net::ServerLimits l;
   l.input_bytes = 1024;
   l.output_bytes = kMostPending;
@@ -110,7 +110,7 @@ SpnavServer::SpnavServer(std::string path, UniqueFd listener, const shm::DeviceS
     : path_(std::move(path)),
       devices_(devices),
       clock_(clock),
-      server_("space mouse", limits(), clock),
+      server_("space mouse", spnavLimits(), clock),
       waker_(wakeWords(devices), watch, "samples for the space mouse") {
   for (const auto& ball : devices.balls) balls_.push_back({ball, ball.samples->count()});
   updateHealth();
@@ -145,7 +145,7 @@ SpnavServer::~SpnavServer() {
 
 void SpnavServer::round() {
   const int wakers[] = {waker_.fd()};
-  server_.round(kRound, wakers);
+  server_.round(kSpnavRound, wakers);
   waker_.clear();
   listenAgainWhereGone();
   updateHealth();

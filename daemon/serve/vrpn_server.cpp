@@ -18,7 +18,7 @@
 namespace merlin::serve {
 namespace {
 
-constexpr Duration kRound = std::chrono::milliseconds(50);
+constexpr Duration kVrpnRound = std::chrono::milliseconds(50);
 constexpr double kDatagrams = 20;  // answered per second, and in a burst
 constexpr std::int32_t kButtons = 12;
 
@@ -53,7 +53,7 @@ enum Type : std::int32_t { kPing, kPong, kPose, kChannels, kButtonChange, kButto
 constexpr const char* kTypes[] = {kVrpnPing,         kVrpnPong,       kVrpnPoseType,
                                   kVrpnChannelsType, kVrpnButtonType, kVrpnButtonsType};
 
-net::ServerLimits limits() {
+net::ServerLimits vrpnLimits() {
   net::ServerLimits l;
   l.places = {.all = 16, .per_peer = 12};  // all clients have the same address
   l.input_bytes = kVrpnLongest;
@@ -205,7 +205,7 @@ void VrpnSession::handle(const VrpnMessage& m, std::string& output) {
 
 void VrpnSession::describe(const VrpnMessage& m) {
   constexpr std::size_t kMostNumbers =
-      64;  // limits memory: a client could give the same name many numbers
+      64;  // vrpnLimits memory: a client could give the same name many numbers
   senders_.erase(m.header.sender);
   const auto name = readVrpnName(m.payload);
   const auto& names = named_.names();
@@ -242,7 +242,7 @@ VrpnServer::VrpnServer(Sockets sockets, const shm::DeviceSlots& devices, ThreadW
       devices_(devices),
       clock_(clock),
       instance_(std::move(instance)),
-      server_("VRPN", limits(), clock),
+      server_("VRPN", vrpnLimits(), clock),
       datagrams_(kDatagrams, kDatagrams),
       waker_(
           [&] {
@@ -271,7 +271,7 @@ VrpnServer::~VrpnServer() { thread_.stop(); }
 
 void VrpnServer::round() {
   const int wakers[] = {waker_.fd(), udp_.get()};
-  server_.round(kRound, wakers);
+  server_.round(kVrpnRound, wakers);
   waker_.clear();
   answerDatagrams();
   sendSamples();

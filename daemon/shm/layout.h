@@ -198,7 +198,7 @@ struct WallInteraction {
   std::uint32_t pointing;
   std::int32_t pixel[2];    // pixel pointed at, from the frame's upper left corner; -1, -1: none
   float at_model_m[3];      // point of the bounding sphere pointed at, model coordinates [m]
-  std::uint32_t snapshots;  // snapshots requested since the start
+  std::uint32_t snapshots;  // snapshots written since the start
   std::uint32_t content;    // content shown: 0 the model, 1 .. the configuration's contents, then a
                             // file that is not in the configuration
   std::uint32_t shown;      // Shown

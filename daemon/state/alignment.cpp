@@ -25,12 +25,6 @@ void set(OutputAlignment& output, const Place& place, const Offset& to) {
     output.moved[place] = to;
 }
 
-std::size_t changesOf(const std::vector<Step>& steps) {
-  std::size_t changes = 0;
-  for (const Step& step : steps) changes += step.changes.size();
-  return changes;
-}
-
 }  // namespace
 
 std::optional<Place> cornerNamed(std::string_view name) {
@@ -46,6 +40,12 @@ Place cornerAt(std::size_t corner) {
 std::string nameOf(const Place& place) {
   if (place.of == Place::Of::kPin) return kCornerNames[place.corner()];
   return fmt::format("point {} {}", place.column, place.row);
+}
+
+bool OutputForm::fits(const OutputForm& now) const {
+  OutputForm known = now;
+  if (!corners) known.corners.reset();
+  return *this == known;
 }
 
 const OutputAlignment* Alignment::find(std::string_view output) const {
@@ -70,9 +70,21 @@ OutputAlignment& Alignment::entry(const OutputForm& form) {
 void Alignment::add(Step step) {
   steps.resize(done);
   steps.push_back(std::move(step));
-  while (steps.size() > 1 && (steps.size() > kMostSteps || changesOf(steps) > kMostChanges))
-    steps.erase(steps.begin());
   done = steps.size();
+  forgetSteps(kMostSteps, kMostChanges);
+}
+
+// Where all steps are undone, the last one is forgotten: the others cannot be redone without the
+// first one.
+void Alignment::forgetSteps(std::size_t most, std::size_t most_changes) {
+  while (steps.size() > most || changes() > most_changes) {
+    if (done == 0) {
+      steps.pop_back();
+    } else {
+      steps.erase(steps.begin());
+      --done;
+    }
+  }
 }
 
 void Alignment::move(const OutputForm& form, const Place& place, const Offset& by) {
@@ -116,13 +128,31 @@ const Step* Alignment::redo() {
   return &step;
 }
 
-void Alignment::forget(std::string_view output) {
-  std::erase_if(outputs, [&](const auto& o) { return o.form.output == output; });
-  for (std::size_t i = steps.size(); i-- > 0;) {
-    if (steps[i].output != output) continue;
-    steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(i));
-    if (i < done) --done;
+Alignment Alignment::take(std::string_view output) {
+  Alignment taken, rest;
+  for (OutputAlignment& o : outputs)
+    (o.form.output == output ? taken : rest).outputs.push_back(std::move(o));
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    Alignment& to = steps[i].output == output ? taken : rest;
+    if (i < done) ++to.done;
+    to.steps.push_back(std::move(steps[i]));
   }
+  *this = std::move(rest);
+  return taken;
+}
+
+void Alignment::put(const Alignment& taken) {
+  outputs.insert(outputs.end(), taken.outputs.begin(), taken.outputs.end());
+  steps.insert(steps.begin() + static_cast<std::ptrdiff_t>(done), taken.steps.begin(),
+               taken.steps.end());
+  done += taken.done;
+  forgetSteps(kMostSteps, kMostChanges);
+}
+
+std::size_t Alignment::changes() const {
+  std::size_t all = 0;
+  for (const Step& step : steps) all += step.changes.size();
+  return all;
 }
 
 std::size_t Alignment::moved() const {

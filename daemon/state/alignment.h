@@ -61,6 +61,8 @@ struct OutputForm {
   // wrote the file.
   std::optional<std::array<double, 8>> corners{};
   bool operator==(const OutputForm&) const = default;
+  // Whether an alignment that was made for this form is one for an output of the form `now`.
+  bool fits(const OutputForm& now) const;
 };
 
 struct OutputAlignment {
@@ -100,10 +102,19 @@ struct Alignment {
   const Step* undo();
   const Step* redo();
 
-  // Forgets an output's offsets and steps.
-  void forget(std::string_view output);
-  // Number of places that are moved, of all outputs.
+  // Removes an output's offsets and steps, and returns an alignment that has these alone.
+  Alignment take(std::string_view output);
+  // Adds what take() has returned. Its steps count as the newest ones; the oldest ones beyond the
+  // limits are forgotten. REQUIRES: this alignment has no output of that name.
+  void put(const Alignment& taken);
+  // Number of places that are moved, of all outputs, and of changes in all steps.
   std::size_t moved() const;
+  std::size_t changes() const;
+  // Whether nothing is moved and there is no step.
+  bool isNothing() const { return moved() == 0 && steps.empty(); }
+  // Forgets the oldest steps until there are at most `most` of them, with `most_changes` changes in
+  // all.
+  void forgetSteps(std::size_t most, std::size_t most_changes);
 
  private:
   OutputAlignment& entry(const OutputForm& form);

@@ -157,6 +157,20 @@ Alignment alignmentOf(JsonView view) {
   return alignment;
 }
 
+SetAside setAsideOf(JsonView view) {
+  SetAside aside;
+  const std::size_t count = view.expectArray(0, kMostAside);
+  for (std::size_t i = 0; i < count; ++i) {
+    JsonView one = view.at(i);
+    Alignment alignment = alignmentOf(one);
+    if (alignment.outputs.size() != 1)
+      one.addFault("the alignment of one output");
+    else
+      aside.add(std::move(alignment));
+  }
+  return aside;
+}
+
 State stateOf(JsonView root) {
   State state;
   const std::uint64_t version = root.at(kVersionKey).count(1, 1'000'000);
@@ -168,18 +182,39 @@ State stateOf(JsonView root) {
                   {}, Errc::kUnsupported);
     return state;
   }
-  root.allowKeys({kVersionKey, "rate_hz", "content", "playlist", "projectors", "alignment"});
+  root.allowKeys(
+      {kVersionKey, "rate_hz", "content", "playlist", "projectors", "set_aside", "alignment"});
   if (root.has("rate_hz")) state.rate_hz = root.at("rate_hz").number(kLeastRate, kMostRate);
   if (root.has("content")) state.content = root.at("content").text(kLongestPath);
   if (root.has("playlist")) state.playlist_off = !switchOf(root.at("playlist"));
   if (root.has("projectors")) state.projectors = projectorsOf(root.at("projectors"));
+  if (root.has("set_aside")) state.set_aside = setAsideOf(root.at("set_aside"));
   state.alignment = alignmentOf(root.at("alignment"));
   return state;
 }
 
+// Each output and each step has a line of its own.
+std::string textOf(const Alignment& alignment) {
+  std::vector<std::string> outputs, steps;
+  for (const auto& output : alignment.outputs) outputs.push_back(lineOf(textOf(output)));
+  for (const auto& step : alignment.steps) steps.push_back(lineOf(textOf(step)));
+  return fmt::format("{{\"outputs\": [\n{}],\n\"steps\": [\n{}],\n\"done\": {}}}",
+                     fmt::join(outputs, ",\n"), fmt::join(steps, ",\n"), alignment.done);
+}
+
 }  // namespace
 
-// Each output and each step has a line of its own.
+const OutputAlignment* alignmentFor(const State& state, const OutputForm& now) {
+  const OutputAlignment* const own = state.alignment.find(now.output);
+  if (own && own->form.fits(now)) return own;
+  const std::vector<Alignment>& aside = state.set_aside.alignments();
+  for (std::size_t i = aside.size(); i-- > 0;) {
+    const OutputAlignment& one = aside[i].outputs.front();
+    if (one.form.fits(now)) return &one;
+  }
+  return nullptr;
+}
+
 std::string stateText(const State& state) {
   std::string text = fmt::format("{{\"{}\": {},\n", kVersionKey, kStateVersion);
   if (state.rate_hz) text += fmt::format("\"rate_hz\": {},\n", lineOf(*state.rate_hz));
@@ -189,12 +224,11 @@ std::string stateText(const State& state) {
     text += fmt::format("\"projectors\": {{\"switched\": \"{}\", \"local_minute\": {}}},\n",
                         p->on ? "on" : "off", p->local_minute);
   }
-  std::vector<std::string> outputs, steps;
-  for (const auto& output : state.alignment.outputs) outputs.push_back(lineOf(textOf(output)));
-  for (const auto& step : state.alignment.steps) steps.push_back(lineOf(textOf(step)));
-  text +=
-      fmt::format("\"alignment\": {{\"outputs\": [\n{}],\n\"steps\": [\n{}],\n\"done\": {}}}}}\n",
-                  fmt::join(outputs, ",\n"), fmt::join(steps, ",\n"), state.alignment.done);
+  std::vector<std::string> aside;
+  for (const Alignment& alignment : state.set_aside.alignments())
+    aside.push_back(textOf(alignment));
+  if (!aside.empty()) text += fmt::format("\"set_aside\": [\n{}],\n", fmt::join(aside, ",\n"));
+  text += fmt::format("\"alignment\": {}}}\n", textOf(state.alignment));
   return text;
 }
 

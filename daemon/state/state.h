@@ -9,12 +9,13 @@
 
 #include "daemon/base/result.h"
 #include "daemon/state/alignment.h"
+#include "daemon/state/set_aside.h"
 
 namespace merlin::state {
 
 // Version of the file's form. A program reads files of its own version and of older ones. Version 2
-// added `playlist` and `projectors`.
-inline constexpr std::uint64_t kStateVersion = 2;
+// added `playlist` and `projectors`, version 3 `set_aside`.
+inline constexpr std::uint64_t kStateVersion = 3;
 
 // The last switching of all projectors by a person.
 struct ProjectorSwitch {
@@ -28,7 +29,12 @@ struct State {
   std::string content;            // path of the content that is shown; empty: the first content
   bool playlist_off = false;      // set by `merlin playlist off`, until `on`
   std::optional<ProjectorSwitch> projectors;  // nothing: nobody has switched them
+  SetAside set_aside{};
 };
+
+// The alignment that an output of the form `now` has at the next start: its own, or one that was
+// set aside; null if there is none that fits.
+const OutputAlignment* alignmentFor(const State& state, const OutputForm& now);
 
 // The file's text: JSON, the version first.
 std::string stateText(const State& state);

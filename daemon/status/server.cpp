@@ -20,7 +20,7 @@ namespace {
 // Time within which followers subscribe again after a restart: they consider a killed role alive
 // for 1 s, then look for its successor twice a second.
 constexpr Duration kFollowersCome = std::chrono::seconds(3);
-constexpr int kRound_ms = 100;
+constexpr int kServerRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
 constexpr int kMostSaidBytes = 4096;  // of one frame from a subscriber
 constexpr int kMostQueued = 100;      // documents queued for a subscriber that does not read
@@ -31,7 +31,7 @@ constexpr const char* kZap = "inproc://zeromq.zap.01";
 // with a domain libzmq would authenticate the clients of the publisher's local address too.
 constexpr const char* kTopicsDomain = "";
 constexpr const char* kCommandsDomain = "commands";
-constexpr Duration kCheckPeriod = std::chrono::seconds(1);
+constexpr Duration kSocketCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kSayAgain = std::chrono::seconds(10);
 
 // Restricts sockets that libzmq binds to the daemon's user.
@@ -279,7 +279,7 @@ void StatusServer::round() {
 // Binds the inner sockets again if their files were removed, as Relay does for the public ones.
 void StatusServer::bindAgainWhereGone() {
   const Timestamp now = clock_.now();
-  if (now - checked_ < kCheckPeriod) return;
+  if (now - checked_ < kSocketCheckPeriod) return;
   checked_ = now;
   for (const Sockets::Bound& b : sockets_->bound) {
     const std::string& path = b.path;
@@ -296,7 +296,7 @@ void StatusServer::bindAgainWhereGone() {
 
 Duration StatusServer::untilDue() const {
   const Timestamp now = clock_.now();
-  Duration wait = std::chrono::milliseconds(kRound_ms / 4);
+  Duration wait = std::chrono::milliseconds(kServerRound_ms / 4);
   for (const Timestamp due : due_) wait = std::min<Duration>(wait, due - now);
   return std::max<Duration>(wait, Duration::zero());
 }

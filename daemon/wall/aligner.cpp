@@ -18,9 +18,6 @@ using state::Place;
 constexpr auto kStep = std::chrono::milliseconds(500);
 // For undo, pushes of the ball that follow each other within this time are one step.
 constexpr Duration kSamePush = std::chrono::milliseconds(500);
-// A corner may lie outside the output by at most this share of its width or height, so that the
-// image is not lost.
-constexpr double kMostOutside = 0.5;
 
 // Moves of the actions align_left to align_down [px], in the order of kAlignActions.
 constexpr state::Offset kMoves[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -37,24 +34,6 @@ std::string changeText(const state::Step& step, bool undone) {
   return fmt::format("{} by {:g}, {:g}", state::nameOf(place), to.x - from.x, to.y - from.y);
 }
 
-// Explains why offsets that were made for `aligned` do not fit the present output; empty if they
-// fit.
-std::string misfit(const state::OutputForm& aligned, const state::OutputForm& now) {
-  state::OutputForm same = aligned;
-  same.corners = now.corners;
-  if (same != now) {
-    return fmt::format(
-        "it was made for {} x {} pixels and a mesh of {} x {} points, but the output now has "
-        "{} x {} pixels and a mesh of {} x {} points",
-        aligned.width, aligned.height, aligned.mesh_columns, aligned.mesh_rows, now.width,
-        now.height, now.mesh_columns, now.mesh_rows);
-  }
-  if (!aligned.corners || aligned.corners == now.corners) return {};
-  return "its corners in the configuration are not those with which it was aligned";
-}
-
-double outside(double place, double size) { return std::max({0.0, -place, place - size}); }
-
 }  // namespace
 
 bool AlignInput::isNothing() const { return push == state::Offset{} && actions.empty(); }
@@ -65,9 +44,10 @@ Aligner::Aligner(std::vector<AlignedOutput> outputs, std::vector<std::string> re
     : cards_(cards),
       keeper_(keeper),
       refused_(std::move(refused)),
-      alignment_(keeper.state().alignment) {
+      alignment_(keeper.state().alignment),
+      set_aside_(keeper.state().set_aside) {
   for (AlignedOutput& output : outputs) entries_.push_back({std::move(output)});
-  dropMisfits();
+  fitAlignments();
   buildPending();
   thread_ = WatchedThread(watch, "alignment",
                           [this](const std::stop_token& stop, Progress& p) { loop(stop, p); });
@@ -75,65 +55,46 @@ Aligner::Aligner(std::vector<AlignedOutput> outputs, std::vector<std::string> re
 
 Aligner::~Aligner() { thread_.stop(); }
 
-state::OutputForm Aligner::formOf(const Entry& entry) const {
-  const AlignedOutput& o = entry.output;
-  const render::correct::MeshSettings& mesh = o.configured.mesh;
-  return {o.name, o.width, o.height, mesh.columns, mesh.rows, o.configured.corners};
-}
-
-// Drops offsets that were made for another configuration and do not fit the present one.
-void Aligner::dropMisfits() {
-  bool dropped = false;
+// Sets aside the alignments that do not fit their outputs, and brings back those that fit again.
+void Aligner::fitAlignments() {
+  bool changed = false;
   for (const Entry& entry : entries_) {
-    const std::string& name = entry.output.name;
-    const state::OutputAlignment* const saved = alignment_.find(name);
-    if (!saved) continue;
-    std::string why = misfit(saved->form, formOf(entry));
-    if (const auto good = check(entry, alignment_); why.empty() && !good) why = good.error().what;
-    if (why.empty()) continue;
-    keeper_.addNotice(fmt::format("the alignment of output {} is dropped: {}", name, why));
-    alignment_.forget(name);
-    dropped = true;
+    const bool aside = setAside(entry.output), back = bringBack(entry.output);
+    changed = changed || aside || back;
   }
-  if (dropped) keeper_.change([&](state::State& s) { s.alignment = alignment_; });
+  if (!changed) return;
+  keeper_.change([&](state::State& s) {
+    s.alignment = alignment_;
+    s.set_aside = set_aside_;
+  });
 }
 
-render::correct::CorrectionSettings Aligner::settingsOf(const Entry& entry,
-                                                        const Alignment& a) const {
-  render::correct::CorrectionSettings settings = entry.output.configured;
-  const state::OutputAlignment* const of = a.find(entry.output.name);
-  if (!of) return settings;
-  for (const auto& [place, by] : of->moved) {
-    if (place.of == Place::Of::kPin) {
-      moveCorner(settings, place.corner(), by.x, by.y);
-    } else {
-      moveMeshPoint(settings.mesh, place.column, place.row,
-                    {by.x / entry.output.width, by.y / entry.output.height});
-    }
-  }
-  return settings;
+bool Aligner::setAside(const AlignedOutput& output) {
+  const std::string why = misfitOf(output, alignment_);
+  if (why.empty()) return false;
+  Alignment aside = alignment_.take(output.name);
+  if (aside.isNothing()) return true;
+  keeper_.addNotice(fmt::format("the alignment of output {} is set aside: {}; {}", output.name, why,
+                                state::kComesBack));
+  set_aside_.add(std::move(aside));
+  return true;
 }
 
-Result<Ok> Aligner::check(const Entry& entry, const Alignment& a) const {
-  if (!entry.output.fixed.empty() && a.find(entry.output.name)) return refusal(entry.output.fixed);
-  const double width = entry.output.width, height = entry.output.height;
-  const render::correct::CorrectionSettings settings = settingsOf(entry, a);
-  const auto faults = validate(settings, entry.output.width, entry.output.height);
-  if (!faults.empty())
-    return refusal(fmt::format("{} {}", faults[0].pointer.substr(1), faults[0].what));
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Place corner = state::cornerAt(i);
-    const double x = corner.column * width + settings.corners[2 * i],
-                 y = corner.row * height + settings.corners[2 * i + 1];
-    if (a.offset(entry.output.name, corner) == state::Offset{}) continue;  // as configured
-    if (outside(x, width) <= kMostOutside * width && outside(y, height) <= kMostOutside * height)
-      continue;
-    return refusal(
-        fmt::format("corner {} would be at ({}, {}), more than half the output's {} x "
-                    "{} pixels outside of it",
-                    state::nameOf(corner), x, y, width, height));
-  }
-  return Ok{};
+bool Aligner::bringBack(const AlignedOutput& output) {
+  if (alignment_.find(output.name)) return false;
+  const auto back = set_aside_.take([&](const Alignment& aside) {
+    if (aside.outputs.front().form.output != output.name) return false;
+    Alignment with = alignment_;
+    with.put(aside);
+    return with.moved() <= state::kMostMoved && misfitOf(output, with).empty();
+  });
+  if (!back) return false;
+  keeper_.addNotice(
+      fmt::format("the alignment of output {}, which was set aside, is in effect again, since the "
+                  "output is as it was then",
+                  output.name));
+  alignment_.put(*back);
+  return true;
 }
 
 Result<Aligner::Entry*> Aligner::find(const std::string& name) {
@@ -177,7 +138,7 @@ void Aligner::configure(const std::string& output,
       std::ranges::find_if(entries_, [&](const Entry& e) { return e.output.name == output; });
   if (entry == entries_.end() || entry->output.configured == configured) return;
   entry->output.configured = configured;
-  dropMisfits();
+  fitAlignments();
   ++entry->wanted;
   wake();
 }
@@ -185,7 +146,7 @@ void Aligner::configure(const std::string& output,
 Result<Ok> Aligner::move(const state::MoveRequest& request, bool on) {
   const auto entry = find(request.output);
   if (!entry) return entry.error();
-  const state::OutputForm form = formOf(**entry);
+  const state::OutputForm form = formOf((*entry)->output);
   if (request.place.of == Place::Of::kMesh &&
       (request.place.column >= form.mesh_columns || request.place.row >= form.mesh_rows)) {
     return refusal(form.mesh_columns == 0
@@ -203,7 +164,7 @@ Result<Ok> Aligner::move(const state::MoveRequest& request, bool on) {
                     "mesh into the configuration",
                     state::kMostMoved));
   }
-  if (const auto good = check(**entry, next); !good) {
+  if (const auto good = checkAlignment((*entry)->output, next); !good) {
     return refusal(fmt::format("{} of output {} stays where it is: {}",
                                state::nameOf(request.place), form.output, good.error().what));
   }
@@ -219,7 +180,7 @@ Result<Ok> Aligner::step(bool undo) {
   if (!step) return refusal(undo ? "there is nothing to undo" : "there is nothing to redo");
   const std::string output = step->output;
   if (const auto entry = find(output); entry) {
-    if (const auto good = check(**entry, next); !good)
+    if (const auto good = checkAlignment((*entry)->output, next); !good)
       return refusal(fmt::format("output {} stays as it is: {}", output, good.error().what));
   }
   done_ = fmt::format("{} {}", output, changeText(*step, undo));
@@ -251,7 +212,7 @@ std::string Aligner::report() const {
   state::AlignReport report;
   for (const Entry& entry : entries_) {
     const auto& corners = entry.output.configured.corners;
-    report.outputs.push_back({formOf(entry),
+    report.outputs.push_back({formOf(entry.output),
                               {corners.begin(), corners.end()},
                               entry.wanted != entry.built,
                               entry.output.axes});
@@ -366,7 +327,7 @@ void Aligner::buildPending() {
       const std::lock_guard lock(mutex_);
       if (entry.wanted == entry.built) continue;
       number = entry.wanted;
-      settings = settingsOf(entry, alignment_);
+      settings = alignedSettings(entry.output, alignment_);
     }
     entry.output.correction->replace(settings.isOff() ? nullptr : entry.output.make(settings));
     const std::lock_guard lock(mutex_);

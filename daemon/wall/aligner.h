@@ -2,10 +2,8 @@
 // new correction on the aligner's own thread, which replaces the old correction between two frames.
 #pragma once
 
-#include <array>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -16,28 +14,11 @@
 #include "daemon/base/watched_thread.h"
 #include "daemon/state/align_request.h"
 #include "daemon/state/state_keeper.h"
+#include "daemon/wall/alignment_fit.h"
 #include "render/correct/settings.h"
-#include "render/frame/correction.h"
-#include "render/frame/replaceable_correction.h"
 #include "render/testcard/card_overlay.h"
 
 namespace merlin::wall {
-
-// An output that can be aligned.
-struct AlignedOutput {
-  std::string name;
-  int width = 0, height = 0;                       // of its image [px]
-  render::correct::CorrectionSettings configured;  // base values to which offsets are added
-  // Builds a correction; not called for settings that are off. May take seconds, on all processors.
-  std::function<std::unique_ptr<render::frame::Correction>(
-      const render::correct::CorrectionSettings&)>
-      make;
-  render::frame::ReplaceableCorrection* correction = nullptr;  // must outlive the aligner
-  // Marks of its corners on test cards, in the order of kCornerNames.
-  std::array<std::optional<render::testcard::MarkedCorner>, 4> marks{};
-  std::string fixed{};     // a sentence: why it may not be aligned; empty: it may
-  state::SeenAxes axes{};  // bound inputs move corners as they are seen
-};
 
 // Actions that inputs may be bound to, in this order: align_output_next, align_corner_next,
 // align_left, align_right, align_up, align_down, align_undo, align_redo, next_testcard.
@@ -57,7 +38,8 @@ struct AlignInput {
 class Aligner {
  public:
   // On return, the correction of each output is built from its configuration and the offsets of the
-  // keeper's state; offsets that no longer fit the configuration are dropped, with a notice.
+  // keeper's state; an alignment that does not fit its output is set aside, and one that fits again
+  // comes back, each with a notice.
   // `refused`: names of outputs that are not corrected. `cards`, `keeper` and `watch` must outlive
   // this object.
   Aligner(std::vector<AlignedOutput> outputs, std::vector<std::string> refused,
@@ -72,8 +54,8 @@ class Aligner {
   // would be folded, or too far outside the output).
   Result<std::string> run(const std::string& argument);
 
-  // Takes other base values for an output, which are shown some frames later; offsets that no
-  // longer fit them are dropped, with a notice. An output that is not corrected is ignored.
+  // Takes other base values for an output, which are shown some frames later; alignments are set
+  // aside or come back as at the start. An output that is not corrected is ignored.
   // REQUIRES: validate(configured); the measured file is the same as before.
   void configure(const std::string& output, const render::correct::CorrectionSettings& configured);
 
@@ -104,12 +86,10 @@ class Aligner {
     std::uint64_t wanted = 1, built = 0;  // versions of its settings: the newest, the one shown
   };
 
-  state::OutputForm formOf(const Entry& entry) const;
   Result<Entry*> find(const std::string& name);
-  render::correct::CorrectionSettings settingsOf(const Entry& entry,
-                                                 const state::Alignment& a) const;
-  Result<Ok> check(const Entry& entry, const state::Alignment& a) const;
-  void dropMisfits();
+  void fitAlignments();
+  bool setAside(const AlignedOutput& output);
+  bool bringBack(const AlignedOutput& output);
   // Each of the following must be called with mutex_ locked.
   Result<Ok> execute(const state::AlignRequest& request);
   Result<Ok> move(const state::MoveRequest& request, bool on = false);
@@ -132,6 +112,7 @@ class Aligner {
   std::vector<Entry> entries_;
   std::vector<std::string> refused_;
   state::Alignment alignment_;
+  state::SetAside set_aside_;
   std::size_t selected_ = 0, corner_ = 0;
   bool chosen_ = false;  // somebody has selected a corner
   std::optional<render::testcard::Card> card_;

@@ -84,40 +84,50 @@ bool Attendance::handMoves(const render::scene::SceneInput& input) {
 }
 
 // Contact alone is not enough: a finger may rest on a touch surface for ever, or a marked object
-// stand on it. A mouse's wheel counts without a finger.
-bool Attendance::fingersMove(const render::scene::TouchMotion& touch) {
-  const bool others = std::exchange(fingers_, touch.fingers) != touch.fingers;
+// stand on it. A mouse's wheel counts without a finger. A finger that goes undoes nothing, nor do
+// those that move while they are left of the gesture that made the wall black.
+Attendance::Motion Attendance::fingersMove(const render::scene::TouchMotion& touch) {
+  const std::uint32_t before = std::exchange(fingers_, touch.fingers);
+  const bool come = touch.fingers > before, go = touch.fingers < before;
+  of_gesture_ = come ? 0 : std::min(of_gesture_, touch.fingers);
   const std::array moved{touch.right, touch.up, touch.spread, touch.turn_rad};
   float most = 0;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     fingers_moved_[i] += moved[i];
     most = std::max(most, std::abs(fingers_moved_[i]));
   }
-  const bool moves = others || most > kFingersMove;
-  if (moves) fingers_moved_ = {};
-  return moves;
+  const bool move = most > kFingersMove;
+  if (come || go || move) fingers_moved_ = {};
+  return {.touches = come || go || move,
+          .wakes = come || (move && !go && of_gesture_ == 0),
+          .lets_go = go};
 }
 
 // Whether the ball is pushed, fingers come, move or go, a mouse's wheel turns, one of the ball's
-// buttons is pressed now, or a hand moves.
-bool Attendance::moves(const WallInput& input) {
+// buttons is pressed or released now, or a hand moves.
+Attendance::Motion Attendance::motionOf(const WallInput& input) {
   const auto& ball = input.scene.ball;
   const std::uint32_t buttons = ball ? ball->buttons : 0;
-  const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
+  const std::uint32_t before = std::exchange(buttons_, buttons);
+  const bool pressed = (buttons & ~before) != 0, released = (before & ~buttons) != 0;
   const bool pushed = (ball && isPushed(*ball)) || input.scene.held.moves() || input.panel_pushed ||
                       input.align.push != state::Offset{};
-  const bool hand = handMoves(input.scene), fingers = fingersMove(input.scene.touch);
-  return hand || fingers || pushed || pressed != 0;
+  const bool other = handMoves(input.scene) || pushed || pressed;
+  const Motion fingers = fingersMove(input.scene.touch);
+  return {.touches = other || fingers.touches,
+          .wakes = other || fingers.wakes,
+          .lets_go = released || fingers.lets_go};
 }
 
 Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
   const Asked asked = takeAsked(input);
-  const bool motion = moves(input);
+  const Motion motion = motionOf(input);
   const bool paused = !last_motion_ || now - *last_motion_ >= kPause;
   const bool acted = acts(input) || asked.touched;
   const bool bound = input.blank > 0 || input.freeze > 0;
-  if (motion || acted || bound) last_motion_ = now;
-  if (acted || (motion && paused && !bound)) blank_ = frozen_ = false;
+  if (motion.touches || motion.lets_go || acted || bound) last_motion_ = now;
+  if (bound) of_gesture_ = fingers_;
+  if (acted || (motion.wakes && paused && !bound)) blank_ = frozen_ = false;
   blank_ ^= asked.blank;
   frozen_ ^= asked.freeze;
 
@@ -128,8 +138,8 @@ Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
   frame.held = blank_ || frozen_;
   const Duration elapsed = now - std::exchange(last_update_, now).value_or(now);
   // While the wall is black or frozen, no time passes for the playlist.
-  frame.playlist =
-      playlist_.update(frame.held ? Duration::zero() : elapsed, motion || acted || asked.attended);
+  frame.playlist = playlist_.update(frame.held ? Duration::zero() : elapsed,
+                                    motion.touches || acted || asked.attended);
   if (frame.held)
     input.scene = {};
   else

@@ -3,7 +3,8 @@
 //
 // A touch is anything by which a visitor or an operator acts on the wall: a push of the ball, a
 // button, a finger that comes to a touch surface, moves on it or leaves it, a turn of a mouse's
-// wheel, a hand that moves while it holds an action, a command that changes what is shown.
+// wheel, a hand that moves while it holds an action, a command that changes what is shown. A finger
+// that leaves is one to the playlist only: it does not undo blank and freeze.
 #pragma once
 
 #include <array>
@@ -58,7 +59,7 @@ class Attendance {
   Playlist::Due due() const noexcept;
 
   // A motion, such as a push of the ball, is a new touch only after this time without motion,
-  // because whoever presses a button of the ball also pushes the ball.
+  // because whoever presses or releases a button of the ball also pushes the ball.
   static constexpr Duration kPause = std::chrono::milliseconds(500);
   // Least motion of a hand that is a touch while the hand holds an action; above the tracker's
   // noise.
@@ -73,9 +74,14 @@ class Attendance {
     std::optional<bool> playlist;  // on or off
   };
   Asked takeAsked(const WallInput& input);
-  bool moves(const WallInput& input);
+  struct Motion {
+    bool touches = false;  // somebody acts
+    bool wakes = false;    // in a way that undoes blank and freeze
+    bool lets_go = false;  // a finger goes, or a button is released
+  };
+  Motion motionOf(const WallInput& input);
   bool handMoves(const render::scene::SceneInput& input);
-  bool fingersMove(const render::scene::TouchMotion& touch);
+  Motion fingersMove(const render::scene::TouchMotion& touch);
 
   std::mutex mutex_;
   Asked asked_;  // guarded by mutex_: since the last update()
@@ -92,6 +98,9 @@ class Attendance {
   // Number of fingers at the last frame, and their movement since a motion last counted.
   std::uint32_t fingers_ = 0;
   std::array<float, 4> fingers_moved_{};
+  // Of the fingers that touched while a bound input made the wall black or frozen, those that have
+  // not gone since; 0 once another one has come.
+  std::uint32_t of_gesture_ = 0;
 };
 
 }  // namespace merlin::wall

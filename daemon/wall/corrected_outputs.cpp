@@ -114,11 +114,7 @@ std::unique_ptr<render::frame::Correction> CorrectedOutputs::correctionOf(
   for (std::size_t corner = 0; corner < made.marks.size(); ++corner)
     made.marks[corner] = render::testcard::cornerOf(parts_.plan, output, corner);
   links.push_back(std::move(correction));
-  if (!parts) {
-    made.fixed =
-        "its pictures of both eyes are not the halves of its signal; let it show one tile, or "
-        "use stereo mode two_outputs or anaglyph";
-  }
+  made.fixed = fixedOf(output, tiles);
   aligned.push_back(std::move(made));
   if (links.size() == 1) return std::move(links.front());
   return std::make_unique<render::frame::CorrectionChain>(std::move(links));

@@ -308,6 +308,19 @@ void DeviceFeed::moveCorner(Duration since_last, bool held, WallInput& input) co
   std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
 }
 
+// A mouse's wheel counts beside the fingers of another surface.
+void DeviceFeed::readTouches(const shm::DeviceSlots& devices, const Acts& acts,
+                             render::scene::TouchMotion& used) const {
+  float by_wheel = 0;
+  for (std::size_t i = 0; i < devices.touches.size(); ++i) {
+    const auto& touch = acts.touches[i];
+    if (!counts(devices.touches[i].name)) continue;
+    if (touch.fingers == 0) by_wheel += touch.spread;
+    if (touch.fingers > used.fingers) used = touch;
+  }
+  used.spread += by_wheel;
+}
+
 WallInput DeviceFeed::read(Timestamp now) {
   WallInput input;
   const Duration since_last = now - std::exchange(last_read_, now).value_or(now);
@@ -323,13 +336,7 @@ WallInput DeviceFeed::read(Timestamp now) {
     const bool replaces = input.scene.ball && pushed(*ball) && !pushed(*input.scene.ball);
     if (!input.scene.ball || replaces) input.scene.ball = ball;
   }
-  for (std::size_t i = 0; i < d->touches.size(); ++i) {
-    const auto& touch = acts.touches[i];
-    const auto& used = input.scene.touch;
-    const bool turned = used.fingers == 0 && touch.moves();  // by a mouse's wheel
-    if ((touch.fingers > used.fingers || turned) && counts(d->touches[i].name))
-      input.scene.touch = touch;
-  }
+  readTouches(*d, acts, input.scene.touch);
   readHand(*d, acts.actions, now, input);
   if (settings_.head.station > 0) input.head = station(*d, settings_.head, now);
   const bool align = useActions(*d, acts.actions, input);

@@ -18,10 +18,10 @@ namespace merlin::wall {
 // Thread-bound. Never waits: reads the newest samples and omits devices that do not work.
 //
 // Among several balls the one that is pushed counts, among several hands the one that holds an
-// action, otherwise the first of each; among several touch surfaces the one that is touched. The
-// actions of all devices count, but only the hand that acts grabs, flies and points by its glove.
-// Among several people, only the input of the one who has the wall counts (Turns); the hands of the
-// others may still point.
+// action, otherwise the first of each; among several touch surfaces the one that is touched, and
+// each mouse's wheel. The actions of all devices count, but only the hand that acts grabs, flies
+// and points by its glove. Among several people, only the input of the one who has the wall counts
+// (Turns); the hands of the others may still point.
 class DeviceFeed final : public InputFeed {
  public:
   DeviceFeed(std::string segment_name, FeedSettings settings)
@@ -59,6 +59,8 @@ class DeviceFeed final : public InputFeed {
                 WallInput& input);
   void readPosture(const shm::DeviceSlots& devices, const std::string& glove, Timestamp now,
                    WallInput& input);
+  void readTouches(const shm::DeviceSlots& devices, const Acts& acts,
+                   render::scene::TouchMotion& used) const;
   void moveCorner(Duration since_last, bool held, WallInput& input) const;
   bool isOfAnotherHand(const shm::DeviceSlots& devices, const std::string& source) const;
   bool useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,

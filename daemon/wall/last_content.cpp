@@ -1,18 +1,40 @@
 #include "daemon/wall/last_content.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "daemon/base/absolute_path.h"
+
 namespace merlin::wall {
+namespace {
+
+// Whether the file of a content can be the one of a relative path that an earlier version saved:
+// the folder that this path was relative to is not known.
+bool endsWith(const ContentEntry& entry, const std::string& relative) {
+  std::string_view end = relative;
+  while (end.starts_with("../")) end.remove_prefix(3);
+  return absolutePath(entry.path).ends_with(fmt::format("/{}", end));
+}
+
+}  // namespace
 
 // Place of the content that the state names; nothing if the configuration lacks it.
 std::optional<std::size_t> LastContent::placeInState() const {
   const std::string path = keeper_.state().content;
   if (path.empty()) return 0;
-  const auto found = std::ranges::find(entries_, path, &ContentEntry::path);
+  auto found = std::ranges::find_if(
+      entries_, [&](const ContentEntry& e) { return absolutePath(e.path) == absolutePath(path); });
+  const std::filesystem::path saved(path);
+  if (found == entries_.end() && saved.is_relative()) {
+    const std::string relative = saved.lexically_normal().string();
+    found = std::ranges::find_if(entries_,
+                                 [&](const ContentEntry& e) { return endsWith(e, relative); });
+  }
   if (found == entries_.end()) return std::nullopt;
   return static_cast<std::size_t>(found - entries_.begin());
 }
@@ -33,7 +55,7 @@ void LastContent::keep(std::size_t place) {
   // If the kept content's file cannot be read yet, another one is shown first. The state is not
   // changed then, so that the next start tries the kept content again.
   if (first && !missing_.faultOf(placeInState().value_or(0)).empty()) return;
-  const std::string path = place == 0 ? std::string() : entries_[place].path;
+  const std::string path = place == 0 ? std::string() : absolutePath(entries_[place].path);
   if (keeper_.state().content != path) keeper_.change([&](state::State& s) { s.content = path; });
 }
 

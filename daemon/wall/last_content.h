@@ -12,7 +12,9 @@
 namespace merlin::wall {
 
 // The state stores an empty path for the first content, so that the configuration decides which one
-// it is. Not thread-safe, but first() may run beside keep().
+// it is, and the absolute path of any other one. Earlier versions stored a relative path if
+// --config was relative; it means the content whose path ends with it. Not thread-safe, but first()
+// may run beside keep().
 class LastContent {
  public:
   // `missing`: of `entries`, the contents of the configuration. All outlive this object.

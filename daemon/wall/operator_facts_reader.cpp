@@ -7,6 +7,7 @@
 #include "daemon/base/fixed_text.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/wall/useful_cost.h"
+#include "drivers/port/health_reasons.h"
 
 namespace merlin::wall {
 namespace {
@@ -24,7 +25,7 @@ std::string textOf(const char (&field)[N]) {
 
 // Whether the device has a port. If the configuration lists no devices, the default ones exist
 // without ports.
-bool isConfigured(const DeviceHealth& health) { return textIn(health.reason) != "not configured"; }
+bool isConfigured(const DeviceHealth& health) { return textIn(health.reason) != kNotConfigured; }
 
 // The text is the state, followed by the reason if there is one: that of a fault, or the complaint
 // of a device that works.

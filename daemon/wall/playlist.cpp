@@ -1,8 +1,9 @@
 #include "daemon/wall/playlist.h"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
+
+#include "daemon/base/radian.h"
 
 namespace merlin::wall {
 
@@ -47,8 +48,7 @@ Playlist::Wanted Playlist::update(Duration elapsed, bool touched) noexcept {
       wanted.next = true;
       shown_ = Duration::zero();
     }
-    constexpr double kRadian = std::numbers::pi / 180;
-    wanted.turn_rad_s = static_cast<float>(settings_.turn_deg_per_s * kRadian);
+    wanted.turn_rad_s = static_cast<float>(settings_.turn_deg_per_s * kRadian<double>);
   }
   wanted.light = light();
   return wanted;

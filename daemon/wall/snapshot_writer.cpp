@@ -56,6 +56,7 @@ void SnapshotWriter::loop(const std::stop_token& stop, Progress& progress) {
     }
     const Progress::Pause pause(progress);  // a disk may be slow
     const auto path = write();
+    if (path) ++written_;
     if (path)
       logInfo("snapshot: {}", *path);
     else

@@ -1,8 +1,11 @@
-// SnapshotWriter: saves frames as PNG files in a folder when a person requests it by a bound input.
-// Works on its own thread and, like `merlin snapshot`, reads the frame from shared memory.
+// SnapshotWriter: saves frames as PNG files in a folder when a person requests it, by a bound
+// input, the panel or the command snapshot. Works on its own thread and, like `merlin snapshot`,
+// reads the frame from shared memory.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <string>
 
@@ -31,6 +34,9 @@ class SnapshotWriter {
   // written are merged into one file. The result is logged.
   void take();
 
+  // Number of files that were written.
+  std::uint32_t written() const noexcept { return written_; }
+
   // Writes the newest frame now; returns its path. Errors: captureFrame()'s, writePng()'s and
   // DatedFiles::next()'s.
   Result<std::string> write() const;
@@ -43,6 +49,7 @@ class SnapshotWriter {
   std::mutex mutex_;
   std::condition_variable_any wake_;
   bool asked_ = false;
+  std::atomic<std::uint32_t> written_{0};
   WatchedThread thread_;
 };
 

@@ -222,7 +222,6 @@ void WallLoop::readInput(std::int64_t k, Timestamp began) {
   turns_.requestPrevious(input.previous_content);
   if (input.next_content + input.previous_content > 0) parts_.scene.reset();
   for (std::uint32_t i = 0; i < input.snapshot; ++i) parts_.on_snapshot();
-  snapshots_ += input.snapshot;
   if (!input.align.isNothing()) parts_.on_align(input.align);
   view_ = parts_.scene.update(input.scene, began);
   if (turns_.showRequested()) {
@@ -400,7 +399,7 @@ void WallLoop::publish() {
   publisher_.stats(counted_, {turns_, pace_, parts_.governor, stats_, view_, step_}, now);
   const Attendance& attendance = parts_.attendance;
   shm::WallInteraction interaction{};
-  interaction.snapshots = snapshots_;
+  interaction.snapshots = parts_.snapshots_written();
   interaction.content = static_cast<std::uint32_t>(turns_.index()) + parts_.first_number;
   interaction.shown = attendance.shown();
   interaction.playlist = static_cast<std::uint32_t>(attendance.playlist());

@@ -60,6 +60,8 @@ struct WallParts {
   ViewerPlace* viewer = nullptr;              // set if the viewer's head is tracked, else null
   OperatorPanel* panel = nullptr;             // on the operator's tile; may be null
   std::function<void()> on_snapshot = [] {};  // called when a bound input requests a snapshot
+  // Number of snapshots that were written, whoever requested them.
+  std::function<std::uint32_t()> snapshots_written = [] { return 0U; };
   // Called when a bound input requests an alignment action.
   std::function<void(const AlignInput&)> on_align = [](const AlignInput&) {};
   // Whether a test card covers the picture.
@@ -168,8 +170,7 @@ class WallLoop {
   std::size_t new_frames_ = 0;  // first moving frames of another content that are still to come
   bool held_ = false;           // black or frozen: nothing moves the scene
   std::uint64_t frames_ = 0;
-  std::uint32_t snapshots_ = 0;  // requested by bound inputs, since the start
-  shm::WallStats counted_{};     // only the fields that the loop itself counts
+  shm::WallStats counted_{};  // only the fields that the loop itself counts
   std::atomic<std::uint32_t> requests_{0};
   std::atomic<std::int64_t> place_asked_{-1};  // -1: none
   std::mutex step_mutex_;

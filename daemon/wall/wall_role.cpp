@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "config/drawn_wall.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
+#include "daemon/base/radian.h"
 #include "daemon/shm/fields.h"
 #include "render/room/presets.h"
 #include "render/testcard/card_tiles.h"
@@ -240,6 +240,7 @@ void WallRole::addOwn(WallParts& parts) {
   parts.fade_frames = settings_.wall.render.fade_frames;
   parts.return_after_s = settings_.wall.scene.return_after_s;
   parts.on_snapshot = on_snapshot_;
+  parts.snapshots_written = snapshots_written_;
   parts.on_align = [this](const AlignInput& input) { outputs_->aligner().ask(input); };
   parts.shows_testcard = [this] { return cards_.isShown(); };
   parts.first_content = last_content_.first();
@@ -309,9 +310,8 @@ std::vector<Event> WallRole::contentEvents() {
 }
 
 void WallRole::move(const Eigen::Vector3f& way_radii, const Eigen::Vector3f& turn_deg) {
-  constexpr float kRadian = std::numbers::pi_v<float> / 180;
   const auto radius_m = static_cast<float>(settings_.wall.scene.model_radius_m);
-  if (WallLoop* loop = loop_.load()) loop->move({way_radii * radius_m, turn_deg * kRadian});
+  if (WallLoop* loop = loop_.load()) loop->move({way_radii * radius_m, turn_deg * kRadian<float>});
 }
 
 void WallRole::hold(std::optional<std::size_t> cost) {

@@ -70,9 +70,12 @@ class WallRole {
   // Returns nothing before the renderer is chosen, on the wall's thread. Thread-safe.
   std::optional<RendererReport> renderer() const;
 
-  // Sets the function called on the wall's thread when a bound input requests a snapshot. To be
-  // called before start().
-  void onSnapshot(std::function<void()> act) { on_snapshot_ = std::move(act); }
+  // Sets the functions called on the wall's thread: `act` when a bound input requests a snapshot,
+  // `written` for the number of those that were written. To be called before start().
+  void onSnapshot(std::function<void()> act, std::function<std::uint32_t()> written) {
+    on_snapshot_ = std::move(act);
+    snapshots_written_ = std::move(written);
+  }
 
   // Sets the functions that outputs of kind window call, on their own threads, for the person at
   // them. To be called before start().
@@ -162,6 +165,7 @@ class WallRole {
   std::unique_ptr<CorrectedOutputs> outputs_;
   std::optional<render::frame::Delivery> delivery_;  // has the corrections while the wall runs
   std::function<void()> on_snapshot_ = [] {};
+  std::function<std::uint32_t()> snapshots_written_ = [] { return 0U; };
   std::mutex viewer_events_mutex_;
   std::vector<Event> viewer_events_;
   std::promise<Result<std::string>> ready_;

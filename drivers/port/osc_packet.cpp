@@ -1,6 +1,5 @@
 #include "drivers/port/osc_packet.h"
 
-#include <algorithm>
 #include <exception>
 
 #include <oscpack/osc/OscReceivedElements.h>
@@ -10,18 +9,26 @@
 namespace merlin {
 namespace {
 
-// oscpack compares the first eight bytes of an element with "#bundle" even if the element is
-// shorter, so that many zeros follow the copy.
-constexpr std::size_t kPadding = 8;
+// A bundle begins with this text and a time tag of eight bytes; then each element follows its
+// size, a big-endian number of 32 bits.
+constexpr std::string_view kBundle("#bundle\0", 8);
+constexpr std::size_t kBundleHead = 16, kSizeField = 4;
+
+std::uint32_t bigEndian32(std::string_view bytes) noexcept {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < kSizeField; ++i)
+    word = word << 8 | static_cast<unsigned char>(bytes[i]);
+  return word;
+}
 
 // Whether a message has a blob among its arguments. oscpack 1.1.0 does not check a blob's length
 // (it constructs an exception but does not throw it), so later arguments would be read out of
 // bounds. The address ends where oscpack sees its end: at the first group of four bytes whose last
 // byte is zero.
-bool hasBlob(const char* message, std::size_t size) noexcept {
+bool hasBlob(std::string_view message) noexcept {
   std::size_t last = 3;
-  while (message[0] != '\0' && last < size && message[last] != '\0') last += 4;
-  for (std::size_t tag = last + 1; tag < size && message[tag] != '\0'; ++tag) {
+  while (message[0] != '\0' && last < message.size() && message[last] != '\0') last += 4;
+  for (std::size_t tag = last + 1; tag < message.size() && message[tag] != '\0'; ++tag) {
     if (message[tag] == osc::BLOB_TYPE_TAG) return true;
   }
   return false;
@@ -52,62 +59,64 @@ OscArgument argumentOf(const osc::ReceivedMessageArgument& from) {
   return to;
 }
 
-// Reads one packet; if `sink` is null, only checks it. Throws the exceptions of oscpack, and
-// osc::Exception if a limit is exceeded.
+// Reads one packet; if `sink` is null, only checks it. Bundles are taken apart here, since oscpack
+// 1.1.0 adds 4 to an element's size in 32 bits: for the size 0xFFFFFFFC it goes on at the same
+// place for ever. oscpack reads single messages only, whose length is known to be within the
+// datagram.
 class Reading {
  public:
   Reading(std::vector<OscArgument>& arguments, OscSink* sink)
       : arguments_(arguments), sink_(sink) {}
 
-  void bundle(const osc::ReceivedBundle& bundle, int depth) {
-    if (depth >= OscReader::kDeepest) throw osc::Exception("nested too deeply");
-    for (auto element = bundle.ElementsBegin(); element != bundle.ElementsEnd(); ++element) {
-      if (element->IsBundle())
-        this->bundle(osc::ReceivedBundle(*element), depth + 1);
-      else
-        message(*element);
-    }
+  // A message or a bundle; `depth`: number of bundles around it. Returns false if it is malformed
+  // or a limit is exceeded; throws the exceptions of oscpack if a message is malformed.
+  bool element(std::string_view bytes, int depth) {
+    if (bytes.empty() || bytes.size() % 4 != 0) return false;
+    return bytes[0] == kBundle[0] ? bundle(bytes, depth) : message(bytes);
   }
 
-  // `Holder`: a packet, or an element of a bundle.
-  template <typename Holder>
-  void message(const Holder& holder) {
-    if (hasBlob(holder.Contents(), static_cast<std::size_t>(holder.Size()))) return;
-    const osc::ReceivedMessage message(holder);
-    if (message.ArgumentCount() > arguments_.size()) throw osc::Exception("too many arguments");
+ private:
+  bool bundle(std::string_view bytes, int depth) {
+    if (depth >= OscReader::kDeepest || bytes.size() < kBundleHead || !bytes.starts_with(kBundle))
+      return false;
+    for (auto rest = bytes.substr(kBundleHead); !rest.empty();) {
+      if (rest.size() < kSizeField) return false;
+      const std::size_t size = bigEndian32(rest);
+      rest.remove_prefix(kSizeField);
+      if (size > rest.size() || !element(rest.substr(0, size), depth + 1)) return false;
+      rest.remove_prefix(size);
+    }
+    return true;
+  }
+
+  bool message(std::string_view bytes) {
+    if (hasBlob(bytes)) return true;
+    const osc::ReceivedMessage message(osc::ReceivedPacket(bytes.data(), bytes.size()));
+    if (message.ArgumentCount() > arguments_.size()) return false;
     std::size_t count = 0;
     for (auto at = message.ArgumentsBegin(); at != message.ArgumentsEnd(); ++at)
       arguments_[count++] = argumentOf(*at);
     if (sink_) sink_->take({message.AddressPattern(), std::span(arguments_).first(count)});
+    return true;
   }
 
- private:
   std::vector<OscArgument>& arguments_;
   OscSink* sink_;
 };
 
 }  // namespace
 
-OscReader::OscReader() : packet_(kLongestDatagram + kPadding), arguments_(kMostArguments) {}
+OscReader::OscReader() : arguments_(kMostArguments) {}
 
 bool OscReader::read(std::span<const std::byte> datagram, OscSink& sink) noexcept {
   if (datagram.size() > kLongestDatagram) return false;
-  std::transform(datagram.begin(), datagram.end(), packet_.begin(),
-                 [](std::byte b) { return static_cast<char>(b); });
-  std::fill_n(packet_.begin() + static_cast<std::ptrdiff_t>(datagram.size()), kPadding, '\0');
+  const std::string_view bytes(reinterpret_cast<const char*>(datagram.data()), datagram.size());
   try {
-    const osc::ReceivedPacket packet(packet_.data(), datagram.size());
-    for (OscSink* const to : {static_cast<OscSink*>(nullptr), &sink}) {
-      Reading reading(arguments_, to);
-      if (packet.IsBundle())
-        reading.bundle(osc::ReceivedBundle(packet), 0);
-      else
-        reading.message(packet);
-    }
+    return Reading(arguments_, nullptr).element(bytes, 0) &&
+           Reading(arguments_, &sink).element(bytes, 0);
   } catch (const std::exception&) {
     return false;
   }
-  return true;
 }
 
 }  // namespace merlin

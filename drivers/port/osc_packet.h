@@ -44,12 +44,11 @@ class OscReader {
   // Passes the messages of the datagram to `sink`. If any part of it is malformed, nested too
   // deeply or has too many arguments, passes none of them and returns false. Time tags of bundles
   // are ignored: all messages take effect on arrival. Allocates only if the datagram is malformed
-  // (oscpack throws). Cost: linear in the datagram's length, for each level of nesting. A datagram
-  // that is longer than kLongestDatagram is malformed.
+  // (oscpack throws). Cost: linear in the datagram's length. A datagram that is longer than
+  // kLongestDatagram is malformed.
   bool read(std::span<const std::byte> datagram, OscSink& sink) noexcept;
 
  private:
-  std::vector<char> packet_;  // a copy of the datagram, followed by zeros
   std::vector<OscArgument> arguments_;
 };
 

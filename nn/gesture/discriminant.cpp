@@ -8,7 +8,7 @@
 namespace merlin::nn {
 namespace {
 
-constexpr auto kN = static_cast<Eigen::Index>(kTerms);
+constexpr auto kTermCount = static_cast<Eigen::Index>(kTerms);
 constexpr int kMostSteps = 25, kMostHalvings = 20;
 constexpr double kConverged = 1e-6;  // relative change of the objective
 
@@ -20,7 +20,7 @@ double softPlus(double x) { return x > 0 ? x + std::log1p(std::exp(-x)) : std::l
 
 // Returns a matrix with one row of terms for each example.
 Table termsOf(std::span<const DiscriminantExample> examples) {
-  Table terms(static_cast<Eigen::Index>(examples.size()), kN);
+  Table terms(static_cast<Eigen::Index>(examples.size()), kTermCount);
   for (std::size_t n = 0; n < examples.size(); ++n) {
     const StrokeFeatures& z = examples[n].whitened;
     const auto row = static_cast<Eigen::Index>(n);
@@ -46,7 +46,7 @@ Weights newtonStep(const Table& terms, const Weights& meant, const Weights& weig
   const Weights share = (1 + (-odds.array()).exp()).inverse();
   const Weights certainty = (share.array() * (1 - share.array())).sqrt();
   const Table scaled = certainty.asDiagonal() * terms;
-  Table curvature = Table::Zero(kN, kN);
+  Table curvature = Table::Zero(kTermCount, kTermCount);
   curvature.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
   curvature.diagonal().array() += decay;
   const Weights slope = terms.transpose() * (share - meant) + decay * weights;
@@ -72,7 +72,7 @@ Discriminant fitDiscriminant(std::span<const DiscriminantExample> examples, doub
   Weights meant(terms.rows());
   for (std::size_t n = 0; n < examples.size(); ++n)
     meant[static_cast<Eigen::Index>(n)] = examples[n].meant ? 1 : 0;
-  Weights weights = Weights::Zero(kN);
+  Weights weights = Weights::Zero(kTermCount);
   double now = objective(terms, meant, weights, decay);
   for (int n = 0; n < kMostSteps; ++n) {
     Weights step = newtonStep(terms, meant, weights, decay);

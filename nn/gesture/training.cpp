@@ -16,12 +16,12 @@ namespace {
 constexpr std::size_t kLeastStrokes = 3, kFolds = 5;
 constexpr float kLeastLimit = 1;
 constexpr float kNoLimit = -1e5F;  // odds below all others
-constexpr auto kN = static_cast<Eigen::Index>(kFeatures);
-using Vector = Eigen::Matrix<double, kN, 1>;
-using Matrix = Eigen::Matrix<double, kN, kN>;
+constexpr auto kFeatureCount = static_cast<Eigen::Index>(kFeatures);
+using Vector = Eigen::Matrix<double, kFeatureCount, 1>;
+using Matrix = Eigen::Matrix<double, kFeatureCount, kFeatureCount>;
 
 Vector vectorOf(const StrokeFeatures& features) {
-  return Eigen::Map<const Eigen::Matrix<float, kN, 1>>(features.data()).cast<double>();
+  return Eigen::Map<const Eigen::Matrix<float, kFeatureCount, 1>>(features.data()).cast<double>();
 }
 
 // Strokes by gesture, in the order of the names; strokes without a gesture are separate.
@@ -65,7 +65,7 @@ StrokeDistribution distributionOf(const Sums& own, const Matrix& pooled,
   const Matrix inverse = factor.matrixL().solve(Matrix::Identity());
   StrokeDistribution distribution;
   std::size_t at = 0;
-  for (Eigen::Index row = 0; row < kN; ++row) {
+  for (Eigen::Index row = 0; row < kFeatureCount; ++row) {
     distribution.mean[static_cast<std::size_t>(row)] = static_cast<float>(own.mean[row]);
     for (Eigen::Index i = 0; i <= row; ++i)
       distribution.whitening[at++] = static_cast<float>(inverse(row, i));

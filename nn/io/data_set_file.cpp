@@ -115,7 +115,12 @@ class Parser {
       recording_.synthetic |= line->starts_with("# synthetic");
       line = lines_.next();
     }
-    std::string_view text = line.value_or("");
+    if (!line)
+      return Error{Errc::kMalformed,
+                   fmt::format("{}: found no header{}; needed are a header and at least one line "
+                               "after it",
+                               file_, lines_.number() == 0 ? ", the file is empty" : "")};
+    std::string_view text = *line;
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     for (const char c : {',', ';', '\t'}) {
       if (text.find(c) == std::string_view::npos) continue;
@@ -155,7 +160,9 @@ class Parser {
     for (std::size_t c = 0; c < fields.size(); ++c) {
       if (header_.slot[c] < 0) continue;
       const auto value = parseValue(fields[c]);
-      if (!value) return errorInLine(fmt::format("{} {}", names_[c], quote(fields[c])), "a number");
+      if (!value)
+        return errorInLine(fmt::format("{} {}", names_[c], quote(fields[c])),
+                           fmt::format("a number from {} to {}", -kMostRaw, kMostRaw));
       hand.value[static_cast<std::size_t>(header_.slot[c])] = *value;
       if (std::abs(*value) <= static_cast<float>(kMostAngle_rad)) continue;
       if (unit_ == InputUnit::kRadians)

@@ -9,7 +9,8 @@
 namespace merlin::render::compare {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // samples that are summed before the blocks' sums are added
+constexpr std::size_t kSampleBlock =
+    4096;  // samples that are summed before the blocks' sums are added
 
 // A point of a mesh, as needed to interpolate features there.
 struct SurfacePoint {
@@ -96,11 +97,13 @@ class Sampler {
 
   Sums none() const { return {{}, {}, {}, {}, std::vector<Mean>(features_.size())}; }
 
-  // Adds samples kBlock * block to kBlock * (block + 1) - 1 to `sums`, which was none() before.
+  // Adds samples kSampleBlock * block to kSampleBlock * (block + 1) - 1 to `sums`, which was none()
+  // before.
   void addBlock(std::size_t block, Sums& sums) const {
     // A generator of its own for each block; next() keeps neighbouring seeds apart.
     Random random(Random(sampling_.seed + block).next());
-    const std::size_t first = block * kBlock, last = std::min(first + kBlock, sampling_.samples);
+    const std::size_t first = block * kSampleBlock,
+                      last = std::min(first + kSampleBlock, sampling_.samples);
     std::uint32_t place = 0, hint = TriangleTree::kNone;
     for (std::size_t i = first; i < last; ++i) {
       const double share =
@@ -181,13 +184,13 @@ SampledError errorOf(const Sums& sums) {
 std::optional<SampledError> sampledError(const Surface& from, const Surface& to,
                                          const Sampling& sampling, const KeepGoing& keepGoing) {
   const Sampler sampler(from, to, sampling);
-  const std::size_t blocks = (sampling.samples + kBlock - 1) / kBlock;
+  const std::size_t blocks = (sampling.samples + kSampleBlock - 1) / kSampleBlock;
   std::vector<Sums> sums(blocks, sampler.none());
   const bool all = forBlocks(
       sampling.threads, blocks, [&](std::size_t block) { sampler.addBlock(block, sums[block]); },
       [&](std::size_t done) {
         return keepGoing(static_cast<double>(done) / static_cast<double>(blocks),
-                         std::min(done * kBlock, sampling.samples));
+                         std::min(done * kSampleBlock, sampling.samples));
       });
   if (!all) return std::nullopt;
   Sums total = sampler.none();

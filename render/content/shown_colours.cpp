@@ -11,7 +11,7 @@ namespace {
 
 using Rgb = std::array<float, 3>;  // 0..1
 
-std::uint8_t quantise(float value) {
+std::uint8_t quantiseColour(float value) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0F, 1.0F)));
 }
 
@@ -114,7 +114,7 @@ Result<ShownColours> coloursOf(const lod::Dendrogram& model, const ShownFeature&
   shown.rgb.resize(model.nodeCount());
   for (std::size_t n = 0; n < shown.rgb.size(); ++n) {
     const Rgb colour = colourOf(*f, n, shown);
-    for (std::size_t k = 0; k < 3; ++k) shown.rgb[n][k] = quantise(colour[k]);
+    for (std::size_t k = 0; k < 3; ++k) shown.rgb[n][k] = quantiseColour(colour[k]);
   }
   return shown;
 }

@@ -5,13 +5,13 @@
 namespace merlin::render::content {
 namespace {
 
-constexpr const char* kVertexShader = R"(#version 330 core
+constexpr const char* kWireVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 position;
 uniform mat4 clip_from_model;
 void main() { gl_Position = clip_from_model * vec4(position, 1.0); }
 )";
 
-constexpr const char* kFragmentShader = R"(#version 330 core
+constexpr const char* kWireFragmentShader = R"(#version 330 core
 uniform vec3 colour;
 out vec4 pixel;
 void main() { pixel = vec4(colour, 1.0); }
@@ -20,7 +20,7 @@ void main() { pixel = vec4(colour, 1.0); }
 }  // namespace
 
 Result<Ok> Wires::build() {
-  const auto program = gl::linkProgram(gl_, kVertexShader, kFragmentShader);
+  const auto program = gl::linkProgram(gl_, kWireVertexShader, kWireFragmentShader);
   if (!program) return program.error();
   program_ = *program;
   clip_location_ = gl_.GetUniformLocation(program_, "clip_from_model");

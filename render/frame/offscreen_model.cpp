@@ -1,17 +1,18 @@
 #include "render/frame/offscreen_model.h"
 
-#include <numbers>
 #include <utility>
 
+#include "daemon/base/radian.h"
 #include "render/content/model_content.h"
 
 namespace merlin::render::frame {
 
 Eigen::Isometry3f ModelView::T_eye_model() const {
-  constexpr float kRadian = std::numbers::pi_v<float> / 180;
   Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
-  view.rotate(Eigen::AngleAxisf(static_cast<float>(yaw_deg) * kRadian, Eigen::Vector3f::UnitY()));
-  view.rotate(Eigen::AngleAxisf(static_cast<float>(pitch_deg) * kRadian, Eigen::Vector3f::UnitX()));
+  view.rotate(
+      Eigen::AngleAxisf(static_cast<float>(yaw_deg) * kRadian<float>, Eigen::Vector3f::UnitY()));
+  view.rotate(
+      Eigen::AngleAxisf(static_cast<float>(pitch_deg) * kRadian<float>, Eigen::Vector3f::UnitX()));
   return view;
 }
 

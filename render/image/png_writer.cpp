@@ -13,18 +13,18 @@ namespace merlin::render::image {
 namespace {
 
 // Textures are compressed fast: they may have 64 million pixels, and somebody waits for them.
-constexpr int kCompression = 6, kFastCompression = 3;
+constexpr int kUsualCompression = 6, kFastCompression = 3;
 
 struct PngRows {
   int width = 0, height = 0;
   bool alpha = false;  // a fourth byte for each pixel, which is not written
-  int compression = kCompression;
+  int compression = kUsualCompression;
   std::vector<std::uint8_t*> rows{};
 };
 
 // libpng declares rows as mutable that it does not write to.
 PngRows rowsOf(int width, int height, std::span<const std::uint8_t> pixels, bool alpha) {
-  PngRows image{width, height, alpha, alpha ? kCompression : kFastCompression};
+  PngRows image{width, height, alpha, alpha ? kUsualCompression : kFastCompression};
   const std::size_t stride = (alpha ? std::size_t{4} : 3) * static_cast<std::size_t>(width);
   for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
     image.rows.push_back(const_cast<std::uint8_t*>(pixels.data()) + y * stride);
@@ -36,18 +36,19 @@ void writeChunk(png_structp png, png_bytep data, png_size_t size) {
   const auto& write = *static_cast<const WriteBytes*>(png_get_io_ptr(png));
   if (!write(std::as_bytes(std::span(data, size)))) png_error(png, "the file cannot be written");
 }
-void flushNothing(png_structp) {}
-void keepQuiet(png_structp, png_const_charp) {}
+void flushNoFile(png_structp) {}
+void keepQuietOfWriting(png_structp, png_const_charp) {}
 
 // No C++ object with a destructor is alive across libpng's longjmp.
 bool encode(const WriteBytes* write, const PngRows* image) {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, keepQuiet);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, keepQuietOfWriting);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   if (!info || setjmp(png_jmpbuf(png))) {  // NOLINT: libpng's way to report
     png_destroy_write_struct(&png, &info);
     return false;
   }
-  png_set_write_fn(png, const_cast<WriteBytes*>(write), writeChunk, flushNothing);
+  png_set_write_fn(png, const_cast<WriteBytes*>(write), writeChunk, flushNoFile);
   png_set_compression_level(png, image->compression);
   png_set_IHDR(png, info, static_cast<png_uint_32>(image->width),
                static_cast<png_uint_32>(image->height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,

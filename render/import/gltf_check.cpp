@@ -44,14 +44,14 @@ constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
 // Normals are made anew; assimp converts colours.
 constexpr std::string_view kFloats[] = {"POSITION", "TEXCOORD_", "WEIGHTS_"};
 
-Error malformed(const std::string& what) { return {Errc::kMalformed, "glTF: " + what}; }
+Error malformedGltf(const std::string& what) { return {Errc::kMalformed, "glTF: " + what}; }
 
 // The array of that name: an empty one if there is none.
 Result<const json*> arrayOf(const json& object, const char* name) {
   static const json kEmpty = json::array();
   const json* found = memberOf(object, name);
   if (!found) return &kEmpty;
-  if (!found->is_array()) return malformed(fmt::format("{} is not an array", name));
+  if (!found->is_array()) return malformedGltf(fmt::format("{} is not an array", name));
   return found;
 }
 
@@ -59,14 +59,14 @@ Result<const json*> arrayOf(const json& object, const char* name) {
 Result<std::optional<std::string_view>> textOf(std::string_view file) {
   constexpr std::size_t kHead = 12, kChunkHead = 8;
   if (!file.starts_with("glTF")) return std::optional(file);
-  if (file.size() < kHead + kChunkHead) return malformed("is cut in its first 20 bytes");
+  if (file.size() < kHead + kChunkHead) return malformedGltf("is cut in its first 20 bytes");
   const auto* p = reinterpret_cast<const std::uint8_t*>(file.data());
   if (loadLe32(p + 4) != 2) return std::optional<std::string_view>();
   const std::size_t length = loadLe32(p + kHead);
-  if (file.substr(kHead + 4, 4) != "JSON") return malformed("its first chunk is not JSON");
+  if (file.substr(kHead + 4, 4) != "JSON") return malformedGltf("its first chunk is not JSON");
   if (length > file.size() - kHead - kChunkHead)
-    return malformed(fmt::format("its first chunk has {} bytes, {} are there", length,
-                                 file.size() - kHead - kChunkHead));
+    return malformedGltf(fmt::format("its first chunk has {} bytes, {} are there", length,
+                                     file.size() - kHead - kChunkHead));
   const std::string_view text = file.substr(kHead + kChunkHead, length);
   // Some writers fill the chunk with zeros instead of blanks.
   return std::optional(text.substr(0, text.find_last_not_of('\0') + 1));
@@ -85,7 +85,8 @@ Result<Ok> checkExtensions(const json& model) {
   const auto required = arrayOf(model, "extensionsRequired");
   if (!required) return required.error();
   for (const json& name : **required) {
-    if (!name.is_string()) return malformed("extensionsRequired has an entry that is not a name");
+    if (!name.is_string())
+      return malformedGltf("extensionsRequired has an entry that is not a name");
     const auto& text = name.get_ref<const std::string&>();
     if (std::ranges::find(kHarmless, text) != std::end(kHarmless)) continue;
     return Error{Errc::kUnsupported,
@@ -103,11 +104,11 @@ Result<Ok> checkAttribute(const json& accessors, const std::string& where, const
   if (std::ranges::none_of(kFloats, reads)) return Ok{};
   const std::string what = fmt::format("{}: {}", where, oneLine(excerpt(name)));
   if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size())
-    return malformed(fmt::format("{} names no accessor; there are {}", what, accessors.size()));
+    return malformedGltf(fmt::format("{} names no accessor; there are {}", what, accessors.size()));
   const auto number = index.get<std::uint64_t>();
   const json* type = memberOf(accessors[number], "componentType");
   if (!type || !type->is_number_integer())
-    return malformed(fmt::format("accessor {} has no componentType", number));
+    return malformedGltf(fmt::format("accessor {} has no componentType", number));
   if (type->get<std::int64_t>() == kFloat) return Ok{};
   return Error{Errc::kUnsupported,
                fmt::format("{} is quantised (accessor {} has componentType {}); only floats "
@@ -147,7 +148,7 @@ Result<Ok> checkMesh(const json& accessors, std::size_t number, const json& mesh
     const std::string where = fmt::format("mesh {}, primitive {}", number, p);
     const json& primitive = (**primitives)[p];
     const json* attributes = memberOf(primitive, "attributes");
-    if (!attributes || !attributes->is_object()) return malformed(where + " has no attributes");
+    if (!attributes || !attributes->is_object()) return malformedGltf(where + " has no attributes");
     for (const auto& [name, index] : attributes->items()) {
       if (const auto good = checkAttribute(accessors, where, name, index); !good) return good;
       if (name.starts_with('_')) all.own_attributes.insert(oneLine(excerpt(name)));
@@ -165,7 +166,7 @@ Result<GltfPromise> checkGltf(std::string_view file) {
   if (!text) return text.error();
   if (!*text) return all;
   const json model = json::parse((*text)->begin(), (*text)->end(), nullptr, false);
-  if (!model.is_object()) return malformed("its JSON is damaged or cut");
+  if (!model.is_object()) return malformedGltf("its JSON is damaged or cut");
   if (isFirstVersion(model)) return all;
   if (const auto good = checkExtensions(model); !good) return good.error();
   const auto accessors = arrayOf(model, "accessors"), meshes = arrayOf(model, "meshes");

@@ -6,19 +6,6 @@
 #include <numeric>
 
 namespace merlin::render::mesh {
-namespace {
-
-// Hash of the bits of three numbers. Numbers that compare equal have the same hash: -0 + 0 is 0.
-std::size_t hashOf(const float* p) {
-  std::uint64_t h = 0;
-  for (int k = 0; k < 3; ++k) {
-    h = (h ^ std::bit_cast<std::uint32_t>(p[k] + 0.0F)) * 0x9E3779B97F4A7C15U;
-    h ^= h >> 32;
-  }
-  return static_cast<std::size_t>(h);
-}
-
-}  // namespace
 
 std::vector<std::uint32_t> coincidentVerticesBySorting(std::span<const float> positions) {
   const std::size_t n = positions.size() / 3;
@@ -51,7 +38,7 @@ std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions) 
   // More probes than this mean positions that were crafted to collide.
   std::size_t steps_left = 16 * n + 1024;
   for (std::uint32_t v = 0; v < n; ++v) {
-    std::size_t k = hashOf(at(v)) & (last.size() - 1);
+    std::size_t k = hashOfPlace(at(v)) & (last.size() - 1);
     while (last[k] != kEmpty && !std::equal(at(v), at(v) + 3, at(last[k]))) {
       k = (k + 1) & (last.size() - 1);
       if (--steps_left == 0) return coincidentVerticesBySorting(positions);

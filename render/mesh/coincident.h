@@ -2,11 +2,22 @@
 // makes, and triangle soups whose triangles share no vertices.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace merlin::render::mesh {
+
+// Hash of the bits of a position. Coordinates that compare equal count as equal: -0 + 0 is 0.
+inline std::uint64_t hashOfPlace(const float* position) noexcept {
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) {
+    h = (h ^ std::bit_cast<std::uint32_t>(position[k] + 0.0F)) * 0x9E3779B97F4A7C15U;
+    h ^= h >> 32;
+  }
+  return h;
+}
 
 // Links coincident vertices into rings. Entry v is the next higher index of a vertex at the
 // position of v; the highest index is followed by the lowest. A vertex that is alone at its

@@ -8,33 +8,15 @@
 #include <utility>
 
 #include "render/mesh/coincident.h"
+#include "render/mesh/disjoint_sets.h"
+#include "render/mesh/parts.h"
 
 namespace merlin::render::mesh {
 namespace {
 
 using Index = std::uint32_t;
-using Point = std::array<double, 3>;
 
 constexpr double kUnitTolerance = 1e-3;
-
-// Disjoint sets of numbers; the root of a set is its smallest number.
-class Sets {
- public:
-  explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-  Index rootOf(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(Index a, Index b) {
-    a = rootOf(a);
-    b = rootOf(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 // Numbers sorted by a key below `keys`, in order of the numbers: those of key k are at
 // [begin[k], begin[k + 1]).
@@ -63,12 +45,12 @@ class Inspector {
     joinPlaces();
     keepTriangles();
     dropDuplicates();
-    Sets corners(corners_.size());  // of triangles that are connected by edges around a vertex
-    Sets places(mesh_.vertexCount());
+    DisjointSets corners(
+        corners_.size());  // of triangles that are connected by edges around a vertex
     lookAtEdges(corners);
     countFans(corners);
     joinBorders(corners);
-    countComponents(places);
+    countParts();
     return std::move(result_);
   }
 
@@ -82,20 +64,18 @@ class Inspector {
   void joinPlaces();
   void keepTriangles();
   void dropDuplicates();
-  void lookAtEdges(Sets& corners);
-  void lookAtEdge(const Index* begin, const Index* end, Sets& corners);
-  void countFans(Sets& corners);
-  void joinBorders(Sets& corners);
-  void countComponents(Sets& places);
+  void lookAtEdges(DisjointSets& corners);
+  void lookAtEdge(const Index* begin, const Index* end, DisjointSets& corners);
+  void countFans(DisjointSets& corners);
+  void joinBorders(DisjointSets& corners);
+  void countParts();
   std::array<Index, 3> sortedCorners(Index triangle) const;
-  double volumeOf(Index triangle) const;
 
   const Mesh& mesh_;
   Inspection result_;
   std::vector<Index> place_;    // by vertex: the first vertex at its position
   std::vector<Index> corners_;  // by corner of the triangles that count: its place
   std::vector<Index> borders_;  // corners at which an edge begins that no other triangle has
-  std::vector<bool> is_open_;   // triangles with an edge without exactly two consistent sides
 };
 
 void Inspector::lookAtVertices() {
@@ -180,11 +160,10 @@ void Inspector::dropDuplicates() {
 
 // An edge is named by the corner at which it begins; edges between two places are neighbours once
 // they are sorted by the smaller place and then by the other.
-void Inspector::lookAtEdges(Sets& corners) {
+void Inspector::lookAtEdges(DisjointSets& corners) {
   const auto other = [&](Index c) { return std::max(corners_[c], corners_[behind(c)]); };
   Buckets edges(place_.size(), corners_.size(),
                 [&](Index c) { return std::min(corners_[c], corners_[behind(c)]); });
-  is_open_.resize(triangles());
   for (std::size_t v = 0; v < place_.size(); ++v) {
     Index* begin = edges.items.data() + edges.begin[v];
     Index* const end = edges.items.data() + edges.begin[v + 1];
@@ -200,21 +179,20 @@ void Inspector::lookAtEdges(Sets& corners) {
 }
 
 // Examines one edge. begin, end: the corners at which its triangles begin it.
-void Inspector::lookAtEdge(const Index* begin, const Index* end, Sets& corners) {
+void Inspector::lookAtEdge(const Index* begin, const Index* end, DisjointSets& corners) {
   const auto count = end - begin;
   if (count == 1) borders_.push_back(*begin);
   if (count > 2) ++result_.non_manifold_edges;
   const bool turned = count == 2 && corners_[begin[0]] == corners_[begin[1]];
   if (turned) ++result_.turned_edges;
   for (const Index* c = begin; c != end; ++c) {
-    if (count != 2 || turned) is_open_[*c / 3] = true;
     const bool same = corners_[*c] == corners_[*begin];
     corners.unite(*begin, same ? *c : behind(*c));
     corners.unite(behind(*begin), same ? behind(*c) : *c);
   }
 }
 
-void Inspector::countFans(Sets& corners) {
+void Inspector::countFans(DisjointSets& corners) {
   std::vector<std::uint8_t> fans(place_.size());
   for (Index c = 0; c < corners_.size(); ++c) {
     std::uint8_t& count = fans[corners_[c]];
@@ -226,7 +204,7 @@ void Inspector::countFans(Sets& corners) {
 
 // Joins border edges to holes: where a fan of triangles ends, its two border edges follow each
 // other.
-void Inspector::joinBorders(Sets& corners) {
+void Inspector::joinBorders(DisjointSets& corners) {
   for (const Index c : borders_) corners.unite(c, behind(c));
   std::vector<Index> hole_of(corners_.size());  // 0: none yet, else its place + 1
   for (const Index c : borders_) {
@@ -244,41 +222,14 @@ void Inspector::joinBorders(Sets& corners) {
                    [](const Hole& a, const Hole& b) { return a.length > b.length; });
 }
 
-// Six times the signed volume between the triangle and the box's middle.
-double Inspector::volumeOf(Index triangle) const {
-  std::array<Point, 3> p{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[i][k] = double{at(corners_[3 * std::size_t{triangle} + i])[k]} -
-                (double{result_.box.low[k]} + double{result_.box.high[k]}) / 2;
-    }
-  }
-  const auto& [a, b, c] = p;
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
-void Inspector::countComponents(Sets& places) {
-  for (std::size_t i = 0; i < corners_.size(); i += 3) {
-    places.unite(corners_[i], corners_[i + 1]);
-    places.unite(corners_[i], corners_[i + 2]);
-  }
-  std::vector<double> volume(place_.size());
-  std::vector<bool> found(place_.size()), open(place_.size());
-  for (Index t = 0; t < triangles(); ++t) {
-    const Index root = places.rootOf(corners_[3 * std::size_t{t}]);
-    found[root] = true;
-    if (is_open_[t]) open[root] = true;
-    volume[root] += volumeOf(t);
-  }
-  for (std::size_t v = 0; v < place_.size(); ++v) {
-    if (!found[v]) continue;
-    ++result_.components;
-    if (open[v]) continue;
-    ++result_.closed;
-    result_.volume += volume[v] / 6;
-    if (volume[v] < 0) ++result_.inside_out;
-  }
+void Inspector::countParts() {
+  if (triangles() == 0) return;
+  const Parts parts = partsOf(mesh_);
+  const Facing facing = facingOf(parts);
+  result_.components = parts.parts.size();
+  result_.closed = facing.closed;
+  result_.inside_out = facing.inwards;
+  for (const Part& part : parts.parts) result_.volume += part.volume;
 }
 
 }  // namespace

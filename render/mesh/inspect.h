@@ -1,4 +1,4 @@
-// Inspects a mesh: counts its components, its holes and its defects.
+// Inspects a mesh: counts its parts, its holes and its defects.
 #pragma once
 
 #include <cstddef>
@@ -23,11 +23,10 @@ struct Hole {
 
 struct Inspection {
   Box box;                                // of the vertices that have finite coordinates
-  std::size_t components = 0;             // sets of triangles that are connected by vertices
-  std::size_t closed = 0;                 // components in which each edge has two triangles, which
-                                          // face the same side of the surface
-  std::size_t inside_out = 0;             // closed components with a negative volume
-  double volume = 0;                      // of all closed components [model units^3]
+  std::size_t components = 0;             // connected parts, as in render/mesh/parts.h
+  std::size_t closed = 0;                 // closed parts
+  std::size_t inside_out = 0;             // closed parts that face inwards
+  double volume = 0;                      // of all closed parts [model units^3]
   std::vector<Hole> holes;                // longest first
   std::size_t degenerate = 0;             // triangles with two corners at the same position
   std::size_t no_area = 0;                // other triangles whose corners are on one line
@@ -43,9 +42,9 @@ struct Inspection {
 // Fills in all of the above. Coincident vertices count as one vertex, so that neither the seams of
 // a texture nor the copies that splitNonManifold() makes count as borders; but if any coordinate of
 // the mesh is not finite, no vertices are joined. Degenerate and duplicate triangles are counted
-// and then ignored. Expected O(n), apart from sorting the triangles of each vertex; about 100 bytes
-// per triangle. Same input, same result. Reentrant. REQUIRES: every index is in range, every
-// feature has the right size.
+// and then ignored, but a part that has a triangle twice is not closed. Expected O(n), apart from
+// sorting the triangles of each vertex; about 100 bytes per triangle. Same input, same result.
+// Reentrant. REQUIRES: every index is in range, every feature has the right size.
 Inspection inspect(const Mesh& mesh);
 
 ValueRange rangeOf(const Feature& feature);

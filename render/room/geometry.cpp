@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
+
+#include "daemon/base/radian.h"
 
 namespace merlin::render::room {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180;
-
 Eigen::Matrix3d yaw(double degrees) {
-  return Eigen::AngleAxisd(degrees * kRadian, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  return Eigen::AngleAxisd(degrees * kRadian<double>, Eigen::Vector3d::UnitY()).toRotationMatrix();
 }
 
 Eigen::Matrix3d pitch(double degrees) {
-  return Eigen::AngleAxisd(degrees * kRadian, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  return Eigen::AngleAxisd(degrees * kRadian<double>, Eigen::Vector3d::UnitX()).toRotationMatrix();
 }
 
 // Part of a screen. `part_m`: distances of its left and lower edge from the screen's, width and
@@ -63,7 +62,7 @@ ScreenView viewFrom(const Eigen::Vector3d& eye_m, const Screen& screen) {
   const auto angle = [&](const Eigen::Vector3d& edge) {
     const double low = edge.normalized().dot(screen.corner - eye_m);
     return (std::atan2(low + edge.norm(), view.distance_m) - std::atan2(low, view.distance_m)) /
-           kRadian;
+           kRadian<double>;
   };
   view.width_deg = angle(screen.across);
   view.height_deg = angle(screen.up);

@@ -1,16 +1,15 @@
 #include "render/room/presets.h"
 
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "daemon/base/radian.h"
+
 namespace merlin::render::room {
 namespace {
-
-constexpr double kRadian = std::numbers::pi / 180;
 
 constexpr const char* kThree[] = {"left", "centre", "right"};
 constexpr const char* kUpper[] = {"upper_left", "upper_centre", "upper_right"};
@@ -38,7 +37,7 @@ Chain flatRow(std::size_t count) {
 // Distance between the viewer and the front panel at which all panels of a bent chain are equally
 // far away.
 double distanceOfMiddle(double width, double hinge_deg) {
-  return width / 2 / std::tan((180 - hinge_deg) / 2 * kRadian);
+  return width / 2 / std::tan((180 - hinge_deg) / 2 * kRadian<double>);
 }
 
 // Adds the panels; the front one is `distance` ahead, with its lower edge at height `bottom` [m].
@@ -49,8 +48,8 @@ void addChain(const Chain& chain, const RoomPresetSettings& p, double distance, 
   double x = 0, z = -distance, yaw_deg = 0;
   for (double left = chain.front + 0.5; left > 0;) {
     const double part = std::fmod(left, 1.0) > 0 ? std::fmod(left, 1.0) : 1.0;
-    x -= part * p.panel_width_m * std::cos(yaw_deg * kRadian);
-    z += part * p.panel_width_m * std::sin(yaw_deg * kRadian);
+    x -= part * p.panel_width_m * std::cos(yaw_deg * kRadian<double>);
+    z += part * p.panel_width_m * std::sin(yaw_deg * kRadian<double>);
     left -= part;
     if (left > 0) yaw_deg += turn_deg;
   }

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
 
+#include "daemon/base/radian.h"
 #include "render/room/geometry.h"
 #include "render/tiles/plane_parts.h"
 
 namespace merlin::render::room {
 namespace {
-
-constexpr double kRadian = std::numbers::pi / 180;
 
 // Tangents of the angles between a tile's direction and its edges.
 struct Edges {
@@ -48,12 +46,13 @@ TileFigures figuresOf(const tiles::TileSettings& settings, const tiles::Tile& ti
   f.view = tile.camera;
   if (tile.isFitted() && tile.kind != tiles::TileKind::kOperator) return f;
   const Edges e = edgesOf(tile.projection);
-  f.horizontal_deg = (std::atan(e.right) - std::atan(e.left)) / kRadian;
-  f.vertical_deg = (std::atan(e.upper) - std::atan(e.lower)) / kRadian;
+  f.horizontal_deg = (std::atan(e.right) - std::atan(e.left)) / kRadian<double>;
+  f.vertical_deg = (std::atan(e.upper) - std::atan(e.lower)) / kRadian<double>;
   const Eigen::Vector3d middle =
       inEyeCoordinates(tile, (e.left + e.right) / 2, (e.lower + e.upper) / 2);
-  f.yaw_deg = plainAngle(std::atan2(-middle.x(), -middle.z()) / kRadian);
-  f.pitch_deg = plainAngle(std::atan2(middle.y(), std::hypot(middle.x(), middle.z())) / kRadian);
+  f.yaw_deg = plainAngle(std::atan2(-middle.x(), -middle.z()) / kRadian<double>);
+  f.pitch_deg =
+      plainAngle(std::atan2(middle.y(), std::hypot(middle.x(), middle.z())) / kRadian<double>);
   if (!settings.hasScreen()) return f;
   const Screen screen = screenOf(settings);
   const double width = screen.across.norm(), height = screen.up.norm();

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemon/base/radian.h"
+
 namespace merlin::render::scene {
 namespace {
-
-constexpr float kRadian = std::numbers::pi_v<float> / 180;
 
 Eigen::Isometry3f isometry(const Eigen::Quaternionf& q, const Eigen::Vector3f& p) {
   Eigen::Isometry3f t = Eigen::Isometry3f::Identity();
@@ -25,8 +25,8 @@ Eigen::AngleAxisf rotation(const Eigen::Vector3f& turn_rad) {
 
 ObjectNavigator::ObjectNavigator(const SceneSettings& settings)
     : hand_gain_(static_cast<float>(settings.hand_gain)) {
-  const auto yaw = static_cast<float>(settings.model_yaw_deg) * kRadian;
-  const auto pitch = static_cast<float>(settings.model_pitch_deg) * kRadian;
+  const auto yaw = static_cast<float>(settings.model_yaw_deg) * kRadian<float>;
+  const auto pitch = static_cast<float>(settings.model_pitch_deg) * kRadian<float>;
   const Eigen::Quaternionf turned = Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitY()) *
                                     Eigen::AngleAxisf(pitch, Eigen::Vector3f::UnitX());
   const Eigen::Vector3f place(0, 0, -static_cast<float>(settings.model_distance_m));

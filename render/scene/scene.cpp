@@ -6,10 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "daemon/base/radian.h"
+
 namespace merlin::render::scene {
 namespace {
 
-constexpr float kRadian = std::numbers::pi_v<float> / 180;
 // Longest time step of ball and flight, also after a frame that took longer.
 constexpr float kLongestStep_s = 0.1F;
 constexpr float kMostShear = 1e-4F;
@@ -170,7 +171,7 @@ bool Scene::moveByBall(const SceneInput& input, float seconds) {
   if (push.isZero(0) && twist.isZero(0)) return false;
   const Eigen::Vector3f way = push.cwiseProduct(vector(settings_.ball_speed_m_s)) * seconds;
   const Eigen::Vector3f turn =
-      twist.cwiseProduct(vector(settings_.ball_turn_deg_s)) * kRadian * seconds;
+      twist.cwiseProduct(vector(settings_.ball_turn_deg_s)) * kRadian<float> * seconds;
   navigator_->push(poses_, {way, turn}, mode_);
   return true;
 }
@@ -227,7 +228,7 @@ bool Scene::moveByHeld(const HeldMotion& held, float seconds) {
   const Push push{
       way.cwiseProduct(vector(settings_.ball_speed_m_s).cwiseAbs()) * kShare * seconds,
       (roll + (view ? -turn : turn)).cwiseProduct(vector(settings_.ball_turn_deg_s).cwiseAbs()) *
-          kRadian * kShare * seconds};
+          kRadian<float> * kShare * seconds};
   navigator_->push(poses_, push, mode_);
   moveByTouch({.spread = static_cast<float>(held.nearer) * kNearerPerSecond * seconds});
   return true;
@@ -256,7 +257,7 @@ bool Scene::moveByHand(const SceneInput& input, bool grab) {
   const float turn =
       Eigen::AngleAxisf(Eigen::Matrix3f(hand.linear() * last_hand_.linear().transpose())).angle();
   const bool moved = way > gate * static_cast<float>(settings_.hand_noise_m) ||
-                     turn > gate * static_cast<float>(settings_.hand_noise_deg) * kRadian;
+                     turn > gate * static_cast<float>(settings_.hand_noise_deg) * kRadian<float>;
   if (moved) last_hand_ = hand;
   if (!moved && !view_.moving) return false;
   navigator_->carry(poses_, grabbed_, *grab_hand_, hand);

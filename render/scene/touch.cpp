@@ -36,7 +36,8 @@ std::vector<Moved> fingersInBoth(const TouchSample& before, const TouchSample& n
 }
 
 // The similarity about the middles that fits best: its rotation and the ratio of its lengths, from
-// the sums of the dot and cross products of the fingers' arms (least squares).
+// the sums of the dot and cross products of the fingers' arms (least squares). The spread is added
+// to that of a mouse's wheel.
 void addTurn(const std::vector<Moved>& fingers, const Moved& middle, TouchMotion& motion) {
   float dot = 0, cross = 0, length = 0, length_now = 0;
   for (const Moved& f : fingers) {
@@ -49,7 +50,7 @@ void addTurn(const std::vector<Moved>& fingers, const Moved& middle, TouchMotion
   const float least = kTooClose * kTooClose;
   if (length < least || length_now < least) return;
   motion.turn_rad = std::atan2(cross, dot);
-  motion.spread = std::log(length_now / length) / 2;
+  motion.spread += std::log(length_now / length) / 2;
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
 #include <Eigen/Geometry>
+
+#include "daemon/base/radian.h"
 
 namespace merlin::render::stereo {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180;
 // Further than any room is wide: a tracker that says so is broken.
 constexpr double kFarthest_m = 1000;
 
@@ -50,7 +50,7 @@ bool Head::isBeyondDeadBand(const tiles::Viewer& viewer) const {
   if ((viewer.place_m - anchor_.place_m).norm() > settings_.dead_band_m) return true;
   const double turn =
       std::atan2(viewer.eyes_m.cross(anchor_.eyes_m).norm(), viewer.eyes_m.dot(anchor_.eyes_m));
-  return turn > settings_.dead_band_deg * kRadian;
+  return turn > settings_.dead_band_deg * kRadian<double>;
 }
 
 Head::View Head::update(const std::optional<TrackerSample>& sample, Timestamp now) {

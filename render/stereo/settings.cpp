@@ -273,4 +273,28 @@ SettingFaults validate(const StereoSettings& stereo, const tiles::TilesSettings&
   return faults;
 }
 
+SettingFaults doubtsOf(const StereoSettings& s) {
+  constexpr double kWideEyes_m = 0.2, kFarScreen_m = 50;
+  SettingFaults doubts;
+  if (s.isOn() && s.eye_separation_m == 0) {
+    doubts.push_back({"/stereo/eye_separation_m",
+                      fmt::format("is 0 in stereo mode {}: both eyes see the same picture, without "
+                                  "depth; people's are 0.05 to 0.075 m",
+                                  nameOf(s.mode))});
+  }
+  if (s.isOn() && s.eye_separation_m > kWideEyes_m) {
+    doubts.push_back({"/stereo/eye_separation_m",
+                      fmt::format("is {} m: everything has {:.3g} times the parallax of eyes that "
+                                  "are 0.063 m apart; is it meant in metres?",
+                                  s.eye_separation_m, s.eye_separation_m / 0.063)});
+  }
+  if (s.screen_distance_m > kFarScreen_m) {
+    doubts.push_back({"/stereo/screen_distance_m",
+                      fmt::format("is {} m: what is nearer than that appears in front of the "
+                                  "screen; is it meant in metres?",
+                                  s.screen_distance_m)});
+  }
+  return doubts;
+}
+
 }  // namespace merlin::render::stereo

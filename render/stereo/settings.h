@@ -73,4 +73,8 @@ struct StereoSettings {
 SettingFaults validate(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
                        const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
 
+// Values that can be shown, but are probably not meant: eyes at one place, and distances that seem
+// to be given in centimetres or millimetres. Pointers as of validate(). Pure.
+SettingFaults doubtsOf(const StereoSettings& stereo);
+
 }  // namespace merlin::render::stereo

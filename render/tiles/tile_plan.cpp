@@ -2,21 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
 
+#include "daemon/base/radian.h"
 #include "render/tiles/wall_layout.h"
 
 namespace merlin::render::tiles {
 namespace {
 
-constexpr double kRadian = std::numbers::pi / 180;
-
 // View matrix (eye to view coordinates) of TileSettings::direction_deg: the inverse of the rotation
 // by yaw, pitch and roll, in this order.
 Eigen::Matrix4f directionView(const std::array<double, 3>& degrees) {
-  const auto radian = [&](std::size_t i) { return static_cast<float>(degrees[i] * kRadian); };
+  const auto radian = [&](std::size_t i) {
+    return static_cast<float>(degrees[i] * kRadian<double>);
+  };
   const Eigen::Matrix3f turn = (Eigen::AngleAxisf(radian(0), Eigen::Vector3f::UnitY()) *
                                 Eigen::AngleAxisf(radian(1), Eigen::Vector3f::UnitX()) *
                                 Eigen::AngleAxisf(radian(2), Eigen::Vector3f::UnitZ()))
@@ -54,7 +54,7 @@ void lookThroughScreen(const Eigen::Vector3d& eye, double nearest_m, double fart
 
 // Whether an eye sees the front of a screen, less than 179 degrees wide and high.
 bool seesFront(const std::array<double, 9>& screen, const Eigen::Vector3d& eye) {
-  constexpr double kWidest = 179 * kRadian;
+  constexpr double kWidest = 179 * kRadian<double>;
   const Eigen::Vector3d corner = Eigen::Vector3d(&screen[0]) - eye;
   const Eigen::Vector3d across = Eigen::Vector3d(&screen[3]) - eye - corner;
   const Eigen::Vector3d up = Eigen::Vector3d(&screen[6]) - eye - corner;
@@ -76,13 +76,13 @@ void lookThrough(const FreeCamera& camera, const TilesSettings& s, Tile& tile) {
   view.block<1, 3>(2, 0) = back.transpose();
   view.block<3, 1>(0, 3) = -view.topLeftCorner<3, 3>() * eye;
   tile.view = view.cast<float>();
-  tile.projection = perspective(static_cast<float>(camera.field_of_view_deg * kRadian),
+  tile.projection = perspective(static_cast<float>(camera.field_of_view_deg * kRadian<double>),
                                 static_cast<float>(tile.width) / static_cast<float>(tile.height),
                                 static_cast<float>(s.near_m), static_cast<float>(s.far_m));
 }
 
 Tile tileOf(const TileSettings& t, const TilesSettings& s) {
-  const double fov = s.field_of_view_deg * kRadian;
+  const double fov = s.field_of_view_deg * kRadian<double>;
   const auto near_m = static_cast<float>(s.near_m), far_m = static_cast<float>(s.far_m);
   Tile tile{t.name,
             t.kind,
@@ -110,7 +110,7 @@ Tile tileOf(const TileSettings& t, const TilesSettings& s) {
   if (t.hasDirection()) tile.view = directionView(t.direction_deg) * tile.view;
   if (t.hasFrustum()) {
     const auto tangent = [&](std::size_t i) {
-      return static_cast<float>(std::tan(t.frustum_deg[i] * kRadian));
+      return static_cast<float>(std::tan(t.frustum_deg[i] * kRadian<double>));
     };
     tile.projection = offAxis(tangent(0), tangent(1), tangent(2), tangent(3), near_m, far_m);
   } else {

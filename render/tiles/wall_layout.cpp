@@ -8,12 +8,13 @@
 #include <numbers>
 #include <vector>
 
+#include "daemon/base/radian.h"
+
 namespace merlin::render::tiles {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRadian = std::numbers::pi / 180;
 constexpr double kSame = 1e-4;  // places that differ by less are equal [rad or m]
 
 // What a tile covers along one axis. `rank`: `middle` in steps of kSame, so that rounding does not
@@ -54,7 +55,7 @@ Extent acrossOf(const Tile& tile, const TileSettings& settings, double field_of_
   const double yaw = yawOf(directionOf(tile, 0, 0));
   double left = yaw;
   if (!settings.hasScreen())
-    left = settings.turns * field_of_view + settings.direction_deg[0] * kRadian;
+    left = settings.turns * field_of_view + settings.direction_deg[0] * kRadian<double>;
   else if (yaw < kSame - std::numbers::pi)
     left = yaw + 2 * std::numbers::pi;
   Extent extent{-left, 0};
@@ -84,7 +85,7 @@ std::vector<SeenTile> seenTiles(TilePlan& plan, const TilesSettings& s) {
   for (std::size_t i = 0; i < plan.tiles.size(); ++i) {
     Tile& tile = plan.tiles[i];
     if (!tile.followsWall() || tile.eye == Eye::kRight) continue;
-    seen.push_back({&tile, acrossOf(tile, s.tiles[i], s.field_of_view_deg * kRadian), {}});
+    seen.push_back({&tile, acrossOf(tile, s.tiles[i], s.field_of_view_deg * kRadian<double>), {}});
     all_have_screens = all_have_screens && s.tiles[i].hasScreen();
   }
   for (SeenTile& t : seen)

@@ -1,5 +1,6 @@
-// ./dev bench correct: what an output's correction costs a frame, beside a memcpy of as many bytes:
-// each part of it alone and all together, on all processors, on one, and by a shader.
+// ./dev bench correct: what an output's correction costs a frame, beside a memcpy of as many bytes
+// and as a share of the period of a frame: each part of it alone and all together, on all
+// processors, on one, and by a shader.
 //
 // The picture is noise of 1280 x 960 pixels, as large as the demo's frame. Nothing but the loop
 // runs, so that the tables come from memory as they do in a wall, where a frame lies between two
@@ -20,6 +21,7 @@
 #include "render/correct/gpu/shader_pass.h"
 #include "render/correct/output_correction.h"
 #include "render/gl/gl_context.h"
+#include "render/governor/settings.h"
 #include "tests/bench/figures.h"
 
 namespace merlin::bench {
@@ -29,6 +31,7 @@ using Steady = std::chrono::steady_clock;
 using render::correct::CorrectionSettings;
 
 constexpr int kWidth = 1280, kHeight = 960;
+constexpr double kRate_hz = render::governor::GovernorSettings{}.rate_hz;  // the demo's too
 
 double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
@@ -120,9 +123,12 @@ std::vector<double> measureInTurn(int frames, std::vector<Subject>& subjects) {
 void printSubject(const Subject& subject, const Measured& memcpy_ms, Report& report) {
   const Measured ms = medianOf(subject.passes, "passes of " + subject.name);
   const Measured ratio = ratioOf(ms, memcpy_ms, subject.name + " beside memcpy");
-  report.text("  {:<22} {:7.2f} ms, {:.1f} memcpys\n", subject.name, ms.value(), ratio.value());
+  const Measured share = scaled(ms, kRate_hz / 1000);
+  report.text("  {:<22} {:7.2f} ms, {:.1f} memcpys, {:.1f} % of a frame at {:g} Hz\n", subject.name,
+              ms.value(), ratio.value(), 100 * share.value(), kRate_hz);
   report.figure(subject.name + "_ms", ms, "ms");
   report.figure(subject.name + "_per_memcpy", ratio, "1");
+  report.figure(subject.name + "_per_frame", share, "1");
 }
 
 bool measure(int frames, const std::string& gpu, Report& report) {

@@ -2,7 +2,8 @@
 // and UBSan: a fault ends it. Prints how many packets each recovered.
 //
 // Half of the bytes are random; the other half is a good stream in which every so often a byte is
-// flipped, lost, doubled or replaced by a burst, so that a parser is hit in the middle of its work.
+// flipped, lost, doubled or replaced by a burst, or four bytes by an extreme length, so that a
+// parser is hit in the middle of its work.
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -28,6 +29,7 @@
 #include "drivers/tuio/sources.h"
 #include "drivers/vrpn/protocol.h"
 #include "tests/bench/figures.h"
+#include "tests/support/extreme_length.h"
 #include "tests/support/osc_packets.h"
 
 namespace merlin::bench {
@@ -267,7 +269,7 @@ const Target kTargets[] = {
 std::string mutated(std::string bytes, Random& r) {
   if (bytes.empty()) return bytes;
   const std::size_t at = r.below(bytes.size());
-  switch (r.below(8)) {
+  switch (r.below(10)) {
     case 0: bytes[at] = static_cast<char>(bytes[at] ^ 1 << r.below(8)); break;
     case 1: bytes.erase(at, 1); break;
     case 2: bytes.insert(at, 1, bytes[at]); break;
@@ -275,6 +277,7 @@ std::string mutated(std::string bytes, Random& r) {
       for (std::uint64_t i = r.below(40); i > 0; --i)
         bytes.insert(at, 1, static_cast<char>(r.next()));
       break;
+    case 4: test::writeExtremeLength(bytes, at, r); break;
     default: break;
   }
   return bytes;

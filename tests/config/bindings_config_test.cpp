@@ -61,10 +61,73 @@ TEST(BindingsConfig, ChordsThatConflictAreFoundInEitherOrder) {
       << "both are held";
   EXPECT_NE(bindingsAre(chord("2", "1", "grab") + "," + alone("1", "fly")).find(both),
             std::string::npos);
-  EXPECT_EQ(bindingsAre(chord("1", "2", "next_mode") + "," + chord("2", "1", "reset_view")), "");
+  EXPECT_EQ(bindingsAre(chord("1", "2", "align_undo") + ",\n" + chord("2", "1", "reset_view")),
+            "f.json:2: /bindings/1 conflicts with /bindings/0 (line 1): \"button.2\" with "
+            "\"button.1\" is the same chord, named in the other order, and would both align_undo "
+            "and reset_view\n");
+  EXPECT_NE(bindingsAre(chord("1", "2", "grab") + "," + chord("2", "1", "reset_view"))
+                .find("is the same chord"),
+            std::string::npos)
+      << "one lasts, the other happens once";
   EXPECT_EQ(bindingsAre(alone("1", "next_mode") + "," + chord("2", "1", "fly")), "");
   EXPECT_EQ(bindingsAre(chord("2", "1", "move_left") + "," + chord("3", "1", "move_right")), "")
       << "button 1 is held like a shift key";
+}
+
+TEST(BindingsConfig, OneMomentChangesWhatIsShownInOneWay) {
+  const auto bound = [](const char* action, const char* also) {
+    return fmt::format(R"({{"input": "button.1", "action": "{}"{}}})", action, also);
+  };
+  const char *const held = R"(, "after_s": 1)", *const longer = R"(, "after_s": 2)";
+  const char* const chord = R"(, "with": "button.2")";
+  const char* const left = R"(, "on": "leave")";
+  for (const char* const also : {"", held, chord, left}) {
+    EXPECT_NE(bindingsAre(bound("reset_view", also) + ",\n" + bound("blank", also))
+                  .find("f.json:2: /bindings/1 conflicts with /bindings/0 (line 1): \"button.1\" "
+                        "would both reset_view and blank when "),
+              std::string::npos)
+        << also;
+  }
+  EXPECT_NE(bindingsAre(bound("next_mode", held) + "," + bound("freeze", held))
+                .find("; of the actions that change what is shown or what the ball moves, an input "
+                      "triggers only one at a time\n"),
+            std::string::npos);
+  const char* const moments[] = {"", held, longer, chord, left};
+  for (const char* const one : moments) {
+    for (const char* const other : moments) {
+      if (one == other) continue;
+      EXPECT_EQ(bindingsAre(bound("reset_view", one) + "," + bound("blank", other)), "")
+          << one << other;
+    }
+  }
+  EXPECT_EQ(bindingsAre(bound("grab", "") + "," + bound("reset_view", "")), "")
+      << "one lasts, the other happens once";
+  EXPECT_EQ(bindingsAre(bound("align_left", "") + "," + bound("align_up", "")), "");
+  EXPECT_EQ(findingsOf(loadSettings(R"({"wall": {"snapshots": "taken"}, "bindings": [)" +
+                                        bound("snapshot", "") + "," + bound("blank", "") + "]}",
+                                    "")),
+            "")
+      << "they act on different things";
+}
+
+TEST(BindingsConfig, AChordThatCannotHappenIsFound) {
+  const auto chord = [](const char* input, const char* with) {
+    return bindingsAre(
+        fmt::format(R"({{"input": "{}", "with": "{}", "action": "reset_view"}})", input, with));
+  };
+  EXPECT_EQ(chord("axis.x+", "axis.x-"),
+            "f.json:1: /bindings/0/with is \"axis.x-\", which is never held together with "
+            "\"axis.x+\", so the chord would never happen\n");
+  const char* const never[][2] = {{"axis.rz-", "axis.rz+"},        {"posture.fist", "posture.open"},
+                                  {"touch.pinch", "touch.spread"}, {"button.1", "posture.fist"},
+                                  {"button.1", "pinch"},           {"switch", "key.space"}};
+  for (const auto& [input, with] : never)
+    EXPECT_NE(chord(input, with).find("is never held together"), std::string::npos) << input;
+  const char* const possible[][2] = {{"axis.x+", "axis.y-"},     {"axis.x+", "axis.rx-"},
+                                     {"axis.x+", "button.12"},   {"button.1", "button.12"},
+                                     {"switch", "posture.fist"}, {"key.space", "button.1"},
+                                     {"pinch", "button.right"}};
+  for (const auto& [input, with] : possible) EXPECT_EQ(chord(input, with), "") << input;
 }
 
 TEST(BindingsConfig, AChordIsTheSameWithAndWithoutItsDevice) {

@@ -203,6 +203,34 @@ TEST(WallConfig, StereoIsCheckedWithTheRestOfTheWall) {
             "/hands/0 too; the head needs its own station\n");
 }
 
+// The nearest value in the range has another meaning: no stereo, and the distance of the wall.
+TEST(WallConfig, StereoDistancesOutOfRangeAreRefused) {
+  EXPECT_EQ(wallIs(R"("stereo": {"mode": "anaglyph", "eye_separation_m": -0.063})"),
+            "f.json:1: /wall/stereo/eye_separation_m is -0.063; allowed is 0 to 10; it is in "
+            "metres, people's are 0.05 to 0.075\n");
+  EXPECT_EQ(wallIs(R"("stereo": {"mode": "anaglyph", "eye_separation_m": 63})"),
+            "f.json:1: /wall/stereo/eye_separation_m is 63; allowed is 0 to 10; it is in metres, "
+            "people's are 0.05 to 0.075\n");
+  EXPECT_EQ(wallIs(R"("stereo": {"mode": "anaglyph", "screen_distance_m": -1})"),
+            "f.json:1: /wall/stereo/screen_distance_m is -1; allowed is 0 to 1000; it is in "
+            "metres, usually 1 to 10; 0 is /wall/scene/wall_distance_m\n");
+  const auto loaded = loadSettings(R"({"wall": {"stereo": {"eye_separation_m": -0.063}}})", "");
+  EXPECT_EQ(loaded.verdict(), Verdict::kInvalid);
+}
+
+TEST(WallConfig, StereoThatIsProbablyNotMeantIsSaidAndUsed) {
+  const auto loaded =
+      loadSettings(R"({"wall": {"stereo": {"mode": "anaglyph", "eye_separation_m": 0}}})", "");
+  EXPECT_EQ(loaded.verdict(), Verdict::kAdjusted);
+  EXPECT_EQ(findingsOf(loaded),
+            "f.json:1: /wall/stereo/eye_separation_m is 0 in stereo mode anaglyph: both eyes see "
+            "the same picture, without depth; people's are 0.05 to 0.075 m\n");
+  EXPECT_EQ(wallIs(R"("stereo": {"mode": "anaglyph", "size": "full"})"),
+            "f.json:1: /wall/stereo/size is full, which has no effect in stereo mode anaglyph: it "
+            "is for side_by_side and top_bottom; leave it out\n");
+  EXPECT_EQ(wallIs(R"("stereo": {"mode": "top_bottom", "size": "full"})"), "");
+}
+
 TEST(WallConfig, AnOverlayNeedsAnOperatorsTile) {
   EXPECT_EQ(wallIs(R"("operator": {"overlay": true})"), "");
   EXPECT_EQ(wallIs(R"("operator": {"overlay": true}, "tiles": {"frame_width": 640,

@@ -2,13 +2,16 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "daemon/alarms/alarm_queue.h"
 #include "daemon/alarms/child_program.h"
 #include "daemon/alarms/role_state.h"
 #include "daemon/alarms/told_events.h"
+#include "daemon/base/child_process.h"
 #include "daemon/json/json_tree.h"
 #include "tests/support/eventually.h"
 #include "tests/support/temp_dir.h"
@@ -191,6 +194,30 @@ TEST(ChildProgram, SaysHowItFailed) {
   const auto missing = ChildProgram::start({"/no/such/program"}, "", inAnHour());
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, Errc::kNotFound);
+}
+
+// In a child, whose limit is its own: there are descriptors for none to three of five files.
+TEST(ChildProgram, IsNamedWhereDescriptorsRanOut) {
+  const auto child = startChild();
+  ASSERT_TRUE(child);
+  if (*child == 0) {
+    const int next = ::dup(0);
+    ::close(next);
+    int named = 0;
+    for (const unsigned free : {0U, 1U, 3U}) {
+      const auto used = static_cast<rlim_t>(next);
+      const rlimit limit{used + free, used + 3};
+      if (::setrlimit(RLIMIT_NOFILE, &limit) != 0) ::_exit(100);
+      const auto started = ChildProgram::start({"/bin/true"}, "", inAnHour());
+      if (!started && started.error().what.starts_with("/bin/true: ") &&
+          started.error().what.ends_with(": Too many open files"))
+        ++named;
+    }
+    ::_exit(named);
+  }
+  const int status = waitForChild(*child);
+  ASSERT_TRUE(WIFEXITED(status)) << status;
+  EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
 TEST(ChildProgram, OfWhatItWritesTheBeginningIsKept) {

@@ -29,5 +29,14 @@ TEST(AlignedWall, EachMovedPointIsNamedWithWhatToAddInTheConfiguration) {
                 "steps that can be undone: 2, redone: 0"}));
 }
 
+TEST(AlignedWall, ARefusalIsTheReasonAlone) {
+  const auto reason = [](Errc code, const char* what) { return wallsReason({code, what}).what; };
+  EXPECT_EQ(reason(Errc::kInvalidArgument,
+                   "ipc:///run/merlin/wall-wall.command: align: there is nothing to undo"),
+            "there is nothing to undo");
+  EXPECT_EQ(reason(Errc::kTimeout, "ipc:///x: align: no answer"), "ipc:///x: align: no answer");
+  EXPECT_EQ(reason(Errc::kInvalidArgument, "there is no output"), "there is no output");
+}
+
 }  // namespace
 }  // namespace merlin::cli

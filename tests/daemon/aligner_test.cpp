@@ -200,7 +200,7 @@ TEST_F(AlignerTest, CornersThatTheConfigurationChangesAreTakenWithoutWhatWasMove
   base_.corners[0] += 3, base_.corners[1] += 2;
   start();
   EXPECT_EQ(moved("top_left"), json({0, 0}));
-  EXPECT_NE(keeper_.takeNotices().at(0).find("alignment of output left is dropped: its corners"),
+  EXPECT_NE(keeper_.takeNotices().at(0).find("alignment of output left is set aside: its corners"),
             std::string::npos);
 }
 
@@ -209,12 +209,17 @@ TEST_F(AlignerTest, AnOutputWithBothEyesPicturesIsNotMoved) {
   keeper_.takeNotices();
   fixed_ = "it shows a picture of each eye";
   start();
-  EXPECT_EQ(moved("top_left"), json({0, 0})) << "what was moved before is dropped";
-  EXPECT_NE(keeper_.takeNotices().at(0).find("is dropped: it shows a picture of each eye"),
+  EXPECT_EQ(moved("top_left"), json({0, 0})) << "what was moved before is set aside";
+  EXPECT_NE(keeper_.takeNotices().at(0).find("is set aside: it shows a picture of each eye"),
             std::string::npos);
   const json answer = ask("move top_left 3 2 left");
   ASSERT_TRUE(answer.is_string()) << answer;
   EXPECT_NE(answer.get<std::string>().find("it shows a picture of each eye"), std::string::npos);
+  start();
+  EXPECT_TRUE(keeper_.takeNotices().empty()) << "said once";
+  fixed_.clear();
+  start();
+  EXPECT_EQ(moved("top_left"), json({3, 2}));
 }
 
 // A projector that hangs upside down: the left of who stands before the wall is its right.
@@ -263,7 +268,7 @@ TEST_F(AlignerTest, ARefusedActionIsANoticeOnce) {
   EXPECT_NE(notices[0].find("align: top_left of output left stays"), std::string::npos);
 }
 
-TEST_F(AlignerTest, AnAlignmentThatFitsNoLongerIsDroppedWithANotice) {
+TEST_F(AlignerTest, AnAlignmentThatFitsNoLongerIsSetAsideWithANotice) {
   keeper_.takeNotices();
   ask("move top_left 300 200 left");
   ask("move top_left 1 1 right");
@@ -272,7 +277,8 @@ TEST_F(AlignerTest, AnAlignmentThatFitsNoLongerIsDroppedWithANotice) {
   EXPECT_EQ(shown(), std::pair(300, 250));
   auto notices = keeper_.takeNotices();
   ASSERT_EQ(notices.size(), 1u);
-  EXPECT_TRUE(notices[0].starts_with("the alignment of output left is dropped: its corners in the"))
+  EXPECT_TRUE(
+      notices[0].starts_with("the alignment of output left is set aside: its corners in the"))
       << notices[0];
   EXPECT_EQ(ask("list")["undo"], 1) << "that of the other output";
   ask("move top_left 1 1 left");
@@ -283,6 +289,74 @@ TEST_F(AlignerTest, AnAlignmentThatFitsNoLongerIsDroppedWithANotice) {
   EXPECT_NE(notices[0].find("it was made for 640 x 480 pixels"), std::string::npos);
   EXPECT_EQ(moved("top_left"), json({0, 0}));
   EXPECT_EQ(moved("top_left", 1), json({1, 1}));
+}
+
+TEST_F(AlignerTest, AnAlignmentComesBackWithItsStepsWhenTheOutputHasItsSizeAgain) {
+  ask("move top_left 3 2 left");
+  ask("move top_left 1 0 left");
+  ask("undo");
+  keeper_.takeNotices();
+  width_ = 64;  // a wrong figure in the configuration
+  start();
+  EXPECT_EQ(shown(), std::pair(4, 8));
+  EXPECT_EQ(ask("list")["undo"], 0);
+  EXPECT_EQ(keeper_.takeNotices(),
+            std::vector<std::string>{
+                "the alignment of output left is set aside: it was made for 640 x 480 pixels and a "
+                "mesh of 0 x 0 points, but the output now has 64 x 480 pixels and a mesh of 0 x 0 "
+                "points; it comes back, with its undo steps, when the output is again as it was "
+                "then"});
+  ask("move top_left 5 5 left");
+  width_ = 640;
+  start();
+  EXPECT_EQ(shown(), std::pair(7, 10));
+  const auto notices = keeper_.takeNotices();
+  ASSERT_EQ(notices.size(), 2u) << "the other size's alignment is set aside in turn";
+  EXPECT_EQ(notices[1],
+            "the alignment of output left, which was set aside, is in effect again, since the "
+            "output is as it was then");
+  EXPECT_EQ(ask("redo")["done"], "left top_left by 1, 0");
+  ask("undo");
+  ask("undo");
+  EXPECT_EQ(shown(), std::pair(4, 8));
+  width_ = 64;
+  start();
+  EXPECT_EQ(moved("top_left"), json({5, 5}));
+}
+
+TEST_F(AlignerTest, AReloadThatTakesTheCornersBackBringsTheAlignmentBack) {
+  ask("move top_left 3 1 left");
+  auto other = base_;
+  other.corners[0] = 5;
+  aligner_->configure("left", other);
+  EXPECT_EQ(moved("top_left"), json({0, 0}));
+  EXPECT_EQ(keeper_.state().set_aside.alignments().size(), 1u);
+  aligner_->configure("left", base_);
+  EXPECT_EQ(moved("top_left"), json({3, 1}));
+  EXPECT_TRUE(keeper_.state().set_aside.alignments().empty());
+  EXPECT_EQ(keeper_.state().alignment.offset("left", state::cornerAt(0)), (state::Offset{3, 1}));
+}
+
+// What a reload says before it is done.
+TEST(AlignmentFit, NamesTheOutputsOfAWallWhoseAlignmentsDoNotFit) {
+  WallSettings wall;
+  wall.outputs.resize(2);
+  for (render::out::OutputSettings& output : wall.outputs) {
+    output.kind = render::out::OutputKind::kPng;
+    output.tiles = {{wall.tiles.tiles[0].name}};
+  }
+  wall.outputs[0].name = "left";
+  wall.outputs[1].name = "right";
+  const auto size = *render::out::pictureSize(wall.outputs[0], wall.tiles);
+  const std::array<double, 8> corners{};
+  state::Alignment alignment;
+  alignment.move({"left", size.width, size.height, 0, 0, corners}, state::cornerAt(0), {1, 1});
+  alignment.move({"right", 64, size.height, 0, 0, corners}, state::cornerAt(0), {1, 1});
+  alignment.move({"gone", 64, 64, 0, 0, corners}, state::cornerAt(0), {1, 1});
+  const auto misfits = misfitsOf(wall, alignment);
+  ASSERT_EQ(misfits.size(), 1u);
+  EXPECT_EQ(misfits[0].output, "right");
+  EXPECT_TRUE(misfits[0].why.starts_with("it was made for 64 x ")) << misfits[0].why;
 }
 
 }  // namespace

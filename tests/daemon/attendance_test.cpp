@@ -96,7 +96,7 @@ TEST_F(AttendanceTest, NothingElseDoes) {
 
 // A forgotten glass, or a marked object that stands there for good, whose place the surface reports
 // with some noise.
-TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesMovesOrGoes) {
+TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesOrMoves) {
   black();
   input_.scene.touch.fingers = 1;
   EXPECT_EQ(frame(), Shown::kPicture) << "it comes";
@@ -113,7 +113,66 @@ TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesMovesOrGoes) {
   attendance_.toggleBlank();
   EXPECT_EQ(pass(milliseconds(1000)), Shown::kBlank);
   input_.scene.touch.fingers = 0;
-  EXPECT_EQ(frame(), Shown::kPicture) << "it goes";
+  EXPECT_EQ(pass(milliseconds(1000)), Shown::kBlank) << "it goes";
+  input_.scene.touch.fingers = 1;
+  EXPECT_EQ(frame(), Shown::kPicture) << "it comes again";
+}
+
+// A pinch is bound to blank or freeze: the fingers are lifted long after, not at once, and move as
+// they are.
+TEST_F(AttendanceTest, TheFingersThatMakeItBlackOrFrozenDoNotUndoItWhenTheyAreLifted) {
+  for (const auto& [action, shown] : {std::pair(&WallInput::blank, Shown::kBlank),
+                                      std::pair(&WallInput::freeze, Shown::kFrozen)}) {
+    for (const milliseconds rest : {milliseconds(0), milliseconds(3000)}) {
+      pass(milliseconds(600));
+      input_.scene.touch.fingers = 2;
+      input_.scene.touch.spread = -0.05F;
+      pass(milliseconds(100));
+      input_.*action = 1;
+      EXPECT_EQ(frame(), shown);
+      EXPECT_EQ(pass(milliseconds(100)), shown) << "the pinch goes on";
+      input_.scene.touch.spread = 0;
+      EXPECT_EQ(pass(rest), shown);
+      input_.scene.touch.right = 0.03F;
+      EXPECT_EQ(frame(), shown) << "they move as they are lifted";
+      input_.scene.touch.right = 0;
+      input_.scene.touch.fingers = 1;
+      EXPECT_EQ(pass(rest), shown);
+      input_.scene.touch.right = 0.03F;
+      EXPECT_EQ(frame(), shown) << "so does the last one";
+      input_.scene.touch = {};
+      EXPECT_EQ(pass(milliseconds(1000)), shown);
+      input_.scene.touch.fingers = 1;
+      EXPECT_EQ(frame(), Shown::kPicture) << "another finger comes";
+      input_.scene.touch = {};
+    }
+  }
+}
+
+// A marked object may stand on the surface for good.
+TEST_F(AttendanceTest, AFingerThatComesBesideThoseOfTheGestureUndoesIt) {
+  input_.scene.touch.fingers = 3;
+  pass(milliseconds(600));
+  input_.blank = 1;
+  ASSERT_EQ(frame(), Shown::kBlank);
+  input_.scene.touch.fingers = 1;
+  ASSERT_EQ(pass(milliseconds(600)), Shown::kBlank);
+  input_.scene.touch.fingers = 2;
+  EXPECT_EQ(frame(), Shown::kPicture);
+}
+
+TEST_F(AttendanceTest, AFingerThatGoesEndsThePlaylist) {
+  PlaylistSettings playlist;
+  playlist.after_s = 60;
+  attendance_.configure(playlist);
+  input_.scene.touch.fingers = 1;
+  frame();
+  attendance_.switchPlaylist(true);
+  pass(milliseconds(1000));
+  ASSERT_EQ(attendance_.playlist(), Playlist::State::kRunning);
+  input_.scene.touch.fingers = 0;
+  frame();
+  EXPECT_EQ(attendance_.playlist(), Playlist::State::kWaiting);
 }
 
 TEST_F(AttendanceTest, ASecondCallUndoesTheFirstAlsoInTheSameFrame) {
@@ -171,6 +230,23 @@ TEST_F(AttendanceTest, TheButtonThatMakesItBlackDoesNotUndoIt) {
     input_.scene.ball.emplace();
     EXPECT_EQ(pass(milliseconds(700)), expected);
   }
+}
+
+// A long press: the hand that lets go of the button shakes the ball, however late.
+TEST_F(AttendanceTest, TheReleaseOfTheButtonThatMakesItBlackDoesNotUndoIt) {
+  input_.scene.ball.emplace().buttons = 1;
+  pass(milliseconds(1500));
+  input_.blank = 1;
+  EXPECT_EQ(frame(), Shown::kBlank);
+  pass(milliseconds(2000));
+  input_.scene.ball->buttons = 0;
+  frame();
+  input_.scene.ball->translation[1] = 0.05F;
+  EXPECT_EQ(pass(milliseconds(100)), Shown::kBlank);
+  push(0);
+  pass(milliseconds(600));
+  push(0.05F);
+  EXPECT_EQ(frame(), Shown::kPicture);
 }
 
 TEST_F(AttendanceTest, TheActionMayComeAFrameBeforeItsButton) {

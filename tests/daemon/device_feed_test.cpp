@@ -111,6 +111,35 @@ TEST_F(DeviceFeedTest, ARestartOfTheDevicesTurnsNoWheel) {
   EXPECT_LT(wheel(65535), 0);
 }
 
+TEST_F(DeviceFeedTest, AMousesWheelCountsBesideTheFingersOfAnotherSurface) {
+  segment_.reset();
+  auto made = shm::SegmentWriter<shm::DevicesSegment>::make(
+      name_,
+      shm::devicesFields({{{"mouse", SampleKind::kTouch}, {"table", SampleKind::kTouch}}, {}}), 1,
+      now_, {});
+  ASSERT_TRUE(made);
+  segment_.emplace(*std::move(made));
+  for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
+  TouchSample mouse{}, table{};
+  mouse.received_ns = table.received_ns = toNanoseconds(now_);
+  mouse.aspect = table.aspect = 1;
+  table.fingers = 2;
+  for (const std::size_t i : {0U, 1U}) {
+    table.id[i] = static_cast<std::uint32_t>(i + 1);
+    table.position[i][0] = 0.25F + 0.5F * static_cast<float>(i);
+  }
+  const auto touched = [&](std::uint16_t notches) {
+    mouse.wheel = notches;
+    (*segment_)->touch[0].publish(mouse);
+    (*segment_)->touch[1].publish(table);
+    return read().scene.touch;
+  };
+  EXPECT_FALSE(touched(4).moves());
+  const render::scene::TouchMotion turned = touched(5);
+  EXPECT_EQ(turned.fingers, 2u);
+  EXPECT_FLOAT_EQ(turned.spread, render::scene::TouchFollower::kPerNotch);
+}
+
 TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {
   push();
   TrackerSample hand{};

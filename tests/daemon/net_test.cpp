@@ -4,11 +4,13 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/net/connection_server.h"
 #include "tests/support/eventually.h"
 #include "tests/support/fake_clock.h"
@@ -366,6 +368,37 @@ TEST_F(Listening, WhoConnectsAllTheTimeIsAcceptedAtARate) {
   EXPECT_EQ(came(), 30U);
   clock.advance(milliseconds(500));
   EXPECT_EQ(came(), 50U) << "a burst again";
+}
+
+// In a child, whose limit is its own.
+TEST_F(Listening, WithoutDescriptorsNobodyIsNamedAsRefused) {
+  const std::string path = dir_ / "s";
+  const SystemClock clock;
+  ConnectionServer server("s", {}, clock);
+  server.listen(*listenLocal(path, 0600), [](const Peer&) { return std::make_unique<Lines>(); });
+  const UniqueFd client = connectTo(path);
+  ASSERT_TRUE(client.valid());
+  auto pipe = makePipe();
+  ASSERT_TRUE(pipe);
+  const auto child = startChild();
+  ASSERT_TRUE(child);
+  if (*child == 0) {
+    const int next = ::dup(0);
+    ::close(next);
+    const auto most = static_cast<rlim_t>(next);
+    const rlimit none{most, most};
+    ::setrlimit(RLIMIT_NOFILE, &none);
+    server.round(seconds(5));
+    const std::string said = server.report().last;
+    ::_exit(::write(pipe->to.get(), said.data(), said.size()) > 0 ? 0 : 1);
+  }
+  pipe->to.reset();
+  std::string said(200, '\0');
+  const ssize_t n = ::read(pipe->from.get(), said.data(), said.size());
+  waitForChild(*child);
+  ASSERT_GT(n, 0);
+  said.resize(static_cast<std::size_t>(n));
+  EXPECT_EQ(said, "refused a connection: Too many open files");
 }
 
 TEST_F(Listening, OnlyADeadProgramsSocketIsReplaced) {

@@ -207,6 +207,14 @@ TEST(ReloadAnswer, SaysWhatAndWhyNot) {
   EXPECT_EQ(refusal(answer), "/etc/m.json: std::bad_alloc; the previous settings stay in effect");
 }
 
+TEST(ReloadAnswer, NamesTheAlignmentsThatAreSetAside) {
+  Answer answer;
+  answer.set_aside = {{"left", "it was made for 640 x 480 pixels"}};
+  EXPECT_EQ(
+      nlohmann::json::parse(answerText(answer))["set_aside"],
+      (nlohmann::json::array({{{"output", "left"}, {"why", "it was made for 640 x 480 pixels"}}})));
+}
+
 TEST(ReloadAnswer, CutsALongValueBetweenCharacters) {
   Answer answer;
   answer.plan.swapped = {{"/x", "", "\"" + std::string(198, 'a') + "\xC3\xA4\xC3\xA4\""}};

@@ -97,16 +97,84 @@ TEST(Alignment, TheOldestStepsAreForgotten) {
   EXPECT_EQ(a.offset("left", kTopLeft), (Offset{30, 0}));
 }
 
-TEST(Alignment, AnOutputIsForgottenWithItsSteps) {
+TEST(Alignment, AnOutputIsTakenOutWithItsStepsAndPutBack) {
   Alignment a;
   a.move(kLeft, kTopLeft, {1, 2});
   a.move(kRight, kBottomRight, {3, 4});
   a.move(kLeft, kTopLeft, {1, 2});
   a.undo();
-  a.forget("left");
+  const Alignment left = a.take("left");
   EXPECT_EQ(a.steps.size(), 1u);
   EXPECT_EQ(a.done, 1u);
+  EXPECT_FALSE(a.find("left"));
+  EXPECT_EQ(left.outputs.size(), 1u);
+  EXPECT_EQ(left.steps.size(), 2u);
+  EXPECT_EQ(left.done, 1u);
+  a.put(left);
+  EXPECT_EQ(a.done, 2u);
+  EXPECT_EQ(a.redo()->output, "left");
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{2, 4}));
+  a.undo();
+  EXPECT_EQ(a.undo()->output, "left") << "its steps are the newest ones";
   EXPECT_EQ(a.undo()->output, "right");
+  EXPECT_FALSE(a.undo());
+}
+
+TEST(Alignment, TheStepsOfBothAreLimitedWhereOneIsPutBack) {
+  Alignment a, b;
+  for (int i = 0; i < 80; ++i) a.move(kLeft, kTopLeft, {1, 0});
+  for (int i = 0; i < 80; ++i) b.move(kRight, kTopLeft, {1, 0});
+  a.put(b);
+  EXPECT_EQ(a.steps.size(), kMostSteps);
+  while (a.undo()) {
+  }
+  EXPECT_EQ(a.offset("left", kTopLeft), (Offset{60, 0}));
+  EXPECT_EQ(a.offset("right", kTopLeft), Offset{});
+}
+
+Alignment alignedAt(int width, const std::string& output = "left") {
+  Alignment a;
+  a.move({output, width, 480, 0, 0, std::array<double, 8>{}}, kTopLeft, {1, 2});
+  return a;
+}
+
+std::vector<int> widthsOf(const SetAside& aside) {
+  std::vector<int> widths;
+  for (const Alignment& a : aside.alignments()) widths.push_back(a.outputs.front().form.width);
+  return widths;
+}
+
+TEST(SetAside, KeepsTheLastFormsOfEachOutput) {
+  SetAside aside;
+  aside.add(alignedAt(1, "right"));
+  for (const int width : {640, 800, 1024, 640, 1280, 1920}) aside.add(alignedAt(width));
+  EXPECT_EQ(widthsOf(aside), (std::vector{1, 1024, 640, 1280, 1920}));
+  const auto taken =
+      aside.take([](const Alignment& a) { return a.outputs.front().form.width == 640; });
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->offset("left", kTopLeft), (Offset{1, 2}));
+  EXPECT_EQ(widthsOf(aside), (std::vector{1, 1024, 1280, 1920}));
+  EXPECT_FALSE(aside.take([](const Alignment&) { return false; }));
+  aside.add(Alignment{});
+  EXPECT_EQ(aside.alignments().size(), 4u) << "nothing is not kept";
+}
+
+TEST(SetAside, IsLimitedInAll) {
+  SetAside aside;
+  for (int i = 0; i < 100; ++i) aside.add(alignedAt(640, std::to_string(i)));
+  EXPECT_EQ(aside.alignments().size(), kMostAside);
+  EXPECT_EQ(aside.alignments().back().outputs.front().form.output, "99");
+}
+
+TEST(OutputForm, OfAnEarlierVersionFitsWhateverTheCorners) {
+  OutputForm old = kLeft;
+  old.corners.reset();
+  EXPECT_TRUE(old.fits(kLeft));
+  EXPECT_FALSE(kLeft.fits(old));
+  EXPECT_TRUE(kLeft.fits(kLeft));
+  OutputForm wider = kLeft;
+  wider.width = 800;
+  EXPECT_FALSE(old.fits(wider));
 }
 
 State someState() {
@@ -119,6 +187,7 @@ State someState() {
   state.alignment.move(kLeft, kPoint, {3, 4});
   state.alignment.move(kRight, kBottomRight, {-7, 0});
   state.alignment.undo();
+  state.set_aside.add(alignedAt(800));
   return state;
 }
 
@@ -137,6 +206,8 @@ TEST(StateText, IsReadBackAsItWas) {
   EXPECT_EQ(read->alignment.offset("left", kPoint), (Offset{3, 4}));
   EXPECT_EQ(read->alignment.find("left")->form, kLeft);
   EXPECT_EQ(read->alignment.done, 2u);
+  ASSERT_EQ(widthsOf(read->set_aside), std::vector{800});
+  EXPECT_EQ(read->set_aside.alignments()[0].steps.size(), 1u);
   Alignment again = read->alignment;
   EXPECT_EQ(again.redo()->output, "right");
   EXPECT_EQ(again.offset("right", kBottomRight), (Offset{-7, 0}));
@@ -167,6 +238,27 @@ TEST(StateText, OfVersion1IsRead) {
   EXPECT_FALSE(read->playlist_off || read->projectors);
 }
 
+// As merlind wrote it before alignments were set aside.
+TEST(StateText, OfVersion2IsRead) {
+  const auto read = parseState(
+      R"({"merlin_state": 2, "playlist": "off",
+          "alignment": {"outputs": [], "steps": [], "done": 0}})",
+      "f");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_TRUE(read->playlist_off);
+  EXPECT_TRUE(read->set_aside.alignments().empty());
+}
+
+TEST(State, HasTheAlignmentThatFitsAnOutput) {
+  State state = someState();
+  EXPECT_EQ(alignmentFor(state, kLeft), state.alignment.find("left"));
+  const OutputForm wide{"left", 800, 480, 0, 0, std::array<double, 8>{}};
+  const OutputAlignment* const aside = alignmentFor(state, wide);
+  ASSERT_TRUE(aside);
+  EXPECT_EQ(aside->form, wide);
+  EXPECT_FALSE(alignmentFor(state, {"left", 801, 480, 0, 0, std::array<double, 8>{}}));
+}
+
 // A file that was cut or of which one byte is another is an error, or a state within its limits.
 TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
   const std::string text = stateText(someState());
@@ -194,6 +286,10 @@ TEST(StateText, OfTheLargestStateIsReadBack) {
   }
   EXPECT_EQ(state.alignment.moved(), kMostMoved);
   EXPECT_EQ(state.alignment.steps.back().changes.size(), kMostChanges);
+  Alignment aside = state.alignment;
+  aside.outputs[0].form.width = 4096;
+  state.set_aside.add(aside);
+  EXPECT_EQ(state.set_aside.alignments().at(0).moved(), kMostMoved);
   const auto read = parseState(stateText(state), "f");
   ASSERT_TRUE(read) << read.error().what;
   EXPECT_EQ(stateText(*read), stateText(state));
@@ -226,7 +322,11 @@ TEST(StateText, WrongFiguresAreNamedWithTheirPlace) {
   EXPECT_NE(errorOf(R"({"merlin_state": 2, "projectors": {"switched": "off", "local_minute": -1}})")
                 .find("/projectors/local_minute"),
             std::string::npos);
-  const auto newer = parseState(R"({"merlin_state": 3, "anything": [1]})", "f");
+  EXPECT_NE(errorOf(R"({"merlin_state": 3, "alignment": {"outputs": [], "steps": [], "done": 0},
+                        "set_aside": [{"outputs": [], "steps": [], "done": 0}]})")
+                .find("allowed: the alignment of one output"),
+            std::string::npos);
+  const auto newer = parseState(R"({"merlin_state": 4, "anything": [1]})", "f");
   ASSERT_FALSE(newer);
   EXPECT_EQ(newer.error().code, Errc::kUnsupported);
 }
@@ -342,7 +442,7 @@ TEST_F(StateKeeping, WhereBothAreDamagedTheConfigurationHolds) {
 }
 
 TEST_F(StateKeeping, ANewerStateIsNeitherReadNorReplaced) {
-  const std::string newer = R"({"merlin_state": 3})";
+  const std::string newer = R"({"merlin_state": 4})";
   disk_.last = newer;
   disk_.previous = stateText(someState());
   const auto only = keeper();

@@ -1,7 +1,12 @@
 // The pointer's mark on a wall on a virtual clock: it moves while the picture stands.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
+#include "daemon/wall/snapshot_writer.h"
+#include "tests/support/eventually.h"
 #include "tests/support/fake_wall.h"
+#include "tests/support/temp_dir.h"
 
 namespace merlin::wall {
 namespace {
@@ -56,15 +61,32 @@ TEST_F(WallPointerTest, AMarkThatStandsIsShownOnceAndItsEndToo) {
   EXPECT_EQ(interaction_->read()->pixel[0], -1);
 }
 
-TEST_F(WallPointerTest, SnapshotsAreTakenAndCounted) {
+// Those of the panel and of the command are among the written ones.
+TEST_F(WallPointerTest, SnapshotsAreTakenAndThoseThatWereWrittenAreCounted) {
   bool asked = false;
   int taken = 0;
   on_snapshot_ = [&] { ++taken; };
+  snapshots_written_ = [] { return 7U; };
   run(1, [&](Timestamp) {
     if (since() > milliseconds(500) && !std::exchange(asked, true)) feed_.actions.snapshot = 2;
   });
   EXPECT_EQ(taken, 2);
-  EXPECT_EQ(interaction_->read()->snapshots, 2u);
+  EXPECT_EQ(interaction_->read()->snapshots, 7u);
+}
+
+TEST_F(WallPointerTest, TheWriterOfSnapshotsCountsThoseThatAreThere) {
+  const test::TempDir dir;
+  const std::string name = "/" + test::privateName("snapshots");
+  const auto output = render::out::SharedFrameOutput::make(name, plan_, 1, clock_);
+  ASSERT_TRUE(output) << output.error().what;
+  const std::vector<std::uint8_t> pixels(4 * 1280 * 960, 90);
+  ASSERT_TRUE((*output)->present({1280, 960, pixels}, {1, clock_.now(), 1, true}));
+  ThreadWatch watch;
+  SnapshotWriter writer(name, DatedFiles(dir / "shots", "wall", ".png", 5), watch);
+  EXPECT_EQ(writer.written(), 0u);
+  writer.take();
+  EXPECT_TRUE(test::eventually([&] { return writer.written() == 1; }));
+  EXPECT_FALSE(std::filesystem::is_empty(dir / "shots"));
 }
 
 }  // namespace

@@ -211,6 +211,31 @@ TEST(OscPacket, OfADatagramThatIsMalformedAnywhereNothingIsTaken) {
   EXPECT_EQ(read("#bun"), "malformed: ");
 }
 
+// oscpack adds 4 to the size in 32 bits: for 0xFFFFFFFC it would read the same element for ever.
+TEST(OscPacket, AnElementThatReachesBeyondItsBundleIsMalformed) {
+  const std::string head = oscText("#bundle") + oscWord(0) + oscWord(0);
+  const std::string good = oscMessage("/a", {1});
+  for (const std::uint32_t size :
+       {0xFFFFFFFCU, 0xFFFFFFF8U, 0x80000000U, 0x7FFFFFFFU, 0x7FFFFFFCU, 8U, 3U, 1U, 0U}) {
+    const std::string bundle = head + oscWord(size) + "abcd";
+    EXPECT_EQ(read(bundle), "malformed: ") << size;
+    EXPECT_EQ(read(oscBundle({good, bundle})), "malformed: ") << size;
+    // In the outer bundle there would be room for the inner one's element.
+    EXPECT_EQ(read(oscBundle({oscBundle({bundle}), good, good})), "malformed: ") << size;
+  }
+}
+
+// What oscpack itself refuses, in messages that end where the datagram does.
+TEST(OscPacket, MessagesWithoutAnEndAreMalformed) {
+  for (const std::string& packet :
+       {std::string("/abc"), oscText("/a") + ",iii", oscText("/a") + oscText(",s") + "text",
+        oscText("/a") + oscText(",s"), oscText("/a") + oscText(",d") + oscWord(1),
+        oscText("/a") + oscText(",[i") + oscWord(1), oscText("/a") + oscText(",Q")}) {
+    EXPECT_EQ(read(packet), "malformed: ") << packet;
+    EXPECT_EQ(read(oscBundle({packet, oscMessage("/b", {1})})), "malformed: ") << packet;
+  }
+}
+
 // oscpack does not check a blob's length: reading on behind it would end the program.
 TEST(OscPacket, AMessageWithABlobIsPassedOver) {
   for (const std::uint32_t length : {3U, 0x7FFFFFFFU, 0xFFFFFFF0U, 0xFFFFFFFFU}) {

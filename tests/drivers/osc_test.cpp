@@ -226,7 +226,9 @@ TEST_F(OscTest, APoseThatNoTrackerCanMeasureIsDroppedAndSaid) {
       {oscMessage("/tracker/1/pose", {std::string("x"), 1.0F, 2.0F}),
        "messages of poses have neither 3 nor 7 numbers"},
       {oscMessage("/other", kAtRest), "OSC messages come, but none to the address of a station"},
-      {"not OSC.", "datagrams come that are not OSC"}};
+      {"not OSC.", "datagrams come that are not OSC"},
+      {test::oscText("#bundle") + test::oscWord(0) + test::oscWord(0) + test::oscWord(0xFFFFFFFC),
+       "datagrams come that are not OSC"}};
   for (const auto& [packet, complaint] : bad) {
     for (const Timestamp until = clock_.now() + milliseconds(2100); clock_.now() < until;) {
       clock_.advance(milliseconds(100));

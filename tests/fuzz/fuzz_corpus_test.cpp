@@ -8,6 +8,7 @@
 
 #include "daemon/base/random.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/extreme_length.h"
 
 namespace merlin::fuzz {
 namespace {
@@ -35,12 +36,13 @@ Data damaged(Data bytes, const Data& other, Random& random) {
   for (std::uint64_t i = 1 + random.below(4); i > 0 && !bytes.empty(); --i) {
     const auto at = static_cast<std::ptrdiff_t>(random.below(bytes.size()));
     const auto here = bytes.begin() + at;
-    switch (random.below(6)) {
+    switch (random.below(7)) {
       case 0: *here ^= static_cast<std::uint8_t>(1U << random.below(8)); break;
       case 1: *here = static_cast<std::uint8_t>(random.below(2) == 0 ? 0xFF : random.next()); break;
       case 2: bytes.erase(here); break;
       case 3: bytes.insert(here, 1 + random.below(8), *here); break;
       case 4: bytes.resize(static_cast<std::size_t>(at)); break;
+      case 5: test::writeExtremeLength(bytes, static_cast<std::size_t>(at), random); break;
       default: bytes.insert(here, other.begin(), other.end()); break;
     }
   }

@@ -102,8 +102,9 @@ TEST(Recording, IsItsOwnInverse) {
 TEST(Recording, FaultsNameFileLineFoundAndAllowed) {
   EXPECT_EQ(wrongWith("posture,s0\nfist\n"),
             "f.csv:2: found 1 fields; allowed: 2, as many as the header has");
-  EXPECT_EQ(wrongWith("posture,s0\nfist,x\n"), "f.csv:2: found s0 \"x\"; allowed: a number");
-  EXPECT_EQ(wrongWith("posture,s0\nfist,nan\n"), "f.csv:2: found s0 \"nan\"; allowed: a number");
+  for (const std::string value : {"x", "nan", "1e30"})
+    EXPECT_EQ(wrongWith("posture,s0\nfist," + value + "\n"),
+              "f.csv:2: found s0 \"" + value + "\"; allowed: a number from -1000000 to 1000000");
   EXPECT_EQ(wrongWith("posture,s0\n,1\n"),
             "f.csv:2: found posture \"\"; allowed: 1 to 19 letters, digits, - or _");
   EXPECT_EQ(wrongWith("posture,s0,s0\nfist,1,1\n"),
@@ -112,7 +113,11 @@ TEST(Recording, FaultsNameFileLineFoundAndAllowed) {
             "f.csv:1: found no hands; allowed: at least one line after the header");
   EXPECT_NE(wrongWith("a,b\n1,2\n").find("no column for the label"), std::string::npos);
   EXPECT_NE(wrongWith("posture,x,y2\nf,1,2\n").find("2 columns of sensors"), std::string::npos);
-  EXPECT_FALSE(wrongWith("").empty());
+  EXPECT_EQ(wrongWith(""),
+            "f.csv: found no header, the file is empty; needed are a header and at least one line "
+            "after it");
+  EXPECT_EQ(wrongWith("# mine\n"),
+            "f.csv: found no header; needed are a header and at least one line after it");
 }
 
 TEST(Recording, OneWrongByteNeverLoadsHalf) {

@@ -123,7 +123,12 @@ TEST(Fit, RefusesWhatItCannotLearn) {
     const auto fitted = fit(hands, s);
     return fitted ? std::string() : fitted.error().what;
   };
-  EXPECT_EQ(why({}), "0 postures; allowed: 2 to 32, one for each code of five bits");
+  EXPECT_EQ(why({}),
+            "the hands show 0 postures; needed are 2 to 32, one for each code of five bits: record "
+            "hands of other postures too");
+  EXPECT_EQ(why({{"a", {}}, {"a", {}}}),
+            "the hands show 1 posture; needed are 2 to 32, one for each code of five bits: record "
+            "hands of other postures too");
   EXPECT_EQ(why({{"a", {}}, {"b", {}}}),
             "the values of all sensors are constant; record hands that show different postures");
   EXPECT_EQ(why({{"a", {}}, {"b", {}}}, {.phi = Phi::kSignum}),

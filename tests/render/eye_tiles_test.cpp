@@ -338,6 +338,31 @@ TEST_P(WrongStereo, IsRefused) {
   EXPECT_EQ(faults[0].what, GetParam().message);
 }
 
+TEST(Stereo, WhatIsProbablyNotMeantIsDoubted) {
+  stereo::StereoSettings usual = inMode(stereo::StereoMode::kAnaglyph);
+  usual.screen_distance_m = 3;
+  EXPECT_TRUE(doubtsOf(usual).empty());
+  const auto doubt = [&](double separation_m, double screen_m) {
+    stereo::StereoSettings s = usual;
+    s.eye_separation_m = separation_m;
+    s.screen_distance_m = screen_m;
+    const SettingFaults doubts = doubtsOf(s);
+    return doubts.size() == 1 ? doubts[0].pointer + " " + doubts[0].what : "not one doubt";
+  };
+  EXPECT_EQ(doubt(0, 3),
+            "/stereo/eye_separation_m is 0 in stereo mode anaglyph: both eyes see the same "
+            "picture, without depth; people's are 0.05 to 0.075 m");
+  EXPECT_EQ(doubt(0.63, 3),
+            "/stereo/eye_separation_m is 0.63 m: everything has 10 times the parallax of eyes that "
+            "are 0.063 m apart; is it meant in metres?");
+  EXPECT_EQ(doubt(0.06, 250),
+            "/stereo/screen_distance_m is 250 m: what is nearer than that appears in front of the "
+            "screen; is it meant in metres?");
+  usual.mode = stereo::StereoMode::kOff;
+  usual.eye_separation_m = 0;
+  EXPECT_TRUE(doubtsOf(usual).empty());
+}
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const Fault kFaults[] = {

@@ -128,6 +128,16 @@ TEST(Inspect, AnInsideOutTetrahedronHasANegativeVolume) {
   EXPECT_EQ(mesh::inspect(tetrahedron()).inside_out, 0u);
 }
 
+TEST(Inspect, TheInnerWallOfAHollowBodyIsNotInsideOut) {
+  mesh::Mesh hollow = test::cube(), wall = tetrahedron();
+  turn(wall);
+  append(hollow, wall, -0.5F);
+  const auto is = mesh::inspect(hollow);
+  EXPECT_EQ(is.closed, 2u);
+  EXPECT_EQ(is.inside_out, 0u);
+  EXPECT_NEAR(is.volume, 8 - 1.0 / 6, 1e-7);
+}
+
 TEST(Inspect, OneTurnedTriangleTurnsItsThreeEdges) {
   mesh::Mesh turned = tetrahedron();
   std::swap(turned.triangles[1], turned.triangles[2]);

@@ -71,6 +71,13 @@ TEST(Touch, AMousesWheelSpreads) {
   EXPECT_FALSE(follower.update(&mouse).moves()) << "it was unplugged meanwhile";
 }
 
+TEST(Touch, AWheelTurnsBesideFingersThatSpread) {
+  TouchSample before = touch({{1, 0.4F, 0.5F}, {2, 0.6F, 0.5F}});
+  TouchSample now = touch({{1, 0.3F, 0.5F}, {2, 0.7F, 0.5F}});
+  now.wheel = 1;
+  EXPECT_NEAR(between(before, now).spread, std::log(2.0F) + TouchFollower::kPerNotch, 1e-6F);
+}
+
 TEST(Touch, AFingerThatComesOrGoesMovesNothing) {
   const TouchSample one = touch({{1, 0.4F, 0.5F}});
   EXPECT_FALSE(between(one, touch({{1, 0.4F, 0.5F}, {2, 0.9F, 0.9F}})).moves());

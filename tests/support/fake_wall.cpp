@@ -110,6 +110,7 @@ WallParts FakeWall::parts() {
           .replacements = replacements_,
           .viewer = viewer_,
           .on_snapshot = on_snapshot_,
+          .snapshots_written = snapshots_written_,
           .on_align = on_align_,
           .first_content = first_content_,
           .listed = listed_,

@@ -131,6 +131,7 @@ class FakeWall : public testing::Test {
   ContentSource* replacements_ = nullptr;
   ViewerPlace* viewer_ = nullptr;
   std::function<void()> on_snapshot_ = [] {};
+  std::function<std::uint32_t()> snapshots_written_ = [] { return 0U; };
   std::function<void(const AlignInput&)> on_align_ = [](const AlignInput&) {};
   std::size_t first_content_ = 0, listed_ = 0;
   std::unique_ptr<shm::SeqSlot<shm::WallInteraction>> interaction_ =

@@ -160,6 +160,7 @@ class AlignedExport : public Align {
   std::string changed(const json& correction, bool running) const {
     json config = json::parse(readText(wall_->config()));
     if (!running) config["instance"] = privateName("other");
+    if (!running) config["state_file"] = dir_ / "other.state.json";
     config["wall"]["outputs"][1]["correction"] = correction;
     writeText(dir_ / "changed.json", config.dump());
     return dir_ / "changed.json";
@@ -191,6 +192,24 @@ TEST_F(AlignedExport, HasMovedCorners) {
       << stopped;
 }
 
+TEST_F(AlignedExport, HasMovedCornersAlsoOfAWallThatDoesNotRun) {
+  EXPECT_EQ(moveCorner("top_left", "20", "12.5").status, 0);
+  const std::string running = exported(wall_->config()).second;
+  wall_->process().kill(SIGTERM);
+  const auto [said, kept] = exported(wall_->config());
+  EXPECT_EQ(kept, running);
+  EXPECT_NE(said.find("what merlin wall align has moved is read from the state file " +
+                      stateFile() + ", since the wall cannot be asked: "),
+            std::string::npos)
+      << said;
+  const std::string foreign =
+      exported(changed({{"corners", {1, 0, 0, 0, 0, 0, 0, 0}}}, true)).first;
+  EXPECT_NE(foreign.find("left: what merlin wall align has moved is not in the file: it was made "
+                         "for another size, mesh or corners"),
+            std::string::npos)
+      << foreign;
+}
+
 TEST_F(AlignedExport, HasMovedPointsOfTheMesh) {
   const auto meshed = [](double x, double y) {
     const auto point = [](double px, double py) { return json{{"x", px}, {"y", py}}; };
@@ -218,14 +237,14 @@ TEST_F(Align, WhatCannotBeIsRefusedWithAMessageAndChangesNothing) {
   };
   refused({"--output", "left", "--corner", "top_left", "--by", "300", "230"}, "convex picture");
   refused({"--output", "top", "--corner", "top_left", "--by", "1", "1"},
-          "there is no output \"top\"; those that can be aligned are left");
+          "merlin: there is no output \"top\"; those that can be aligned are left");
   refused({"--output", "shared_memory", "--corner", "top_left", "--by", "1", "1"},
           "holds the frame without correction");
   refused({"--output", "left", "--corner", "upper_left", "--by", "1", "1"}, "top_left");
   refused({"--output", "left", "--by", "1", "1"}, "--by needs --corner NAME or --point");
   refused({"--corner", "top_left", "--by", "1", "1"}, "--by needs --output NAME");
   refused({"--output", "left", "--corner", "top_left", "--by", "nan", "1"}, "--by");
-  refused({"--undo"}, "there is nothing to undo");
+  refused({"--undo"}, "merlin: there is nothing to undo");
   refused({"--undo", "--redo"}, "at most 1 options");
   EXPECT_EQ(blackLeft(0), 0);
   EXPECT_FALSE(std::filesystem::exists(stateFile()));
@@ -311,7 +330,7 @@ TEST_F(Align, ADamagedStateIsSaidAndThePreviousOneUsed) {
 
 TEST_F(Align, ANewerStateIsLeftAloneAndStatusSaysSo) {
   wall_->process().kill(SIGTERM);
-  const std::string newer = R"({"merlin_state": 3, "more": []})";
+  const std::string newer = R"({"merlin_state": 4, "more": []})";
   writeText(stateFile(), newer);
   start();
   EXPECT_EQ(moveCorner("top_left", "20", "0").status, 0);
@@ -352,6 +371,32 @@ TEST_F(Align, AChangedCorrectionIsTakenByAReloadWhileTheWallRuns) {
   EXPECT_TRUE(eventually([&] { return at(signal(), 2, 120) < 60; })) << "the ramp";
   EXPECT_LT(at(signal(), 318, 100), 128) << "the corner stays moved";
   EXPECT_EQ(done.output.find("started again"), std::string::npos) << done.output;
+}
+
+// A wrong figure in the configuration costs nobody an alignment.
+TEST_F(Align, AnAlignmentIsSetAsideWhileItsOutputHasAnotherSizeAndComesBack) {
+  EXPECT_EQ(moveCorner("top_left", "20", "0").status, 0);
+  const std::string good = readText(wall_->config());
+  auto config = json::parse(good);
+  config["wall"]["tiles"]["tile_width"] = 160;
+  writeText(wall_->config(), config.dump());
+  const std::string note =
+      "set aside: it was made for 320 x 240 pixels and a mesh of 0 x 0 points, but the output now "
+      "has 160 x 240 pixels and a mesh of 0 x 0 points; it comes back, with its undo steps, when "
+      "the output is again as it was then";
+  const Outcome checked = merlin({"reload", "--check"}), wrong = merlin({"reload"});
+  EXPECT_NE(checked.output.find("note: the alignment of output left would be " + note),
+            std::string::npos)
+      << checked.output;
+  EXPECT_NE(wrong.output.find("note: the alignment of output left is " + note), std::string::npos)
+      << wrong.output;
+  EXPECT_NE(align({"--list"}).output.find("steps that can be undone: 0"), std::string::npos);
+  writeText(wall_->config(), good);
+  const Outcome right = merlin({"reload"});
+  EXPECT_EQ(right.output.find("set aside"), std::string::npos) << right.output;
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 20; }));
+  EXPECT_EQ(align({"--undo"}).status, 0);
+  EXPECT_TRUE(eventually([&] { return blackLeft(0) == 0; }));
 }
 
 TEST_F(Align, AnOutputThatWouldBeIgnoredOrIsNotThereIsRefused) {

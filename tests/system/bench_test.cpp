@@ -296,5 +296,16 @@ TEST_F(Bench, WhatRanIsOneObjectForPrograms) {
   }
 }
 
+TEST_F(Bench, ACorrectionIsGivenAsAShareOfAFrameToo) {
+  const Said s = said({kBin + "/correct_bench", "--frames", "3", "--json"});
+  const auto object = nlohmann::json::parse(s.output, nullptr, false);
+  ASSERT_TRUE(object.is_object()) << s.message;
+  const auto& figures = object["figures"];
+  ASSERT_TRUE(figures.contains("all_per_frame")) << s.output;
+  EXPECT_NEAR(figures["all_per_frame"]["value"].get<double>(),
+              figures["all_ms"]["value"].get<double>() * 30 / 1000, 1e-4)
+      << "of a frame at 30 Hz";
+}
+
 }  // namespace
 }  // namespace merlin::test

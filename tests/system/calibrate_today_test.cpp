@@ -130,6 +130,11 @@ TEST(CalibratePad, WritesGivenValuesOrSaysWhatIsWrong) {
   const Outcome pad = run({kMerlin, "calibrate", "pad", "--curve", "2", "-o", dir / "ball.json"});
   EXPECT_NE(pad.output.find("`merlin calibrate ball` calibrates; for a pad"), std::string::npos)
       << pad.output;
+  writeText(dir / "none.json", onlyDevice(deviceEntry("glove", "cyberglove")).dump());
+  const Outcome none = run({kMerlin, "calibrate", "pad", "--curve", "2", "-o", dir / "none.json"});
+  EXPECT_NE(none.output.find("/devices has no device with the driver evdev or vrpn_pad: add one"),
+            std::string::npos)
+      << none.output;
   EXPECT_EQ(readText(file), before);
 }
 

@@ -46,6 +46,36 @@ TEST(GestureRecord, TakesPosesOfALiveHandAndAppendsThem) {
       << name.output;
 }
 
+TEST(GestureRecord, KeepsTheTakesUntilASignalAndChecksItsFileBeforeTheFirst) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "kept", {.script = "still", .role = "devices"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs("tracker", HealthState::kOk));
+  const auto record = [&](const std::string& file) {
+    return std::vector<std::string>{
+        kMerlin, "gesture",   "record", "none",    "-o",  file,         "--times",
+        "100",   "--seconds", "0.5",    "--pause", "0.6", "--instance", merlind.instance()};
+  };
+  const std::string file = dir / "takes.csv";
+  Process process(record(file));
+  ASSERT_TRUE(process.saysEventually("3 of 100")) << process.output();
+  EXPECT_EQ(process.kill(SIGINT), 1) << process.output();
+  EXPECT_NE(process.output().find("ended by a signal; 2 of 100 takes were recorded"),
+            std::string::npos)
+      << process.output();
+  const auto recording = nn::loadPaths(file);
+  ASSERT_TRUE(recording) << recording.error().what;
+  EXPECT_EQ(nn::sessionsOf(*recording).size(), 2u);
+
+  writeText(dir / "other.csv", "a,b\n1,2\n");
+  for (const std::string& wrong : {dir / "no/such/takes.csv", dir / "other.csv"}) {
+    const Outcome refused = run(record(wrong));
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_NE(refused.output.find(wrong), std::string::npos) << refused.output;
+    EXPECT_EQ(refused.output.find("hold the hand still"), std::string::npos) << refused.output;
+  }
+}
+
 // Neither the hands nor their tracker have the names of the default configuration.
 TEST(GestureRecord, TakesTheFirstHandOrTheNamedOneWhateverTheyAreCalled) {
   using nlohmann::json;
@@ -128,6 +158,26 @@ TEST(GestureTrain, LearnsFromTakesAndIsTestedOnOthers) {
   EXPECT_EQ(wrong.status, 2) << wrong.output;
   EXPECT_NE(wrong.output.find("g.json:1: found the header"), std::string::npos) << wrong.output;
   EXPECT_FALSE(std::filesystem::exists(dir / "h.json"));
+}
+
+TEST(GestureTrain, ChecksItsOutputBeforeItsData) {
+  const Outcome refused =
+      run({kMerlin, "gesture", "train", "/no/such.csv", "-o", "/nowhere/g.json"});
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("/nowhere/g.json: No such file"), std::string::npos)
+      << refused.output;
+}
+
+TEST(GestureTrain, SaysThatTheHandRestedInTheOrdinaryMotion) {
+  const TempDir dir;
+  nn::PathRecording rest{{"none"}, {}};
+  for (std::int64_t n = 0; n < 100; ++n) rest.poses.push_back({0, {n * 30'000'000}});
+  ASSERT_TRUE(nn::savePaths(dir / "rest.csv", rest));
+  Process training({kMerlin, "gesture", "train", dir / "rest.csv", "-o", dir / "g.json"});
+  EXPECT_TRUE(training.saysEventually(
+      "rest.csv: its ordinary motion (the label none) has no stroke to learn from, so the ordinary "
+      "motion of 40 synthetic people is used"))
+      << training.output();
 }
 
 }  // namespace

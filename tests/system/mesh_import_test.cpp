@@ -380,6 +380,7 @@ TEST_F(MeshImport, OptionsThatWouldDoNothingToARangeImageAreRefused) {
            {"--max-edge", "5%"},
            {"--colour-by", "none"},
            {"--exaggerate", "3"},
+           {"--outwards"},
            {"--feature", "confidence=" + (dir_ / "confidence.pgm")},
            {"--texture", dir_ / "colour.ppm"}}) {
     std::vector<std::string> arguments = {scan_, "-o", out};

@@ -165,6 +165,7 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
         << answer.error().what;
   }
   EXPECT_TRUE(m.process().saysEventually("snapshot: " + dir / "shots"));
+  EXPECT_TRUE(eventually([&] { return m.status()["snapshots"] == 1; })) << m.status().dump();
   for (const CommandInfo& command : kCommands) {
     if (!command.by_name) continue;
     std::vector<std::string> words = {kMerlin, std::string(command.name)};

@@ -82,6 +82,66 @@ TEST(PostureCollect, TakesHandsOfARecording) {
   EXPECT_GT(handsOf(*recording, "open"), 20u);
 }
 
+TEST(PostureCollect, KeepsTheHandsUntilASignal) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "kept", {.script = "still", .role = "devices"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs("glove", HealthState::kOk));
+  const std::string file = dir / "hands.csv";
+  Process process({kMerlin, "posture", "collect", "open", "-o", file, "--seconds", "600",
+                   "--instance", merlind.instance()});
+  ASSERT_TRUE(process.saysEventually("hold \"open\"")) << process.output();
+  const auto& samples = *merlind.devices()->glove("")->samples;
+  const std::uint64_t enough = samples.count() + 30;
+  ASSERT_TRUE(eventually([&] { return samples.count() >= enough; }));
+  EXPECT_EQ(process.kill(SIGINT), 1) << process.output();
+  EXPECT_NE(process.output().find("ended by a signal; "), std::string::npos) << process.output();
+  const auto recording = nn::loadRecording(file);
+  ASSERT_TRUE(recording) << recording.error().what;
+  EXPECT_GT(handsOf(*recording, "open"), 10u);
+}
+
+// What cannot be recorded is said before the person is asked to hold the posture.
+TEST(PostureCollect, ChecksItsFileAndTheGloveBeforeThePersonHoldsThePosture) {
+  const TempDir dir;
+  Merlind merlind(dir, "", "checked", {.script = "still", .role = "devices"});
+  ASSERT_TRUE(merlind.ready()) << merlind.process().output();
+  ASSERT_TRUE(merlind.healthIs("glove", HealthState::kOk));
+  writeText(dir / "columns.csv", "posture,s0\nopen,0.5\n");
+  writeText(dir / "other.csv", "a,b\n1,2\n");
+  writeText(dir / "counts.csv", "posture,s0\nopen,92\n");
+  const auto refuses = [&](std::vector<std::string> words, std::vector<std::string> more,
+                           const std::string& why) {
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome refused = run(words);
+    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_NE(refused.output.find(why), std::string::npos) << refused.output;
+    EXPECT_EQ(refused.output.find("hold \""), std::string::npos) << refused.output;
+  };
+  const auto into = [&](const char* file) { return collect(merlind, "open", dir / file); };
+  refuses(into("no/such/hands.csv"), {}, "no/such/hands.csv: No such file");
+  refuses(into("other.csv"), {}, "other.csv:1: found no column for the label");
+  refuses(into("columns.csv"), {}, "columns.csv: was recorded with a glove that has other sensors");
+  refuses(into("columns.csv"), {"--units", "raw"},
+          "columns.csv: has angles in radians (thumb-roll is 0.5), and --units raw records raw "
+          "counts");
+  refuses(into("counts.csv"), {},
+          "counts.csv: has raw counts (values beyond +-6.3), and --units "
+          "rad records radians");
+  refuses(into("hands.csv"), {"--device", "left"}, "has no glove named left; its gloves: glove");
+  refuses({kMerlin, "posture", "collect", "open", "-o", dir / "hands.csv", "--instance", "nobody"},
+          {}, "no merlind with devices runs as \"nobody\"");
+  EXPECT_FALSE(std::filesystem::exists(dir / "hands.csv"));
+}
+
+TEST(PostureTrain, ChecksItsOutputBeforeItsData) {
+  const Outcome refused =
+      run({kMerlin, "posture", "train", "/no/such.csv", "-o", "/nowhere/x.json"});
+  EXPECT_EQ(refused.status, 2) << refused.output;
+  EXPECT_NE(refused.output.find("/nowhere/x.json: No such file"), std::string::npos)
+      << refused.output;
+}
+
 TEST(PostureCollect, SaysWhyThereAreNoHands) {
   const TempDir dir;
   Merlind merlind(dir, "", "silent", {.role = "devices", .emulate = false});

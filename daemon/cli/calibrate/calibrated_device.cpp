@@ -81,9 +81,10 @@ std::optional<std::size_t> firstOf(const Json& list, SampleKind kind, DriverName
   return std::nullopt;
 }
 
-// Index in the list. Errors: kInvalidArgument.
+// Index in the list; `drivers`: for the message if there is no such device. Errors:
+// kInvalidArgument.
 Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKind kind,
-                            const std::string& name) {
+                            const std::string& name, DriverNames drivers = {}) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (name.empty() ? kindOf(list[i]) != kind : nameOf(list[i]) != name) continue;
     if (kindOf(list[i]) == kind) return i;
@@ -97,7 +98,10 @@ Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKin
     return Error{Errc::kInvalidArgument,
                  fmt::format("{}: /devices has no {}: add one first (`merlin devices` shows what "
                              "is plugged in and the entry to add for it)",
-                             path, kindName(kind))};
+                             path,
+                             drivers.empty() ? kindName(kind)
+                                             : fmt::format("device with the driver {}",
+                                                           fmt::join(drivers, " or ")))};
   return Error{Errc::kInvalidArgument, fmt::format("{}: /devices has no device named \"{}\"; {}",
                                                    path, name, namesOf(list, kind))};
 }
@@ -133,7 +137,7 @@ Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
   const Json& list = config->at("devices");
   const auto first = name.empty() ? firstOf(list, kind, drivers) : std::nullopt;
   if (first) return deviceAt(list, *first, file);
-  const auto index = indexOf(list, file, kind, name);
+  const auto index = indexOf(list, file, kind, name, drivers);
   if (!index) return index.error();
   return deviceAt(list, *index, file);
 }

@@ -2,17 +2,19 @@
 // a running daemon into a CSV file.
 #include <filesystem>
 #include <memory>
-#include <thread>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/files.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/gesture/gesture.h"
 #include "daemon/cli/live_samples.h"
 #include "daemon/cli/print.h"
+#include "daemon/cli/stop_signals.h"
 #include "nn/io/path_file.h"
 
 namespace merlin::cli {
@@ -35,6 +37,14 @@ struct LiveHand {
   std::string name;
   std::size_t index = 0;  // in /hands
   LiveSamples<HandSample> samples;
+  int stop = -1;  // the descriptor of stopSignals()
+};
+
+// What was recorded, also if the recording ended early.
+struct RecordedTakes {
+  nn::PathRecording recording;
+  std::size_t count = 0;
+  std::optional<Error> ended;  // why there are fewer takes than wanted
 };
 
 // The hands of the devices, as part of a sentence.
@@ -47,7 +57,7 @@ std::string handsOf(const shm::DeviceSlots& devices) {
 
 // The hand that the options name. Errors: kInvalidArgument (there is no such hand, or nothing that
 // could track it), those of LiveSamples::open().
-Result<LiveHand> openHand(const GestureRecordOptions& options) {
+Result<LiveHand> openHand(const GestureRecordOptions& options, int stop) {
   const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
   const auto* const hand = devices ? (*devices)->hand(options.hand) : nullptr;
   if (devices && !hand)
@@ -70,10 +80,11 @@ Result<LiveHand> openHand(const GestureRecordOptions& options) {
                                                tracker ? tracker->name : "");
   if (!samples) return samples.error();
   return LiveHand{hand->name, static_cast<std::size_t>(hand - (*devices)->hands.data()),
-                  *std::move(samples)};
+                  *std::move(samples), stop};
 }
 
-// Records the poses of the hand for `seconds` into `poses`; discards them if that is null.
+// Records the poses of the hand for `seconds` into `poses`; discards them if that is null. Errors:
+// kClosed (a signal has arrived, or merlind has ended), kTimeout (the hand sends nothing).
 Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std::uint32_t label,
                   std::vector<nn::LabelledPose>* poses) {
   const SystemClock clock;
@@ -87,7 +98,8 @@ Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std:
       if (poses && received >= began && received < began + fromSeconds(seconds))
         poses->push_back({label, axes.turned(s.received_ns, s.position_m, s.orientation_wxyz)});
     });
-    if (!taken) return taken.error();
+    if (!taken) return Error{taken.error().code, "merlind has ended"};
+    if (stopArrived(hand.stop)) return Error{Errc::kClosed, "ended by a signal"};
     if (clock.now() - heard >= kHandPatience)
       return Error{Errc::kTimeout,
                    fmt::format("the hand \"{0}\" has sent nothing for 3 s: see `merlin status` for "
@@ -146,17 +158,33 @@ Result<Ok> takeOne(LiveHand& hand, const GestureRecordOptions& options, const nn
   }
 }
 
-Result<nn::PathRecording> takes(const GestureRecordOptions& options, const nn::WallAxes& axes) {
-  auto hand = openHand(options);
-  if (!hand) return hand.error();
-  nn::PathRecording recording;
-  const std::uint32_t label = recording.labelled(options.label);
-  for (std::size_t n = 0; n < options.times; ++n) {
-    printError("{} of {}: hold the hand still ...\n", n + 1, options.times);
-    if (auto taken = takeOne(*hand, options, axes, label, recording.poses); !taken)
-      return taken.error();
+RecordedTakes recordAll(LiveHand& hand, const GestureRecordOptions& options,
+                        const nn::WallAxes& axes) {
+  RecordedTakes taken;
+  const std::uint32_t label = taken.recording.labelled(options.label);
+  for (; taken.count < options.times; ++taken.count) {
+    printError("{} of {}: hold the hand still ...\n", taken.count + 1, options.times);
+    const auto one = takeOne(hand, options, axes, label, taken.recording.poses);
+    if (one) continue;
+    taken.ended = one.error();
+    break;
   }
-  return recording;
+  return taken;
+}
+
+// Checks, before the first take, that the takes can be written. Errors: those of checkWritable()
+// and nn::loadPaths(); kInvalidArgument (the file has as many gestures as are allowed).
+Result<Ok> checkTakesFile(const GestureRecordOptions& options) {
+  if (auto writable = checkWritable(options.output); !writable) return writable;
+  if (!std::filesystem::exists(options.output)) return Ok{};
+  auto before = nn::loadPaths(options.output);
+  if (!before) return before.error();
+  before->labelled(options.label);
+  if (before->labels.size() <= nn::kMostGestures + 1) return Ok{};
+  return Error{
+      Errc::kInvalidArgument,
+      fmt::format("{}: has {} gestures, as many as are allowed; choose another file with -o",
+                  options.output, nn::kMostGestures)};
 }
 
 // If the file exists, puts its takes before those of `recording`, whose times follow theirs.
@@ -176,29 +204,48 @@ Result<Ok> addTo(nn::PathRecording& recording, const std::string& path) {
   return Ok{};
 }
 
-int recordTakes(const GestureRecordOptions& options) {
-  if (options.label != nn::kNoGesture && !nn::isGestureName(options.label))
-    return fail({Errc::kInvalidArgument,
-                 fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
-                             printable(options.label), nn::kLongestGestureName)});
-  const auto axes = nn::WallAxes::of({options.axes[0], options.axes[1], options.axes[2]});
-  if (!axes)
-    return fail({Errc::kInvalidArgument,
-                 fmt::format("--axes {}: allowed are the numbers 1, 2 and 3, each once, with or "
-                             "without a minus sign, that make a right-handed system, as in "
-                             "/wall/scene/tracker_axes",
-                             fmt::join(options.axes, " "))});
-  auto recording = takes(options, *axes);
-  if (!recording) return fail(recording.error());
-  if (recording->poses.empty())
-    return fail({Errc::kTimeout, "no sample of the hand has arrived: see merlin status"});
-  const std::size_t poses = recording->poses.size();
-  if (const auto added = addTo(*recording, options.output); !added) return fail(added.error());
-  if (const auto saved = nn::savePaths(options.output, *recording); !saved)
-    return fail(saved.error());
+// Errors: those of addTo() and nn::savePaths().
+Result<Ok> saveTakes(RecordedTakes taken, const GestureRecordOptions& options) {
+  const std::size_t poses = taken.recording.poses.size();
+  if (auto added = addTo(taken.recording, options.output); !added) return added;
+  if (auto saved = nn::savePaths(options.output, taken.recording); !saved) return saved;
   printOut("{}: {} takes of \"{}\" recorded, {} poses; {} poses in all\n", options.output,
-           options.times, options.label, poses, recording->poses.size());
-  return kExitDone;
+           taken.count, options.label, poses, taken.recording.poses.size());
+  return Ok{};
+}
+
+// Errors: kInvalidArgument (the label or the axes are not valid).
+Result<nn::WallAxes> checkedAxes(const GestureRecordOptions& options) {
+  if (options.label != nn::kNoGesture && !nn::isGestureName(options.label))
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
+                             printable(options.label), nn::kLongestGestureName)};
+  const auto axes = nn::WallAxes::of({options.axes[0], options.axes[1], options.axes[2]});
+  if (axes) return *axes;
+  return Error{Errc::kInvalidArgument,
+               fmt::format("--axes {}: allowed are the numbers 1, 2 and 3, each once, with or "
+                           "without a minus sign, that make a right-handed system, as in "
+                           "/wall/scene/tracker_axes",
+                           fmt::join(options.axes, " "))};
+}
+
+int recordTakes(const GestureRecordOptions& options) {
+  const auto axes = checkedAxes(options);
+  if (!axes) return fail(axes.error());
+  if (const auto fits = checkTakesFile(options); !fits) return fail(fits.error());
+  const UniqueFd stop = stopSignals();
+  auto hand = openHand(options, stop.get());
+  if (!hand) return fail(hand.error());
+  RecordedTakes taken = recordAll(*hand, options, *axes);
+  if (taken.count > 0) {
+    if (const auto saved = saveTakes(taken, options); !saved) return fail(saved.error());
+  }
+  if (!taken.ended) return kExitDone;
+  return fail(
+      {taken.ended->code,
+       taken.ended->what + (taken.count == 0 ? "; no take was recorded, so nothing was written"
+                                             : fmt::format("; {} of {} takes were recorded",
+                                                           taken.count, options.times))});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/files.h"
 #include "daemon/base/log.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/gesture/gesture.h"
@@ -35,6 +36,14 @@ struct TrainingStrokes {
   std::string how;
 };
 
+// Why there is no stroke of ordinary motion in the recording.
+const char* whyNoOrdinary(const nn::PathRecording& recording) {
+  const auto& labels = recording.labels;
+  return std::find(labels.begin(), labels.end(), nn::kNoGesture) == labels.end()
+             ? "has no ordinary motion (the label none)"
+             : "its ordinary motion (the label none) has no stroke to learn from";
+}
+
 // Errors: those of nn::loadPaths().
 Result<TrainingStrokes> trainingStrokes(const TrainGestureOptions& options) {
   TrainingStrokes training;
@@ -51,9 +60,8 @@ Result<TrainingStrokes> trainingStrokes(const TrainGestureOptions& options) {
   training.how = "recording " + options.data.substr(options.data.find_last_of('/') + 1);
   const auto isNone = [](const nn::LabelledStroke& s) { return s.gesture == nn::kNoGesture; };
   if (std::any_of(training.strokes.begin(), training.strokes.end(), isNone)) return training;
-  printError(
-      "{}: has no ordinary motion (the label none), so that of {} synthetic people is used\n",
-      options.data, kOrdinary.people);
+  printError("{}: {}, so the ordinary motion of {} synthetic people is used\n", options.data,
+             whyNoOrdinary(*recording), kOrdinary.people);
   std::size_t none = 0;
   for (nn::LabelledStroke& stroke : strokesOf(kOrdinary, none))
     training.strokes.push_back(std::move(stroke));
@@ -65,6 +73,7 @@ Result<TrainingStrokes> trainingStrokes(const TrainGestureOptions& options) {
 int trainGestureFile(const TrainGestureOptions& options) {
   const SystemClock clock;
   const Timestamp began = clock.now();
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   const auto training = trainingStrokes(options);
   if (!training) return fail(training.error());
   auto model = nn::trainGestures(training->strokes, options.settings);
@@ -95,6 +104,7 @@ struct SynthesizeGestureOptions {
 };
 
 int synthesizeGestures(const SynthesizeGestureOptions& options) {
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   nn::PathRecording all;
   all.synthetic = true;
   for (std::size_t n = 0; n < options.movers.people; ++n) {

@@ -10,6 +10,7 @@
 #include "daemon/base/result.h"
 #include "daemon/cli/mesh/import_points.h"
 #include "daemon/cli/mesh/input_kinds.h"
+#include "daemon/cli/mesh/outwards.h"
 #include "render/mesh/io/mesh_file.h"
 
 namespace merlin::cli {
@@ -24,6 +25,7 @@ struct ImportedModel {
   std::size_t welded_edges = 0, welded_vertices = 0;
   std::optional<PointFacts> cloud{};
   std::vector<std::string> notes{};  // already printed
+  Outwards outwards{};
 
   const render::mesh::Origin& origin() const { return cloud ? cloud->origin : loaded.origin; }
 };

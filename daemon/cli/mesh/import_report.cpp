@@ -198,6 +198,7 @@ void reportModel(const ImportNames& names, const ImportedModel& model, const Imp
     json["texture_bytes"] = mesh.texture.size();
     json["notes"] = model.notes;
     for (const Repair& repair : repairsOf(model.loaded)) json[repair.key] = repair.count;
+    model.outwards.addTo(json);
     printJsonLine(json);
     return;
   }

@@ -25,8 +25,7 @@ std::vector<Repair> oddities(const Inspection& is) {
           {"isolated", "vertices that no triangle uses", is.isolated},
           {"not_finite", "vertices that are not numbers", is.not_finite},
           {"normals_not_unit", "normals that are not of length one", is.not_unit},
-          {"inside_out", "closed parts that face inwards (or are the inside of hollow ones)",
-           is.inside_out}};
+          {"inside_out", "closed parts that face inwards", is.inside_out}};
 }
 
 double totalLength(const Inspection& is) {

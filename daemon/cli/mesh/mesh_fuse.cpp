@@ -13,6 +13,7 @@
 #include "daemon/cli/mesh/input_kinds.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/mesh/outwards.h"
 #include "daemon/cli/mesh/pose_file.h"
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
@@ -30,7 +31,7 @@ struct MeshFuse {
   fuse::FuseSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;
-  bool lost_says_nothing = false, local = false, json = false;
+  bool lost_says_nothing = false, local = false, json = false, outwards = false;
 
   std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
   bool makesModel() const { return output.ends_with(".mrm"); }
@@ -49,6 +50,7 @@ struct FusedFile {
   render::mesh::WrittenMesh mesh{};
   std::optional<std::size_t> coarsest{};  // triangles of a model's coarsest level
   double reading = 0, fusing = 0, writing = 0;
+  Outwards outwards{};
 };
 
 Result<ImportedRange> readScan(const MeshFuse& options, std::size_t number) {
@@ -217,6 +219,7 @@ void reportJson(const MeshFuse& options, const Scans& scans, const fuse::Fused& 
     json["origin_added"] =
         !options.makesModel() && hasOrigin(scans.origin, options.local, file.mesh);
   }
+  file.outwards.addTo(json);
   printJsonLine(json);
 }
 
@@ -279,11 +282,12 @@ int fuseFiles(MeshFuse& options) {
   const auto scans = readScans(options);
   if (!scans) return fail(scans.error());
   const Timestamp read = clock.now();
-  const auto fused = fuseScans(options, scans->images);
+  auto fused = fuseScans(options, scans->images);
   if (!fused) return fail(fused.error());
   if (fused->not_numbers > 0)
     printNote(fmt::format("{}: {} vertices have 0 in a feature that no scan has there",
                           options.output, fused->not_numbers));
+  file.outwards = faceOutwards(options.output, options.outwards, fused->mesh);
   const Timestamp done = clock.now();
   if (const auto written = writeFused(options, *scans, fused->mesh, file); !written)
     return fail(written.error());
@@ -347,6 +351,7 @@ void addMeshFuse(Command mesh, Run& run) {
       .typeName("METRES_PER_UNIT");
   options->range.addReadingTo(command);
   addVolume(command, *options);
+  addOutwards(command, options->outwards);
   addLimits(command, options->memory, options->threads);
   addLocal(command, options->local);
   command.flag("--json", options->json, "Print the report as JSON, for programs");

@@ -19,6 +19,7 @@
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
+#include "daemon/cli/mesh/outwards.h"
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
 #include "render/image/image_file.h"
@@ -115,8 +116,9 @@ Result<Ok> writeImage(const MeshImport& options, ImportedRange& range, ImportTim
 // Errors: kInvalidArgument (an option that would do nothing to a range image that is written).
 Result<Ok> checkImageOptions(const MeshImport& options) {
   if (!makesImage(options)) return Ok{};
-  const std::string option =
-      options.texture.empty() ? options.range.givenForMesh() : std::string("--texture");
+  std::string option = options.range.givenForMesh();
+  if (options.outwards) option = "--outwards";
+  if (!options.texture.empty()) option = "--texture";
   if (option.empty()) return Ok{};
   return Error{Errc::kInvalidArgument,
                fmt::format("{}: {} is for a mesh or a model; a range image (.pgm) has the ranges "
@@ -148,6 +150,7 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
   if (!meshed) return meshed.error();
   bar.finish();
   render::mesh::Mesh& mesh = range->mesh.mesh;
+  faceOutwards(options.input(), options.outwards, mesh);
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   if (range->mesh.not_numbers > 0)
     printNote(fmt::format("{}: {} values of features were not numbers and were replaced by 0",
@@ -225,6 +228,7 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
   render::mesh::Mesh& mesh = model->loaded.mesh;
   const auto scaled = scale(options.input(), options.range.scale.value_or(1), *model);
   if (!scaled) return scaled.error();
+  model->outwards = faceOutwards(options.input(), options.outwards, mesh);
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   times.reading = watch.lap();
   const auto written =
@@ -283,6 +287,7 @@ void addImportOptions(Command command, MeshImport& options) {
               "Picture over the whole range image, or of a mesh with texture coordinates; it is "
               "stored in the model, or beside the mesh")
       .typeName("FILE.png|.jpg");
+  addOutwards(command, options.outwards);
   addLimits(command, options.memory, options.threads);
 }
 

@@ -24,6 +24,7 @@ struct MeshImport {
   bool json = false;
   bool quiet = false;           // no report; notes and progress are still printed
   ProgressListener progress{};  // may be empty
+  bool outwards = false;        // whether closed parts that face inwards are turned
 
   const std::string& input() const { return inputs.front(); }
 };

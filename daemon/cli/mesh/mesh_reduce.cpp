@@ -10,6 +10,7 @@
 #include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/mesh_memory.h"
+#include "daemon/cli/mesh/outwards.h"
 #include "daemon/cli/mesh/reduction_step.h"
 #include "daemon/cli/print.h"
 #include "render/image/image_file.h"
@@ -27,13 +28,15 @@ struct ReduceOptions {
   render::reduce::ReduceSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   bool lock_borders = false;
+  bool outwards = false;
   bool json = false;
 };
 
-// Time and memory of the command, for the report.
+// Time and memory of the command, and which parts faced inwards, for the report.
 struct Usage {
   double reducing = 0, all = 0;  // reduction alone, and with reading and writing [s]
   std::size_t limit = 0;         // memory limit [bytes]
+  Outwards outwards{};
 };
 
 Result<render::reduce::Weights> weightsOf(const ReduceOptions& options,
@@ -75,6 +78,7 @@ void report(const ReduceOptions& options, const render::mesh::LoadedMesh& loaded
                                    {"topology_refused", r.topology_refused},
                                    {"stopped", r.stopped}};
     for (const Repair& repair : repairsOf(loaded)) json[repair.key] = repair.count;
+    usage.outwards.addTo(json);
     printJsonLine(json);
     return;
   }
@@ -149,6 +153,7 @@ int reduceMesh(const ReduceOptions& options) {
     return fail(fits.error());
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
+  usage.outwards = faceOutwards(options.input, options.outwards, loaded->mesh);
   if (const auto done = addTexture(options, loaded->mesh, usage.limit); !done)
     return fail(done.error());
   if (const auto named = render::lod::checkNames(loaded->mesh); !named)
@@ -203,6 +208,7 @@ void addMeshReduce(Command mesh, Run& run) {
               "Texture image, which is stored in the model; the default is the image that the "
               "mesh's material names")
       .typeName("FILE.png|.jpg");
+  addOutwards(command, options->outwards);
   command.flag("--preserve-topology", options->settings.preserve_topology,
                "Refuse edge collapses that connect or separate parts of the surface");
   command.flag(

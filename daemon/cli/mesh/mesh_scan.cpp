@@ -2,12 +2,12 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/process_memory.h"
+#include "daemon/base/radian.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/mesh/import_model.h"
@@ -32,8 +32,6 @@ using Json = nlohmann::ordered_json;
 
 namespace range = render::range;
 namespace scan = render::scan;
-
-constexpr double kRadian = std::numbers::pi / 180;
 
 struct MeshScan {
   std::string model, output, geometry = "orthogonal";
@@ -102,7 +100,7 @@ Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box
                            const render::mesh::Origin& origin) {
   const std::vector<double>& c = options.camera;
   if (c.empty())
-    return scan::around(box, options.yaw_deg * kRadian, options.pitch_deg * kRadian,
+    return scan::around(box, options.yaw_deg * kRadian<double>, options.pitch_deg * kRadian<double>,
                         options.settings.geometry);
   if (c.size() == 12) {
     range::Pose pose;
@@ -129,8 +127,8 @@ Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box
 Result<Ok> place(MeshScan& options, const Model& model) {
   range::Geometry& geometry = options.settings.geometry;
   geometry.scanner = *range::scannerOf(options.geometry);
-  geometry.horizontal_rad = options.angles_deg[0] * kRadian;
-  geometry.vertical_rad = options.angles_deg[1] * kRadian;
+  geometry.horizontal_rad = options.angles_deg[0] * kRadian<double>;
+  geometry.vertical_rad = options.angles_deg[1] * kRadian<double>;
   const auto pose = poseOf(options, render::mesh::boundingBox(model.mesh.positions), model.origin);
   if (!pose) return pose.error();
   geometry.T_world_scanner = *pose;
@@ -240,7 +238,7 @@ void reportJson(const MeshScan& options, const scan::Scan& scanned, const Scanne
                      {"dropped", scanned.lost},
                      {"range", {files.ends.low, files.ends.high}},
                      {"range_step", files.range_step},
-                     {"angle_step_deg", files.angle_step / kRadian},
+                     {"angle_step_deg", files.angle_step / kRadian<double>},
                      {"camera", image.geometry.T_world_scanner},
                      {"features", features},
                      {"left_out", files.left_out}});
@@ -255,7 +253,7 @@ void report(const MeshScan& options, const scan::Scan& scanned, const ScannedFil
   printOut(
       "  scanner   at {:.10g} {:.10g} {:.10g}, {:.6g} degrees between pixels, which is {:.4g} at "
       "the farthest range\n",
-      pose[3], pose[7], pose[11], files.angle_step / kRadian,
+      pose[3], pose[7], pose[11], files.angle_step / kRadian<double>,
       files.angle_step * double{files.ends.high});
   printOut("  ranges    {:.6g} to {:.6g}, stored {}\n", files.ends.low, files.ends.high,
            range::isFitsName(options.output) ? "as floats"
@@ -275,7 +273,7 @@ Result<Ok> checkScan(MeshScan& options) {
                  options.output + ": the name of a range image must end in .pgm or .fits"};
   if (const auto free = checkOutputs(options.model, {options.output}); !free) return free;
   options.settings.drop_outs = options.drop_outs_percent / 100;
-  options.settings.most_incidence_rad = options.most_incidence_deg * kRadian;
+  options.settings.most_incidence_rad = options.most_incidence_deg * kRadian<double>;
   return Ok{};
 }
 

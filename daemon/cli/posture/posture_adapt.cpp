@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/files.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/posture/posture.h"
 #include "daemon/cli/print.h"
@@ -20,6 +21,7 @@ struct AdaptOptions {
 };
 
 int adapt(const AdaptOptions& options) {
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   auto file = nn::loadNetwork(options.network);
   if (!file) return fail(file.error());
   if (!file->statistics)
@@ -53,6 +55,7 @@ struct SynthesizeOptions {
 };
 
 int synthesizeFile(const SynthesizeOptions& options) {
+  if (const auto writable = checkWritable(options.output); !writable) return fail(writable.error());
   const nn::Recording recording = synthesize(options.people);
   if (const auto saved = nn::saveRecording(options.output, recording); !saved)
     return fail(saved.error());

@@ -1,17 +1,22 @@
 // merlin posture collect: records hands of one posture from a running daemon's glove into a CSV
 // file.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/files.h"
 #include "daemon/base/log.h"
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/live_samples.h"
 #include "daemon/cli/posture/posture.h"
 #include "daemon/cli/print.h"
+#include "daemon/cli/stop_signals.h"
 #include "daemon/shm/segment.h"
 #include "nn/evaluate.h"
 
@@ -27,6 +32,21 @@ struct CollectOptions {
   std::string label, output = "hands.csv", instance = "merlin", units = "rad";
   std::string device;  // empty: the first glove
   double seconds = 2;
+
+  nn::InputUnit unit() const { return unitNamed(units).value_or(nn::InputUnit::kRadians); }
+};
+
+// A glove of a running merlind.
+struct LiveGlove {
+  std::string name;
+  LiveSamples<GloveSample> samples;
+  int stop = -1;  // the descriptor of stopSignals()
+};
+
+// What was recorded, also if the recording ended early.
+struct CollectedHands {
+  nn::Recording recording;
+  std::optional<Error> ended;  // why it is shorter than wanted
 };
 
 nn::LabelledHand handOf(const GloveSample& sample, const std::string& label, nn::InputUnit unit) {
@@ -63,60 +83,149 @@ Error noGlove(const shm::DeviceSlots& devices, const CollectOptions& options) {
                       names.empty() ? "none" : names)};
 }
 
-// Records the glove for options.seconds, counted from the first sample. Errors: those of
-// DevicesReader::open() (kNotFound: no daemon), kInvalidArgument (no such glove), kTimeout (no
-// sample for 3 s).
-Result<nn::Recording> collect(const CollectOptions& options) {
+// The glove that the options name. Errors: kInvalidArgument (there is no such glove), those of
+// LiveSamples::open().
+Result<LiveGlove> openGlove(const CollectOptions& options, int stop) {
   const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
-  if (!devices) return devices.error();
-  const auto* const slots = (*devices)->glove(options.device);
-  if (!slots) return noGlove(**devices, options);
-  const auto& glove = *slots->samples;
-  const SystemClock clock;
-  nn::Recording recording;
-  recording.unit = unitNamed(options.units).value_or(nn::InputUnit::kRadians);
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  Timestamp heard = clock.now(), drawn{}, began{};
-  bool again = false;
-  for (std::uint64_t next = glove.count();
-       began == Timestamp{} || heard - began < fromSeconds(options.seconds);) {
-    glove.wait(next, {0, 100'000'000});
-    if (next == glove.count()) {
-      if (clock.now() - heard < kSamplePatience) continue;
-      return Error{Errc::kTimeout, slots->name + " has sent nothing for 3 s: see merlin status"};
-    }
-    heard = clock.now();
-    if (began == Timestamp{}) began = heard;
-    next =
-        std::max(next, glove.count() - std::min<std::uint64_t>(glove.count(), shm::kHistory / 2));
-    for (; next < glove.count(); ++next) {
-      const auto sample = glove.at(next);
-      if (!sample) continue;
-      recording.hands.push_back(handOf(*sample, options.label, recording.unit));
-      for (std::size_t i = 0; i < nn::kInputs; ++i)
-        recording.measured[i] = recording.measured[i] || sample->raw[i] != 0;
-      if (!terminal || heard - drawn < kCollectRedraw) continue;
-      drawBars(*sample, again);
-      drawn = heard;
-      again = true;
-    }
-  }
-  return recording;
+  const auto* const glove = devices ? (*devices)->glove(options.device) : nullptr;
+  if (devices && !glove) return noGlove(**devices, options);
+  const std::string name = glove ? glove->name : "";
+  // If merlind runs without devices, this returns the error that says why.
+  auto samples = LiveSamples<GloveSample>::open(options.instance, name, name);
+  if (!samples) return samples.error();
+  return LiveGlove{name, *std::move(samples), stop};
 }
 
-// If the file `path` exists, puts its hands before those of `recording`. Errors: those of
-// nn::loadRecording(); kInvalidArgument (the hands in the file have other sensors).
-Result<Ok> addTo(nn::Recording& recording, const std::string& path) {
-  if (!std::filesystem::exists(path)) return Ok{};
-  auto before = nn::loadRecording(path, recording.unit);
-  if (!before) return before.error();
-  if (before->measured != recording.measured)
-    return Error{
-        Errc::kInvalidArgument,
-        path + ": was recorded with a glove that has other sensors; choose another file with -o"};
-  before->hands.insert(before->hands.end(), recording.hands.begin(), recording.hands.end());
-  recording = *std::move(before);
+nn::Slots measuredIn(const GloveSample& sample) {
+  nn::Slots measured{};
+  for (std::size_t i = 0; i < nn::kInputs; ++i) measured[i] = sample.raw[i] != 0;
+  return measured;
+}
+
+// Passes on the glove's samples until `take` returns false. Errors: kTimeout (no sample for 3 s),
+// kClosed (a signal has arrived, or merlind has ended).
+template <typename Take>
+Result<Ok> listenToGlove(LiveGlove& glove, Take take) {
+  const SystemClock clock;
+  Timestamp heard = clock.now();
+  for (bool goes_on = true; goes_on;) {
+    if (stopArrived(glove.stop)) return Error{Errc::kClosed, "ended by a signal"};
+    const auto taken = glove.samples.listen([&](const GloveSample& sample) {
+      heard = clock.now();
+      goes_on = goes_on && take(sample);
+    });
+    if (!taken) return Error{taken.error().code, "merlind has ended"};
+    if (clock.now() - heard >= kSamplePatience)
+      return Error{Errc::kTimeout, glove.name + " has sent nothing for 3 s: see merlin status"};
+  }
   return Ok{};
+}
+
+// Records the glove for options.seconds, counted from the first sample.
+CollectedHands collect(LiveGlove& glove, const CollectOptions& options) {
+  const SystemClock clock;
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  Timestamp drawn{}, began{};
+  CollectedHands collected;
+  nn::Recording& recording = collected.recording;
+  recording.unit = options.unit();
+  const auto listened = listenToGlove(glove, [&](const GloveSample& sample) {
+    const Timestamp now = clock.now();
+    if (began == Timestamp{}) began = now;
+    recording.hands.push_back(handOf(sample, options.label, recording.unit));
+    const nn::Slots measured = measuredIn(sample);
+    for (std::size_t i = 0; i < nn::kInputs; ++i)
+      recording.measured[i] = recording.measured[i] || measured[i];
+    if (terminal && now - drawn >= kCollectRedraw) {
+      drawBars(sample, drawn != Timestamp{});
+      drawn = now;
+    }
+    return now - began < fromSeconds(options.seconds);
+  });
+  if (!listened) collected.ended = listened.error();
+  return collected;
+}
+
+// Checks that the file has hands in the unit that is to be recorded, as far as its values tell:
+// angles are within +-6.3 radians, and the raw counts of a glove are whole numbers from 0 to 255.
+// `before`: the file's hands, read without a given unit. Errors: kInvalidArgument.
+Result<Ok> checkUnit(const nn::Recording& before, const CollectOptions& options) {
+  const auto refused = [&](const std::string& has, const char* records) {
+    return Error{Errc::kInvalidArgument,
+                 fmt::format("{}: has {}, and --units {} records {}; give the file's unit with "
+                             "--units, or another file with -o",
+                             options.output, has, options.units, records)};
+  };
+  const bool angles = before.unit == nn::InputUnit::kRadians;
+  if (options.unit() == nn::InputUnit::kRadians)
+    return angles ? Result<Ok>(Ok{}) : refused("raw counts (values beyond +-6.3)", "radians");
+  for (const nn::LabelledHand& hand : before.hands) {
+    for (std::size_t i = 0; i < nn::kInputs; ++i) {
+      const float value = hand.value[i];
+      if (!before.measured[i] || (value >= 0 && value <= 255 && value == std::floor(value)))
+        continue;
+      return refused(fmt::format("{} ({} is {})", angles ? "angles in radians" : "another unit",
+                                 nn::kInputNames[i], value),
+                     "raw counts, whole numbers from 0 to 255");
+    }
+  }
+  return Ok{};
+}
+
+// The hands that the output file has so far; none if there is no such file. Errors: those of
+// checkWritable(), nn::loadRecording() and checkUnit().
+Result<nn::Recording> handsSoFar(const CollectOptions& options) {
+  if (const auto writable = checkWritable(options.output); !writable) return writable.error();
+  if (!std::filesystem::exists(options.output)) return nn::Recording{};
+  auto before = nn::loadRecording(options.output);
+  if (!before) return before;
+  if (const auto fits = checkUnit(*before, options); !fits) return fits.error();
+  before->unit = options.unit();
+  return before;
+}
+
+// Errors: kInvalidArgument (the file's hands have other sensors).
+Result<Ok> checkSensors(const nn::Recording& before, const nn::Slots& measured,
+                        const std::string& path) {
+  if (before.hands.empty() || before.measured == measured) return Ok{};
+  return Error{
+      Errc::kInvalidArgument,
+      path + ": was recorded with a glove that has other sensors; choose another file with -o"};
+}
+
+// Appends the recorded hands to those of `before` and writes them all. Errors: those of
+// checkSensors() and nn::saveRecording().
+Result<Ok> saveHands(nn::Recording before, nn::Recording recording, const CollectOptions& options) {
+  const std::size_t taken = recording.hands.size();
+  if (auto fits = checkSensors(before, recording.measured, options.output); !fits) return fits;
+  before.hands.insert(before.hands.end(), recording.hands.begin(), recording.hands.end());
+  recording.hands = std::move(before.hands);
+  recording.synthetic = before.synthetic;
+  if (auto saved = nn::saveRecording(options.output, recording); !saved) return saved;
+  printOut("{}: {} hands of \"{}\" recorded, {} in all\n", options.output, taken, options.label,
+           recording.hands.size());
+  for (const nn::Overlap& o : nn::overlapsOf(options.label, recording.hands))
+    printError(
+        "warning: \"{}\" and \"{}\" are hard to tell apart: their means are {:.1f} standard "
+        "deviations apart, and {} hands are nearer to the mean of the other posture\n",
+        o.first, o.second, o.deviations, o.mixed_up);
+  return Ok{};
+}
+
+// Waits for a sample, so that what is wrong with the glove or the file is said before the person
+// holds the posture. Errors: those of openGlove(), listenToGlove() and checkSensors().
+Result<LiveGlove> openGloveFor(const nn::Recording& before, const CollectOptions& options,
+                               int stop) {
+  auto glove = openGlove(options, stop);
+  if (!glove) return glove;
+  nn::Slots measured{};
+  const auto heard = listenToGlove(*glove, [&](const GloveSample& sample) {
+    measured = measuredIn(sample);
+    return false;
+  });
+  if (!heard) return heard.error();
+  if (const auto fits = checkSensors(before, measured, options.output); !fits) return fits.error();
+  return glove;
 }
 
 int run(const CollectOptions& options) {
@@ -124,21 +233,23 @@ int run(const CollectOptions& options) {
     return fail({Errc::kInvalidArgument,
                  fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
                              options.label, nn::kLongestName)});
+  auto before = handsSoFar(options);
+  if (!before) return fail(before.error());
+  const UniqueFd stop = stopSignals();
+  auto glove = openGloveFor(*before, options, stop.get());
+  if (!glove) return fail(glove.error());
   printError("hold \"{}\" for {} s\n", options.label, options.seconds);
-  auto recording = collect(options);
-  if (!recording) return fail(recording.error());
-  const std::size_t taken = recording->hands.size();
-  if (const auto added = addTo(*recording, options.output); !added) return fail(added.error());
-  if (const auto saved = nn::saveRecording(options.output, *recording); !saved)
-    return fail(saved.error());
-  printOut("{}: {} hands of \"{}\" recorded, {} in all\n", options.output, taken, options.label,
-           recording->hands.size());
-  for (const nn::Overlap& o : nn::overlapsOf(options.label, recording->hands))
-    printError(
-        "warning: \"{}\" and \"{}\" are hard to tell apart: their means are {:.1f} standard "
-        "deviations apart, and {} hands are nearer to the mean of the other posture\n",
-        o.first, o.second, o.deviations, o.mixed_up);
-  return kExitDone;
+  CollectedHands collected = collect(*glove, options);
+  const std::size_t hands = collected.recording.hands.size();
+  if (hands > 0) {
+    const auto saved = saveHands(*std::move(before), std::move(collected.recording), options);
+    if (!saved) return fail(saved.error());
+  }
+  if (!collected.ended) return kExitDone;
+  return fail({collected.ended->code,
+               collected.ended->what +
+                   (hands == 0 ? "; no hand was recorded, so nothing was written"
+                               : fmt::format("; {} hands were recorded until then", hands))});
 }
 
 }  // namespace

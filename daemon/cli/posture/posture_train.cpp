@@ -89,6 +89,8 @@ int report(const TrainOptions& options, const nn::Fitted& fitted, double seconds
 }
 
 int train(TrainOptions options) {
+  const auto writable = checkWritable({options.folds > 0 ? "" : options.output, options.curve});
+  if (!writable) return fail(writable.error());
   const auto recording = trainingHands(options);
   if (!recording) return fail(recording.error());
   options.fit.phi = nn::phiNamed(options.phi).value_or(nn::Phi::kSigmoid);

@@ -38,6 +38,7 @@ struct ShowFileOptions {
   // The name of an option about the import of meshes that was given; empty if none was.
   std::string meshOption() const {
     if (mesh.range.scale) return "--scale";
+    if (mesh.outwards) return "--outwards";
     return mesh.texture.empty() ? mesh.range.anyGiven() : "--texture";
   }
 };

@@ -1,6 +1,7 @@
 #include "daemon/cli/wall/aligned_wall.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -53,6 +54,14 @@ const AlignedPicture* AlignAnswer::find(const std::string& output) const {
   return found == outputs.end() ? nullptr : &*found;
 }
 
+Error wallsReason(Error error) {
+  constexpr std::string_view kCommand = ": align: ";
+  const auto at = error.what.find(kCommand);
+  if (error.code == Errc::kInvalidArgument && at != std::string::npos)
+    error.what.erase(0, at + kCommand.size());
+  return error;
+}
+
 Result<AlignAnswer> readAlignAnswer(const std::string& text) {
   try {
     const auto json = nlohmann::json::parse(text);
@@ -67,7 +76,7 @@ Result<AlignAnswer> readAlignAnswer(const std::string& text) {
 
 Result<AlignAnswer> AlignedWall::ask(const state::AlignRequest& request) const {
   const auto answer = askRole(instance_, "wall", {"align", state::textOf(request)});
-  if (!answer) return answer.error();
+  if (!answer) return wallsReason(answer.error());
   return readAlignAnswer(*answer);
 }
 

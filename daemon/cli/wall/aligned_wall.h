@@ -44,7 +44,8 @@ class AlignedWall {
  public:
   explicit AlignedWall(std::string instance) : instance_(std::move(instance)) {}
 
-  // Errors: those of askRole(); kMalformed: not an answer of this version.
+  // Errors: those of askRole(), of a request that the wall refused only the reason (wallsReason());
+  // kMalformed: not an answer of this version.
   Result<AlignAnswer> ask(const state::AlignRequest& request) const;
 
   // The same, then waits until all outputs show the change, 60 s at most. Errors: kTimeout.
@@ -53,6 +54,10 @@ class AlignedWall {
  private:
   std::string instance_;
 };
+
+// An error of askRole(), without the socket's address and the command, by which the message of a
+// refused request begins.
+Error wallsReason(Error error);
 
 // Reads the answer. Errors: kMalformed.
 Result<AlignAnswer> readAlignAnswer(const std::string& text);

@@ -3,6 +3,7 @@
 #include "daemon/cli/wall/mpcdi.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -22,6 +23,8 @@
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/print.h"
 #include "daemon/cli/wall/aligned_wall.h"
+#include "daemon/state/state.h"
+#include "daemon/state/state_folder.h"
 #include "render/correct/io/mpcdi.h"
 
 namespace merlin::cli {
@@ -48,17 +51,69 @@ Result<Settings> readSettings(const std::string& path) {
   return settings;
 }
 
-// What merlin wall align has moved on the running wall of this name. If the wall does not run,
-// nothing and a note: the moves are then in a file whose place depends on the user who runs
-// merlind.
-AlignAnswer movesOf(const std::string& instance) {
-  auto answer = AlignedWall(instance).ask(state::ListRequest{});
-  if (answer) return *std::move(answer);
+// What merlin wall align has moved: on the running wall, or as its state file has it.
+struct Moves {
+  AlignAnswer answer;                // of the running wall
+  std::optional<state::State> kept;  // of a wall that does not run
+};
+
+// The moves on the wall of this configuration. If it cannot be asked, those of its state file, and
+// a note about that; if that file cannot be read, none and a note: the file's place depends on the
+// user who runs merlind.
+Moves movesOf(const Settings& settings) {
+  auto answer = AlignedWall(settings.instance).ask(state::ListRequest{});
+  if (answer) return {*std::move(answer), {}};
+  const std::string file = state::findStateFile(settings.state_file, settings.instance);
+  const auto text = file.empty() ? Result<std::string>(Error{Errc::kNotFound, "there is none"})
+                                 : state::StateFolder(file).read();
+  auto kept = text ? state::parseState(*text, file) : Result<state::State>(text.error());
+  if (kept) {
+    printNote(
+        fmt::format("what merlin wall align has moved is read from the state file {}, since the "
+                    "wall cannot be asked: {}",
+                    file, answer.error().what));
+    return {{}, *std::move(kept)};
+  }
   printNote(
       fmt::format("if merlin wall align has moved anything, it is not in the file, since the "
                   "wall cannot be asked: {}",
                   answer.error().what));
   return {};
+}
+
+// The moves of an output that the state file has, in the form of a running wall's answer. Where the
+// file does not say for which corners they were made, they are for those of the configuration.
+AlignedPicture keptPicture(const state::OutputAlignment& kept,
+                           const render::correct::CorrectionSettings& correction) {
+  const state::OutputForm& form = kept.form;
+  AlignedPicture picture{form.output, form.width, form.height, false, {}};
+  picture.mesh_columns = form.mesh_columns;
+  picture.mesh_rows = form.mesh_rows;
+  const std::array<double, 8> corners = form.corners.value_or(correction.corners);
+  for (std::size_t i = 0; i < picture.corners.size(); ++i)
+    picture.corners[i].configured = {corners[2 * i], corners[2 * i + 1]};
+  for (const auto& [place, by] : kept.moved) {
+    if (place.of == state::Place::Of::kPin)
+      picture.corners[place.corner()].moved = by;
+    else
+      picture.points.push_back({place.column, place.row, by});
+  }
+  return picture;
+}
+
+// The moves of an output of this size; nothing if there are none.
+std::optional<AlignedPicture> movesOfOutput(const Moves& moves,
+                                            const render::out::OutputSettings& output,
+                                            const render::out::PictureSize& size) {
+  const std::string name = output.shownName();
+  if (const AlignedPicture* const moved = moves.answer.find(name)) return *moved;
+  if (!moves.kept) return std::nullopt;
+  const render::correct::MeshSettings& mesh = output.correction.mesh;
+  const state::OutputAlignment* kept = state::alignmentFor(
+      *moves.kept,
+      {name, size.width, size.height, mesh.columns, mesh.rows, output.correction.corners});
+  if (!kept) kept = moves.kept->alignment.find(name);
+  return kept ? std::optional(keptPicture(*kept, output.correction)) : std::nullopt;
 }
 
 // The correction including the moves; nothing if they were made with another size, mesh or corners.
@@ -85,17 +140,22 @@ std::optional<render::correct::CorrectionSettings> movedCorrection(
 
 // Adds the moves of the output to its correction, and prints a note about it.
 void addMoves(render::out::OutputSettings& output, const render::out::PictureSize& size,
-              const AlignAnswer& moves) {
+              const Moves& moves) {
   const std::string name = output.shownName();
-  const AlignedPicture* const moved = moves.find(name);
+  const auto moved = movesOfOutput(moves, output, size);
   if (!moved || !moved->isMoved()) return;
   const auto correction = movedCorrection(output.correction, size, *moved);
   if (!correction) {
     printNote(
-        fmt::format("{}: what merlin wall align has moved is not in the file: the wall runs "
-                    "with another size, mesh or corners of this output than the "
-                    "configuration has; run merlin reload, then export again",
-                    name));
+        moves.kept
+            ? fmt::format("{}: what merlin wall align has moved is not in the file: it was made "
+                          "for another size, mesh or corners of this output than the "
+                          "configuration has",
+                          name)
+            : fmt::format("{}: what merlin wall align has moved is not in the file: the wall runs "
+                          "with another size, mesh or corners of this output than the "
+                          "configuration has; run merlin reload, then export again",
+                          name));
     return;
   }
   output.correction = *correction;
@@ -128,7 +188,7 @@ Result<render::correct::MpcdiOutput> exported(const render::out::OutputSettings&
 // The requested outputs, at least one. Errors also name the existing outputs.
 Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const MpcdiExportOptions& options,
                                                                   const Settings& settings) {
-  const AlignAnswer moves = movesOf(settings.instance);
+  const Moves moves = movesOf(settings);
   std::vector<render::correct::MpcdiOutput> outputs;
   std::vector<std::string> names;
   for (render::out::OutputSettings output : settings.wall.outputs) {
@@ -175,8 +235,9 @@ void addExport(Command mpcdi, Run& run) {
   Command command = mpcdi.subcommand(
       "export",
       "Write the warp, blend and black level of a configuration's outputs as an MPCDI file "
-      "(profile 2d), with a region for each output that has a correction. If the wall runs, the "
-      "file includes what was moved with merlin wall align, and a note says so: once the "
+      "(profile 2d), with a region for each output that has a correction. The "
+      "file includes what was moved with merlin wall align, of a wall that does not run as its "
+      "state file has it, and a note says so: once the "
       "configuration uses the file, run merlin wall align --reset --output NAME, or it is moved "
       "twice.\nExample: merlin wall mpcdi export wall.mpcdi -c /etc/merlin/merlin.json");
   command.option("file", options->file, "The MPCDI file").required().typeName("FILE.mpcdi");

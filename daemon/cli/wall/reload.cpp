@@ -16,6 +16,7 @@
 #include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
 #include "daemon/reload/plan.h"
+#include "daemon/state/set_aside.h"
 
 namespace merlin::cli {
 namespace {
@@ -162,6 +163,12 @@ std::vector<std::string> together(const std::vector<Reloaded>& all, const char* 
 
 std::string itself(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
 
+// The note about an alignment that does not fit its output any more. `is`: "is" or "would be".
+std::string asideText(const Json& aside, const char* is) {
+  return fmt::format("the alignment of output {} {} set aside: {}; {}", aside.value("output", ""),
+                     is, aside.value("why", ""), state::kComesBack);
+}
+
 // Removes the settings of a list or group whose own name is in `settings` too, since all of it
 // changed.
 void leaveOutMembers(std::vector<std::string>& settings) {
@@ -236,6 +243,13 @@ void printDone(const std::vector<Reloaded>& all, reload::Readers running, const 
     printOut("merlind {} again, because these settings take effect only at a start:\n", tense);
   printTogether("  ", restart, [](const std::string&) { return std::string(); });
   if (swapped.empty() && unread.empty() && restart.empty()) printOut("nothing changed\n");
+  const bool is_check = std::ranges::any_of(
+      all, [](const Reloaded& r) { return r.answer.value("only_checked", false); });
+  const auto aside = together(
+      all, "set_aside",
+      is_check ? +[](const Json& a) { return asideText(a, "would be"); }
+               : +[](const Json& a) { return asideText(a, "is"); });
+  for (const std::string& note : aside) printNote(note);
 }
 
 // Prints why nothing was swapped.
@@ -381,7 +395,8 @@ void addReload(Command app, Run& run) {
               "The daemon of this process, instead of --instance (for systemd's ExecReload=)")
       .typeName("PID");
   command.flag("--check", options->check,
-               "Only print what would be swapped and what needs a restart");
+               "Only print what would be swapped, what needs a restart, and which outputs' "
+               "alignments would be set aside since they do not fit any more");
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return reloadInstance(*options); }; });
 }

@@ -10,7 +10,7 @@ namespace {
 using image::kTileSide;
 using image::TilePlace;
 
-constexpr std::size_t kSide = kTileSide;
+constexpr std::size_t kInnerSide = kTileSide;
 constexpr std::size_t kTexel = 4;
 constexpr std::uint64_t kAlways = ~std::uint64_t{0};  // TileSlot::used of the coarsest level
 
@@ -18,11 +18,11 @@ constexpr std::uint64_t kAlways = ~std::uint64_t{0};  // TileSlot::used of the c
 TileBorder edgesOf(const TilePixels& pixels, std::size_t width, std::size_t height) {
   TileBorder edges;
   const auto texel = [&](std::size_t x, std::size_t y) {
-    return &pixels[kTexel * (y * kSide + x)];
+    return &pixels[kTexel * (y * kInnerSide + x)];
   };
-  std::copy_n(texel(0, 0), kTexel * kSide, &edges.top[kTexel]);
-  std::copy_n(texel(0, height - 1), kTexel * kSide, &edges.bottom[kTexel]);
-  for (std::size_t y = 0; y < kSide; ++y) {
+  std::copy_n(texel(0, 0), kTexel * kInnerSide, &edges.top[kTexel]);
+  std::copy_n(texel(0, height - 1), kTexel * kInnerSide, &edges.bottom[kTexel]);
+  for (std::size_t y = 0; y < kInnerSide; ++y) {
     std::copy_n(texel(0, y), kTexel, &edges.left[kTexel * y]);
     std::copy_n(texel(width - 1, y), kTexel, &edges.right[kTexel * y]);
   }
@@ -136,8 +136,9 @@ void TileCache::refreshBorder(TileSlot& slot) {
   const auto corner = [&](auto& row, std::size_t at, const std::uint8_t* from) {
     std::copy_n(from, kTexel, &row[at]);
   };
-  constexpr std::size_t kFirst = kTexel, kLast = kTexel * kSide, kRight = kTexel * (kSide + 1);
-  constexpr std::size_t kLowest = kTexel * (kSide - 1);
+  constexpr std::size_t kFirst = kTexel, kLast = kTexel * kInnerSide,
+                        kRight = kTexel * (kInnerSide + 1);
+  constexpr std::size_t kLowest = kTexel * (kInnerSide - 1);
   const TileBorder *const above_left = beside(-1, -1), *const above_right = beside(1, -1),
                           *const below_left = beside(-1, 1), *const below_right = beside(1, 1);
   corner(b.top, 0, above_left ? &above_left->right[kLowest] : &b.top[kFirst]);

@@ -29,7 +29,7 @@ constexpr std::size_t kLongestId = 64;
 constexpr double kMostResolution = 65536;  // [px]
 constexpr double kSamePlace = 1e-6;        // shares of a picture that differ less are the same
 
-std::string shown(std::string_view text) { return oneLine(excerpt(text)); }
+std::string shownText(std::string_view text) { return oneLine(excerpt(text)); }
 
 // --- the XML; names of elements and attributes are compared case-insensitively ---
 
@@ -109,7 +109,7 @@ Result<MapFile> mapFile(const pugi::xml_node& fileset, const char* name, const s
   const auto value = gamma.empty() ? std::optional(1.0) : numberIn(gamma, 0.1, 10);
   if (!value) {
     return malformed(fmt::format("the {} of region {} has the gamma \"{}\"; allowed is 0.1 to 10",
-                                 name, id, shown(gamma)));
+                                 name, id, shownText(gamma)));
   }
   file.gamma = *value;
   return file;
@@ -123,7 +123,7 @@ Result<double> gammaOf(const pugi::xml_node& region, const std::string& id) {
   const auto value = numberIn(gamma, kLeastGamma, kMostGamma);
   if (value) return *value;
   return malformed(fmt::format("region {} has the decode gamma \"{}\"; allowed is {:g} to {:g}", id,
-                               shown(gamma), kLeastGamma, kMostGamma));
+                               shownText(gamma), kLeastGamma, kMostGamma));
 }
 
 // The region's place in its buffer, as text; empty if it is the whole buffer.
@@ -137,7 +137,7 @@ std::string partOf(const pugi::xml_node& region) {
     const auto value = numberIn(text, -kMostResolution, kMostResolution);
     whole &= value && std::abs(*value - of_whole) < kSamePlace;
     texts.push_back(value ? fmt::format("{} {:g}", name, *value)
-                          : fmt::format("{} \"{}\"", name, shown(text)));
+                          : fmt::format("{} \"{}\"", name, shownText(text)));
   }
   return whole ? std::string() : fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -149,7 +149,7 @@ Result<RegionFiles> regionFiles(const std::string& buffer, const pugi::xml_node&
   r.region.id = attribute(node, "id");
   if (r.region.id.empty() || r.region.id.size() > kLongestId || !isText(r.region.id)) {
     return malformed(fmt::format("a region's id is \"{}\"; allowed are 1 to {} characters",
-                                 shown(r.region.id), kLongestId));
+                                 shownText(r.region.id), kLongestId));
   }
   const std::string id = fmt::format("\"{}\"", r.region.id);
   const std::string across = attribute(node, "xResolution"), down = attribute(node, "yResolution");
@@ -158,7 +158,7 @@ Result<RegionFiles> regionFiles(const std::string& buffer, const pugi::xml_node&
     return malformed(
         fmt::format("region {} has the size \"{}\" x \"{}\"; xResolution and yResolution are whole "
                     "numbers of 1 to {} pixels",
-                    id, shown(across), shown(down), kMostResolution));
+                    id, shownText(across), shownText(down), kMostResolution));
   }
   r.region.width = *width;
   r.region.height = *height;
@@ -189,13 +189,13 @@ Result<std::vector<RegionFiles>> regionsOf(const pugi::xml_document& document) {
     return Error{Errc::kUnsupported,
                  fmt::format("is of profile \"{}\"; only profile 2d is supported, whose warp does "
                              "not depend on the content",
-                             shown(profile))};
+                             shownText(profile))};
   }
   const std::string version = attribute(root, "version");
   if (!version.starts_with("1.") && !version.starts_with("2.") && version != "1" && version != "2")
     return Error{
         Errc::kUnsupported,
-        fmt::format("is of version \"{}\"; only 1.x and 2.x are supported", shown(version))};
+        fmt::format("is of version \"{}\"; only 1.x and 2.x are supported", shownText(version))};
   std::vector<RegionFiles> regions;
   for (const pugi::xml_node& buffer : children(child(root, "display"), "buffer")) {
     for (const pugi::xml_node& node : children(buffer, "region")) {
@@ -217,7 +217,7 @@ Result<std::vector<RegionFiles>> regionsOf(const pugi::xml_document& document) {
 // --- the maps ---
 
 Error at(const std::string& file, const Error& error) {
-  return {error.code, fmt::format("{}: {}", shown(file), error.what)};
+  return {error.code, fmt::format("{}: {}", shownText(file), error.what)};
 }
 
 Result<MeshInterpolation> interpolationOf(const std::string& name) {
@@ -227,7 +227,7 @@ Result<MeshInterpolation> interpolationOf(const std::string& name) {
       Errc::kUnsupported,
       fmt::format("its interpolation is \"{}\"; only \"linear\", \"smooth\" and \"unknown\" are "
                   "supported",
-                  shown(name))};
+                  shownText(name))};
 }
 
 using Pixel = std::array<double, 3>;  // 0..1, linear
@@ -335,7 +335,7 @@ Result<MeasuredCorrection> Mpcdi::measured(const std::string& region) const {
                  region.empty()
                      ? fmt::format("has the regions {}; set mpcdi_region to the output's region",
                                    fmt::join(ids, ", "))
-                     : fmt::format("has no region \"{}\"; its regions are {}", shown(region),
+                     : fmt::format("has no region \"{}\"; its regions are {}", shownText(region),
                                    fmt::join(ids, ", "))};
   }
   MeasuredCorrection measured;

@@ -17,7 +17,7 @@
 namespace merlin::render::reduce {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kSamples = 32;
 constexpr std::size_t kSampleSize = 20'000;  // vertices
 
@@ -213,7 +213,7 @@ class InBlocks {
     const lod::CollapseLog& log = result_.log;
     const std::size_t n = vertices(), all = n + log.children.size();
     // By node: first the node that it merges into, then the vertex of `rest` that it has become.
-    std::vector<std::uint32_t> into(all, kNone);
+    std::vector<std::uint32_t> into(all, kNoNode);
     for (std::size_t k = 0; k < log.children.size(); ++k) {
       for (const std::uint32_t child : log.children[k])
         into[child] = static_cast<std::uint32_t>(n + k);
@@ -221,7 +221,7 @@ class InBlocks {
     nodes.resize(all - 2 * log.children.size());
     auto number = static_cast<std::uint32_t>(nodes.size());
     for (std::size_t node = all; node-- > 0;) {
-      if (into[node] == kNone)
+      if (into[node] == kNoNode)
         nodes[into[node] = --number] = static_cast<std::uint32_t>(node);
       else
         into[node] = into[into[node]];

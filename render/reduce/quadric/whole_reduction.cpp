@@ -9,7 +9,7 @@
 namespace merlin::render::reduce {
 namespace {
 
-constexpr std::size_t kProgressInterval = 1 << 16;  // triangles
+constexpr std::size_t kProgressTriangles = 1 << 16;  // triangles
 
 }  // namespace
 
@@ -51,7 +51,7 @@ void WholeReduction::reduceTo(std::size_t keep, const Progress& progress) {
   CollapseWorker& w = s_.whole;
   while (s_.triangles > keep && !s_.cancelled) {
     w.removed = 0;
-    loop_.reduceTo(w, std::min(s_.triangles - keep, kProgressInterval), BucketQueue::buckets());
+    loop_.reduceTo(w, std::min(s_.triangles - keep, kProgressTriangles), BucketQueue::buckets());
     if (w.removed == 0) return;
     s_.triangles -= w.removed;
     w.removed = 0;
