@@ -106,15 +106,17 @@ void checkOutput(const render::out::OutputSettings& output, const std::string& a
         fmt::format("has no effect without a mesh: {}/correction/mesh has no points", at));
 }
 
+// Only a doubt: walls have run with it.
 void checkEyeSize(const render::stereo::StereoSettings& stereo, LoadedSettings& loaded) {
   using render::stereo::StereoMode;
   const bool one_each =
       stereo.mode == StereoMode::kAnaglyph || stereo.mode == StereoMode::kTwoOutputs;
   if (!one_each || stereo.size != render::stereo::EyeSize::kFull) return;
-  loaded.addFinding("/wall/stereo/size",
-                    fmt::format("is full, which has no effect in stereo mode {}: it is for "
-                                "side_by_side and top_bottom; leave it out",
-                                nameOf(stereo.mode)));
+  const std::string at = "/wall/stereo/size";
+  loaded.add({true, loaded.lineOf(at), at,
+              fmt::format("is full, which has no effect in stereo mode {}: it is for side_by_side "
+                          "and top_bottom; leave it out",
+                          nameOf(stereo.mode))});
 }
 
 }  // namespace

@@ -188,28 +188,32 @@ Reloader::ReadFile Reloader::read() const {
   file.answer.outcome = judge(loaded, file.named, file.answer.plan);
   file.answer.findings = findingLines(file_, loaded);
   file.settings = std::move(loaded.settings);
-  file.answer.set_aside = setAside(file);
-  if (file.answer.outcome != Outcome::kDone || !options_.devices) return file;
-  if (auto trained = devices::loadTrained(file.settings)) {
-    file.trained = *std::move(trained);
-  } else {  // a file was changed after readConfiguration() had checked it
-    file.answer.outcome = Outcome::kInvalid;
-    file.answer.findings.push_back(
-        fmt::format("{}: /postures or /gestures cannot be used: {}", file_, trained.error().what));
+  if (file.answer.outcome == Outcome::kDone && options_.devices) {
+    if (auto trained = devices::loadTrained(file.settings)) {
+      file.trained = *std::move(trained);
+    } else {  // a file was changed after readConfiguration() had checked it
+      file.answer.outcome = Outcome::kInvalid;
+      file.answer.findings.push_back(fmt::format("{}: /postures or /gestures cannot be used: {}",
+                                                 file_, trained.error().what));
+    }
   }
+  fitAlignments(file);
   return file;
 }
 
-// The alignments that the settings of the file set aside, if they are valid.
-std::vector<reload::AsideAlignment> Reloader::setAside(const ReadFile& file) const {
-  std::vector<reload::AsideAlignment> aside;
-  const bool valid =
-      file.answer.outcome == Outcome::kDone || file.answer.outcome == Outcome::kRestarts;
-  if (!options_.wall || !parts_.keeper || !valid) return aside;
-  const state::Alignment alignment = parts_.keeper->state().alignment;
-  for (wall::Misfit& misfit : wall::misfitsOf(drawnWall(file.settings.wall), alignment))
-    aside.push_back({std::move(misfit.output), std::move(misfit.why)});
-  return aside;
+// Says in the answer which alignments the wall sets aside or brings back, if its aligner gets
+// settings of the file that changed.
+void Reloader::fitAlignments(ReadFile& file) const {
+  reload::Answer& answer = file.answer;
+  const bool fits = answer.outcome == Outcome::kRestarts ||
+                    (answer.outcome == Outcome::kDone && answer.plan.has(Part::kCorrection));
+  if (!options_.wall || !parts_.keeper || !fits) return;
+  const state::State state = parts_.keeper->state();
+  for (auto& [output, fitted] :
+       wall::fittedOutputs(drawnWall(file.settings.wall), state.alignment, state.set_aside)) {
+    if (!fitted.aside_why.empty()) answer.set_aside.push_back({output, fitted.aside_why});
+    if (fitted.is_back) answer.brought_back.push_back(output);
+  }
 }
 
 Reloader::Done Reloader::finish(const Request& request, ReadFile file) {

@@ -90,7 +90,7 @@ class Reloader {
   void checkStart(LoadedSettings& loaded, const std::vector<SettingChange>& changes) const;
   reload::Outcome judge(LoadedSettings& loaded, const NamedFiles& named, reload::Plan& plan) const;
   reload::Readers process() const;
-  std::vector<reload::AsideAlignment> setAside(const ReadFile& file) const;
+  void fitAlignments(ReadFile& file) const;
   Result<std::string> add(bool only_check, bool is_command);
   void read(const std::stop_token& stop, Progress& progress);
   Done finish(const Request& request, ReadFile file);

@@ -155,6 +155,7 @@ class Fit {
       } else if (++looks > kPatience) {
         break;
       }
+      if (error < settings_.mse_limit) break;
     }
     if (std::isfinite(least)) s.at.weights = best;
   }
@@ -176,6 +177,8 @@ std::optional<Error> invalid(std::span<const LabelledHand> hands,
   };
   if (s.phi == Phi::kSignum)
     return error("phi signum has no slope and cannot be trained; allowed: sigmoid, atan");
+  if (!(s.mse_limit >= 0))
+    return error(fmt::format("mse_limit {}; it must be at least 0", s.mse_limit));
   if (s.starts < 1 || s.passes < 1)
     return error(fmt::format("{} starts, {} passes; each must be at least 1", s.starts, s.passes));
   if (!(s.validation_share >= 0 && s.validation_share <= 0.5))

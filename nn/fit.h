@@ -23,6 +23,9 @@ struct FitSettings {
   std::size_t starts = 20;        // random assignments of codes with initial weights, >= 1
   std::size_t passes = 480;       // maximum number of passes with the best start, >= 1
   double validation_share = 0.1;  // share of each posture's hands, from the end; [0, 0.5]
+  // Training goes on to the final passes once the mean squared error of a pass is below this, but
+  // not before the noise has settled; >= 0, and 0 never ends it.
+  double mse_limit = 0;
 };
 
 // One line of the learning curve.

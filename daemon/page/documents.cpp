@@ -38,14 +38,20 @@ std::string statusDocument(const PageState& page, const std::vector<RoleState>& 
       list);
 }
 
-std::string contentsDocument(const std::vector<ContentState>& contents) {
-  std::string list;
+std::string contentsDocument(const std::vector<ContentState>& contents,
+                             const std::vector<ShownState>& shown) {
+  std::string list, shown_list;
   for (const ContentState& c : contents) {
     list += fmt::format(R"({}{{"name":{},"kind":{},"thumbnail":{},"fault":{}}})",
                         list.empty() ? "" : ",", jsonText(c.name), jsonText(c.kind),
                         c.thumbnail > 0 ? std::to_string(c.thumbnail) : "null", jsonText(c.fault));
   }
-  return fmt::format("{{\"contents\":[{}]}}\n", list);
+  for (const ShownState& s : shown) {
+    shown_list +=
+        fmt::format(R"({}{{"name":{},"thumbnail":{},"place":{}}})", shown_list.empty() ? "" : ",",
+                    jsonText(s.name), s.thumbnail, s.place);
+  }
+  return fmt::format("{{\"contents\":[{}],\"shown\":[{}]}}\n", list, shown_list);
 }
 
 std::string phoneDocument(const PhoneState& phone) {

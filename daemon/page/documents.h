@@ -26,6 +26,13 @@ struct ContentState {
   std::string fault;            // why its file cannot be read; empty: nothing is known
 };
 
+// A content that is not in the configuration, as the wall showed it.
+struct ShownState {
+  std::string name;
+  std::uint64_t thumbnail = 0;  // number of its small picture
+  std::uint64_t place = 0;      // by which the picture is asked for
+};
+
 // The QR code for a phone's camera, and the address that it contains.
 struct PhoneState {
   std::string address;  // of the page, without the token; empty: a phone cannot reach it
@@ -42,8 +49,10 @@ struct PageState {
 // {"page": {...}, "roles": {"wall": {"running", "age_s", "status": {...} or null}, ...}}.
 std::string statusDocument(const PageState& page, const std::vector<RoleState>& roles);
 
-// {"contents": [{"name", "kind", "thumbnail": NUMBER or null, "fault"}, ...]}.
-std::string contentsDocument(const std::vector<ContentState>& contents);
+// {"contents": [{"name", "kind", "thumbnail": NUMBER or null, "fault"}, ...],
+//  "shown": [{"name", "thumbnail": NUMBER, "place": NUMBER}, ...]}.
+std::string contentsDocument(const std::vector<ContentState>& contents,
+                             const std::vector<ShownState>& shown);
 
 // {"address": TEXT or null, "why": TEXT, "rows": ["1101...", ...]}: 1 is dark.
 std::string phoneDocument(const PhoneState& phone);

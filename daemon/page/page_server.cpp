@@ -160,7 +160,7 @@ std::optional<Answer> PageServer::handle(const Request& request, std::uint64_t i
             return std::nullopt;
           },
           [&](const ContentsRoute&) -> std::optional<Answer> {
-            return json(contentsDocument(thumbnails_.contents()));
+            return json(contentsDocument(thumbnails_.contents(), thumbnails_.shown()));
           },
           [&](const ThumbnailRoute& r) -> std::optional<Answer> { return thumbnail(r.content); },
           [&](const PhoneRoute& r) -> std::optional<Answer> { return phone(r.origin); },

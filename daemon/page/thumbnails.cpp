@@ -63,7 +63,16 @@ std::vector<ContentState> Thumbnails::contents() {
 
 std::shared_ptr<const std::string> Thumbnails::jpeg(std::uint64_t place) const {
   const std::lock_guard lock(mutex_);
-  return place < entries_.size() ? entries_[place].jpeg : nullptr;
+  if (place < kMost) return place < entries_.size() ? entries_[place].jpeg : nullptr;
+  return place - kMost < shown_.all().size() ? shown_.all()[place - kMost].jpeg : nullptr;
+}
+
+std::vector<ShownState> Thumbnails::shown() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<ShownState> states;
+  for (const ShownPictures::Picture& p : shown_.all())
+    states.push_back({p.name, p.number, kMost + states.size()});
+  return states;
 }
 
 void Thumbnails::loop(const std::stop_token& stop, Progress& progress) {
@@ -121,14 +130,15 @@ std::optional<Showing> Thumbnails::showing(Timestamp now) {
   return Showing{std::string(textIn(content->name)), covered, stats->full_detail != 0};
 }
 
-// Keeps the wall's picture of a model that has just come up.
+// Keeps the wall's picture of a model, or of what is not in the configuration, that has just come
+// up.
 void Thumbnails::followWall(Timestamp now) {
   const auto before = showing(now);
   if (!before || !watch_.update(*before, now)) return;
   const auto found = std::ranges::find_if(contents_, [&](const PageContent& c) {
     return c.name.substr(0, sizeof(shm::WallContent::name) - 1) == before->content;
   });
-  if (found == contents_.end() || found->read) return;
+  if (found != contents_.end() && found->read) return;
   (void)picture_.update(now);
   const auto after = showing(now);
   // Not if another content came up, or something covered it, while the frame was copied.
@@ -136,7 +146,15 @@ void Thumbnails::followWall(Timestamp now) {
     return;
   render::image::Image image{picture_.width(), picture_.height(), {}};
   image.pixels.assign(picture_.pixels().begin(), picture_.pixels().end());
+  if (found == contents_.end()) return keepShown(before->content, image);
   keepModel(static_cast<std::size_t>(found - contents_.begin()), image);
+}
+
+void Thumbnails::keepShown(const std::string& name, const render::image::Image& image) {
+  auto jpeg = thumbnailOf(image);
+  if (!jpeg) return logWarning("there is no thumbnail of {}: {}", name, jpeg.error().what);
+  const std::lock_guard lock(mutex_);
+  if (shown_.keep(name, *std::move(jpeg), next_)) ++next_;
 }
 
 void Thumbnails::keepModel(std::size_t place, const render::image::Image& image) {

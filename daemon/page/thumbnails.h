@@ -2,7 +2,8 @@
 //
 // The small pictures of pictures, panoramas and slides are read from their files. That of a model
 // is the wall's last picture of it, taken from the wall's shared memory, because a model's file may
-// be larger than this machine's memory, and drawing it would cost the wall time.
+// be larger than this machine's memory, and drawing it would cost the wall time. The same is done
+// for what `merlin show` brought to the wall.
 #pragma once
 
 #include <condition_variable>
@@ -20,6 +21,7 @@
 #include "daemon/base/watched_thread.h"
 #include "daemon/page/documents.h"
 #include "daemon/page/showing.h"
+#include "daemon/page/shown_pictures.h"
 #include "daemon/page/thumbnail_files.h"
 #include "daemon/rfb/shown_picture.h"
 #include "daemon/shm/segment.h"
@@ -43,7 +45,8 @@ struct PageContent {
   std::function<Result<ReadPicture>()> read;
 };
 
-// Thread-safe. Keeps about 20 KB for each content.
+// Thread-safe. Keeps about 20 KB for each content. Pictures of contents that are not in the
+// configuration are kept until this ends.
 class Thumbnails {
  public:
   // Of `contents` only the first kMost are kept; `files` has models' pictures of earlier runs.
@@ -57,7 +60,10 @@ class Thumbnails {
   // The contents in their order. Their files are read again once a minute as long as this is
   // called.
   std::vector<ContentState> contents();
-  // The JPEG picture of the content at `place`; null if there is none.
+  // The contents that are not in the configuration, and of which there is a picture.
+  std::vector<ShownState> shown() const;
+  // The JPEG picture of the content at `place`: its place in contents(), or that of shown(). Null
+  // if there is none.
   std::shared_ptr<const std::string> jpeg(std::uint64_t place) const;
 
   static constexpr std::size_t kMost = 256;
@@ -76,6 +82,7 @@ class Thumbnails {
   void readFiles(Progress& progress);
   bool keep(std::size_t place, std::string jpeg);
   void keepModel(std::size_t place, const render::image::Image& image);
+  void keepShown(const std::string& name, const render::image::Image& image);
   void note(std::size_t place, const std::string& fault);
 
   const std::vector<PageContent> contents_;
@@ -84,6 +91,7 @@ class Thumbnails {
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;  // with mutex_
   std::vector<Entry> entries_;        // guarded by mutex_, except read_at
+  ShownPictures shown_;               // guarded by mutex_
   std::optional<Timestamp> asked_;    // guarded by mutex_, as is next_
   std::uint64_t next_;
   // Used by the thread only.

@@ -60,6 +60,7 @@ std::string answerText(const Answer& answer) {
                   {"restart", pointersOf(answer.plan.restart)},
                   {"elsewhere", pointersOf(answer.plan.elsewhere)},
                   {"set_aside", asideOf(answer.set_aside)},
+                  {"brought_back", answer.brought_back},
                   {"failure", answer.failure}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -25,15 +25,18 @@ struct Answer {
   std::string file;           // the configuration
   std::vector<std::string> findings;  // a line each, as merlind --check-config prints them
   Plan plan;
-  std::string failure;                      // for kFailed: the reason
-  std::vector<AsideAlignment> set_aside{};  // what the new settings set aside
+  std::string failure;  // for kFailed: the reason
+  // What the new settings set aside, and the outputs whose alignments, which were set aside, they
+  // bring back.
+  std::vector<AsideAlignment> set_aside{};
+  std::vector<std::string> brought_back{};
 };
 
 // {"outcome": "done", "only_checked": false, "file": "merlin.json", "findings": [...], "swapped":
 // [{"setting": "/bindings/0/action", "from": "\"grab\"", "to": "\"fly\""}], "restart":
 // ["/wall/render/gpu"], "elsewhere": [...], "set_aside": [{"output": "left", "why": "it was made
-// for 640 x 480 pixels ..."}], "failure": ""}. `from` and `to` are values as JSON text; empty:
-// there is no such setting.
+// for 640 x 480 pixels ..."}], "brought_back": ["left"], "failure": ""}. `from` and `to` are values
+// as JSON text; empty: there is no such setting.
 std::string answerText(const Answer& answer);
 
 // What makes a restart necessary, by name: "/wall/outputs/0/path (and 2 more)". REQUIRES:

@@ -64,7 +64,19 @@ Offset Alignment::offset(std::string_view output, const Place& place) const {
 OutputAlignment& Alignment::entry(const OutputForm& form) {
   const auto found =
       std::ranges::find_if(outputs, [&](const auto& o) { return o.form.output == form.output; });
-  return found != outputs.end() ? *found : outputs.emplace_back(OutputAlignment{form, {}});
+  if (found != outputs.end()) return *found;
+  makeRoom();
+  return outputs.emplace_back(OutputAlignment{form, {}});
+}
+
+// Forgets outputs until there is room for another one.
+void Alignment::makeRoom() {
+  while (outputs.size() >= kMostAligned) {
+    const auto unmoved =
+        std::ranges::find_if(outputs, [](const OutputAlignment& o) { return o.moved.empty(); });
+    const auto& forgotten = unmoved != outputs.end() ? *unmoved : outputs.front();
+    (void)take(std::string(forgotten.form.output));
+  }
 }
 
 void Alignment::add(Step step) {
@@ -142,6 +154,7 @@ Alignment Alignment::take(std::string_view output) {
 }
 
 void Alignment::put(const Alignment& taken) {
+  makeRoom();
   outputs.insert(outputs.end(), taken.outputs.begin(), taken.outputs.end());
   steps.insert(steps.begin() + static_cast<std::ptrdiff_t>(done), taken.steps.begin(),
                taken.steps.end());

@@ -19,6 +19,7 @@ namespace merlin::state {
 inline constexpr std::size_t kMostSteps = 100;     // that can be undone
 inline constexpr std::size_t kMostChanges = 4000;  // in all steps together
 inline constexpr std::size_t kMostMoved = 4000;    // places of all outputs together
+inline constexpr std::size_t kMostAligned = 256;   // outputs, also those that are gone
 inline constexpr double kMostOffset = 16384;       // of one move [px], either sign
 inline constexpr double kMostSum = 1e6;            // of all moves of a place, likewise
 
@@ -90,7 +91,8 @@ struct Alignment {
   const OutputAlignment* find(std::string_view output) const;
 
   // Each of these adds one step, and forgets the steps that were undone and the oldest ones beyond
-  // the limits. Offsets are rounded to thousandths of a pixel.
+  // the limits. Offsets are rounded to thousandths of a pixel. Beyond kMostAligned outputs, what
+  // was moved first is forgotten, those first of which nothing is moved any more.
   void move(const OutputForm& form, const Place& place, const Offset& by);
   // The same, but as a part of the last step if that moved the same place, for a ball that is being
   // pushed.
@@ -105,7 +107,8 @@ struct Alignment {
   // Removes an output's offsets and steps, and returns an alignment that has these alone.
   Alignment take(std::string_view output);
   // Adds what take() has returned. Its steps count as the newest ones; the oldest ones beyond the
-  // limits are forgotten. REQUIRES: this alignment has no output of that name.
+  // limits are forgotten, and outputs as by move(). REQUIRES: this alignment has no output of that
+  // name.
   void put(const Alignment& taken);
   // Number of places that are moved, of all outputs, and of changes in all steps.
   std::size_t moved() const;
@@ -118,6 +121,7 @@ struct Alignment {
 
  private:
   OutputAlignment& entry(const OutputForm& form);
+  void makeRoom();
   void add(Step step);
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <string>
 #include <utility>
 
 namespace merlin::state {
@@ -9,7 +10,9 @@ namespace {
 
 const OutputForm& formOf(const Alignment& alignment) { return alignment.outputs.front().form; }
 
-std::size_t placesOf(const Alignment& alignment) { return alignment.moved() + alignment.changes(); }
+std::size_t entriesOf(const Alignment& alignment) {
+  return alignment.moved() + alignment.changes() + alignment.steps.size();
+}
 
 // Erases the oldest alignment of those that `which` selects while there are more than `most`.
 template <typename Which>
@@ -25,17 +28,16 @@ void SetAside::add(Alignment alignment) {
   if (alignment.isNothing()) return;
   assert(alignment.outputs.size() == 1);
   const std::size_t moved = alignment.moved();
-  alignment.forgetSteps(kMostSteps, kMostAsidePlaces - std::min(moved, kMostAsidePlaces));
-  const OutputForm form = formOf(alignment);
-  std::erase_if(alignments_, [&](const Alignment& a) { return formOf(a) == form; });
+  alignment.forgetSteps(kMostSteps, kMostAsideEntries - std::min(moved, kMostAsideEntries));
+  const std::string output = formOf(alignment).output;
   alignments_.push_back(std::move(alignment));
   keepNewest(alignments_, kMostAsideOfOutput,
-             [&](const Alignment& a) { return formOf(a).output == form.output; });
+             [&](const Alignment& a) { return formOf(a).output == output; });
   keepNewest(alignments_, kMostAside, [](const Alignment&) { return true; });
-  std::size_t places = 0;
-  for (const Alignment& a : alignments_) places += placesOf(a);
-  while (alignments_.size() > 1 && places > kMostAsidePlaces) {
-    places -= placesOf(alignments_.front());
+  std::size_t entries = 0;
+  for (const Alignment& a : alignments_) entries += entriesOf(a);
+  while (alignments_.size() > 1 && entries > kMostAsideEntries) {
+    entries -= entriesOf(alignments_.front());
     alignments_.erase(alignments_.begin());
   }
 }

@@ -12,9 +12,11 @@
 namespace merlin::state {
 
 // Limits, so that the state file stays far below what a file of JSON may have.
-inline constexpr std::size_t kMostAsideOfOutput = 4;   // alignments of one output
-inline constexpr std::size_t kMostAside = 64;          // alignments of all outputs
-inline constexpr std::size_t kMostAsidePlaces = 4000;  // moved places and changes, of all together
+inline constexpr std::size_t kMostAsideOfOutput = 4;  // alignments of one output
+inline constexpr std::size_t kMostAside = 64;         // alignments of all outputs
+// Moved places, steps and their changes, of all together. A single alignment may have this many
+// places and changes, and its steps besides.
+inline constexpr std::size_t kMostAsideEntries = 4000;
 
 // For messages: the end of the sentence which says that an alignment is set aside.
 inline constexpr const char* kComesBack =
@@ -22,9 +24,8 @@ inline constexpr const char* kComesBack =
 
 class SetAside {
  public:
-  // Adds the alignment of one output, as the newest one, in place of one that was made for the same
-  // form. Beyond the limits the oldest ones are forgotten, of a single one the oldest steps. An
-  // alignment that is nothing is not added.
+  // Adds the alignment of one output, as the newest one. Beyond the limits the oldest ones are
+  // forgotten, of a single one the oldest steps. An alignment that is nothing is not added.
   void add(Alignment alignment);
 
   // Removes the newest alignment that `fits`, and returns it; nothing if there is none.

@@ -16,7 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 64, kLongestPath = 4096;
-constexpr std::size_t kMostOutputs = 64;
 constexpr int kLargest = 1 << 20;  // the largest size, and number of points
 constexpr double kLeastRate = 1, kMostRate = 240;
 constexpr std::uint64_t kMostMinutes = 5'000'000'000;  // of local time since 1970
@@ -143,7 +142,7 @@ Alignment alignmentOf(JsonView view) {
   view.allowKeys({"outputs", "steps", "done"});
   Alignment alignment;
   JsonView outputs = view.at("outputs");
-  const std::size_t count = outputs.expectArray(0, kMostOutputs);
+  const std::size_t count = outputs.expectArray(0, kMostAligned);
   for (std::size_t i = 0; i < count; ++i) {
     auto output = outputOf(outputs.at(i));
     if (alignment.find(output.form.output)) outputs.at(i).addFault("each output once");

@@ -15,7 +15,7 @@ namespace {
 using state::Alignment;
 using state::Place;
 
-constexpr auto kStep = std::chrono::milliseconds(500);
+constexpr auto kAlignerStep = std::chrono::milliseconds(500);
 // For undo, pushes of the ball that follow each other within this time are one step.
 constexpr Duration kSamePush = std::chrono::milliseconds(500);
 
@@ -58,43 +58,28 @@ Aligner::~Aligner() { thread_.stop(); }
 // Sets aside the alignments that do not fit their outputs, and brings back those that fit again.
 void Aligner::fitAlignments() {
   bool changed = false;
-  for (const Entry& entry : entries_) {
-    const bool aside = setAside(entry.output), back = bringBack(entry.output);
-    changed = changed || aside || back;
+  for (Entry& entry : entries_) {
+    const Fitted fitted = fitAlignment(entry.output, alignment_, set_aside_);
+    if (!fitted.is_changed) continue;
+    changed = true;
+    ++entry.wanted;
+    const std::string& name = entry.output.name;
+    if (!fitted.aside_why.empty()) {
+      keeper_.addNotice(fmt::format("the alignment of output {} is set aside: {}; {}", name,
+                                    fitted.aside_why, state::kComesBack));
+    }
+    if (fitted.is_back) {
+      keeper_.addNotice(
+          fmt::format("the alignment of output {}, which was set aside, is in effect "
+                      "again, since the output is as it was then",
+                      name));
+    }
   }
   if (!changed) return;
   keeper_.change([&](state::State& s) {
     s.alignment = alignment_;
     s.set_aside = set_aside_;
   });
-}
-
-bool Aligner::setAside(const AlignedOutput& output) {
-  const std::string why = misfitOf(output, alignment_);
-  if (why.empty()) return false;
-  Alignment aside = alignment_.take(output.name);
-  if (aside.isNothing()) return true;
-  keeper_.addNotice(fmt::format("the alignment of output {} is set aside: {}; {}", output.name, why,
-                                state::kComesBack));
-  set_aside_.add(std::move(aside));
-  return true;
-}
-
-bool Aligner::bringBack(const AlignedOutput& output) {
-  if (alignment_.find(output.name)) return false;
-  const auto back = set_aside_.take([&](const Alignment& aside) {
-    if (aside.outputs.front().form.output != output.name) return false;
-    Alignment with = alignment_;
-    with.put(aside);
-    return with.moved() <= state::kMostMoved && misfitOf(output, with).empty();
-  });
-  if (!back) return false;
-  keeper_.addNotice(
-      fmt::format("the alignment of output {}, which was set aside, is in effect again, since the "
-                  "output is as it was then",
-                  output.name));
-  alignment_.put(*back);
-  return true;
 }
 
 Result<Aligner::Entry*> Aligner::find(const std::string& name) {
@@ -341,7 +326,7 @@ void Aligner::loop(const std::stop_token& stop, Progress& progress) {
     AlignInput asked;
     {
       std::unique_lock lock(asked_mutex_);
-      const bool work = wake_.wait_for(lock, stop, kStep, [&] { return work_; });
+      const bool work = wake_.wait_for(lock, stop, kAlignerStep, [&] { return work_; });
       progress.step();
       if (stop.stop_requested()) return;
       if (!work) continue;

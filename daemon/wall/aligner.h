@@ -88,8 +88,6 @@ class Aligner {
 
   Result<Entry*> find(const std::string& name);
   void fitAlignments();
-  bool setAside(const AlignedOutput& output);
-  bool bringBack(const AlignedOutput& output);
   // Each of the following must be called with mutex_ locked.
   Result<Ok> execute(const state::AlignRequest& request);
   Result<Ok> move(const state::MoveRequest& request, bool on = false);

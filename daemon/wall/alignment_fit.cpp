@@ -1,6 +1,7 @@
 #include "daemon/wall/alignment_fit.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -95,18 +96,42 @@ std::string fixedOf(const render::out::OutputSettings& output,
          "stereo mode two_outputs or anaglyph";
 }
 
-std::vector<Misfit> misfitsOf(const WallSettings& drawn, const state::Alignment& alignment) {
-  std::vector<Misfit> misfits;
+Fitted fitAlignment(const AlignedOutput& output, state::Alignment& alignment,
+                    state::SetAside& set_aside) {
+  Fitted fitted;
+  if (std::string why = misfitOf(output, alignment); !why.empty()) {
+    state::Alignment taken = alignment.take(output.name);
+    fitted.is_changed = true;
+    if (!taken.isNothing()) fitted.aside_why = std::move(why);
+    set_aside.add(std::move(taken));
+  }
+  if (alignment.find(output.name)) return fitted;
+  const auto back = set_aside.take([&](const state::Alignment& aside) {
+    if (aside.outputs.front().form.output != output.name) return false;
+    state::Alignment with = alignment;
+    with.put(aside);
+    return with.moved() <= state::kMostMoved && misfitOf(output, with).empty();
+  });
+  if (back) {
+    alignment.put(*back);
+    fitted.is_changed = fitted.is_back = true;
+  }
+  return fitted;
+}
+
+std::vector<FittedOutput> fittedOutputs(const WallSettings& drawn, state::Alignment alignment,
+                                        state::SetAside set_aside) {
+  std::vector<FittedOutput> changed;
   for (const render::out::OutputSettings& settings : drawn.outputs) {
     if (settings.kind == render::out::OutputKind::kSharedMemory) continue;  // not aligned
     const auto size = render::out::pictureSize(settings, drawn.tiles);
     if (!size) continue;
     AlignedOutput output{settings.shownName(), size->width, size->height, settings.correction, {}};
     output.fixed = fixedOf(settings, drawn.tiles);
-    if (auto why = misfitOf(output, alignment); !why.empty())
-      misfits.push_back({output.name, std::move(why)});
+    Fitted fitted = fitAlignment(output, alignment, set_aside);
+    if (fitted.is_changed) changed.push_back({output.name, std::move(fitted)});
   }
-  return misfits;
+  return changed;
 }
 
 }  // namespace merlin::wall

@@ -12,6 +12,7 @@
 #include "daemon/base/result.h"
 #include "daemon/state/alignment.h"
 #include "daemon/state/seen_axes.h"
+#include "daemon/state/set_aside.h"
 #include "render/correct/settings.h"
 #include "render/frame/correction.h"
 #include "render/frame/replaceable_correction.h"
@@ -53,11 +54,24 @@ std::string misfitOf(const AlignedOutput& output, const state::Alignment& alignm
 std::string fixedOf(const render::out::OutputSettings& output,
                     const render::tiles::TilesSettings& tiles);
 
-struct Misfit {
-  std::string output, why;
+// What became of an output's alignment. If both happened, another one came back in its place.
+struct Fitted {
+  bool is_changed = false;  // also true if an alignment that was nothing is gone
+  std::string aside_why{};  // why it is set aside: see misfitOf(); empty: it is not
+  bool is_back = false;     // one that was set aside fits again, and is in effect
 };
-// The outputs of a wall whose alignments do not fit them, so that they are set aside when the wall
-// gets these settings. `drawn`: drawnWall() of the configured one.
-std::vector<Misfit> misfitsOf(const WallSettings& drawn, const state::Alignment& alignment);
+// Moves the output's alignment to `set_aside` if it does not fit, and the newest one there that
+// fits to `alignment` if that has none of this output.
+Fitted fitAlignment(const AlignedOutput& output, state::Alignment& alignment,
+                    state::SetAside& set_aside);
+
+// What becomes of the alignments of these outputs when the wall gets these settings, in which
+// something changes. `drawn`: drawnWall() of the configured one.
+struct FittedOutput {
+  std::string output;
+  Fitted fitted;
+};
+std::vector<FittedOutput> fittedOutputs(const WallSettings& drawn, state::Alignment alignment,
+                                        state::SetAside set_aside);
 
 }  // namespace merlin::wall

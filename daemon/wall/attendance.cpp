@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace merlin::wall {
@@ -57,14 +58,28 @@ void Attendance::nextOfPlaylist() {
   asked_.next = true;
 }
 
-Attendance::Asked Attendance::takeAsked(const WallInput& input) {
+// Whether a bound input belongs to the touch that has ended black or frozen: a gesture or a long
+// press is complete only after its first finger or button, which ends them at once.
+bool Attendance::isOfEndingTouch(const WallInput& input, Timestamp now) {
+  constexpr auto kGone = std::numeric_limits<std::uint32_t>::max();
+  if (fingers_ > ended_.fingers) ended_.finger_last = now;
+  if ((buttons_ & ~ended_.buttons) != 0) ended_.button_last = now;
+  const bool finger = now - ended_.finger_last < kPause;
+  const bool button = now - ended_.button_last < kPause;
+  if (!finger) ended_.fingers = kGone;
+  if (!button) ended_.buttons = kGone;
+  return input.by_fingers ? finger : button;
+}
+
+Attendance::Asked Attendance::takeAsked(const WallInput& input, Timestamp now) {
   Asked asked;
   {
     const std::lock_guard lock(mutex_);
     asked = std::exchange(asked_, {});
   }
-  asked.blank ^= input.blank % 2 == 1;
-  asked.freeze ^= input.freeze % 2 == 1;
+  const bool late = isOfEndingTouch(input, now);  // then it does not begin again what has ended
+  asked.blank ^= input.blank % 2 == 1 && (blank_ || !late || !ended_.blank);
+  asked.freeze ^= input.freeze % 2 == 1 && (frozen_ || !late || !ended_.frozen);
   return asked;
 }
 
@@ -120,14 +135,19 @@ Attendance::Motion Attendance::motionOf(const WallInput& input) {
 }
 
 Attendance::Frame Attendance::update(WallInput& input, Timestamp now) {
-  const Asked asked = takeAsked(input);
+  const Asked asked = takeAsked(input, now);
+  const Ended before{blank_, frozen_, fingers_, buttons_, now, now};
   const Motion motion = motionOf(input);
   const bool paused = !last_motion_ || now - *last_motion_ >= kPause;
   const bool acted = acts(input) || asked.touched;
   const bool bound = input.blank > 0 || input.freeze > 0;
   if (motion.touches || motion.lets_go || acted || bound) last_motion_ = now;
-  if (bound) of_gesture_ = fingers_;
-  if (acted || (motion.wakes && paused && !bound)) blank_ = frozen_ = false;
+  if (bound) ended_ = {};
+  if (bound && input.by_fingers) of_gesture_ = fingers_;
+  if (acted || (motion.wakes && paused && !bound)) {
+    if (blank_ || frozen_) ended_ = before;
+    blank_ = frozen_ = false;
+  }
   blank_ ^= asked.blank;
   frozen_ ^= asked.freeze;
 

@@ -73,13 +73,14 @@ class Attendance {
     bool blank = false, freeze = false, touched = false, attended = false, next = false;
     std::optional<bool> playlist;  // on or off
   };
-  Asked takeAsked(const WallInput& input);
+  Asked takeAsked(const WallInput& input, Timestamp now);
   struct Motion {
     bool touches = false;  // somebody acts
     bool wakes = false;    // in a way that undoes blank and freeze
     bool lets_go = false;  // a finger goes, or a button is released
   };
   Motion motionOf(const WallInput& input);
+  bool isOfEndingTouch(const WallInput& input, Timestamp now);
   bool handMoves(const render::scene::SceneInput& input);
   Motion fingersMove(const render::scene::TouchMotion& touch);
 
@@ -98,9 +99,16 @@ class Attendance {
   // Number of fingers at the last frame, and their movement since a motion last counted.
   std::uint32_t fingers_ = 0;
   std::array<float, 4> fingers_moved_{};
-  // Of the fingers that touched while a bound input made the wall black or frozen, those that have
-  // not gone since; 0 once another one has come.
+  // Of the fingers that touched while their bound gesture made the wall black or frozen, those that
+  // have not gone since; 0 once another one has come.
   std::uint32_t of_gesture_ = 0;
+  // What the last touch has ended: see isOfEndingTouch().
+  struct Ended {
+    bool blank = false, frozen = false;
+    std::uint32_t fingers = 0, buttons = 0;  // there before it; all bits: those that came are gone
+    Timestamp finger_last{}, button_last{};  // when one that came with it was there last
+  };
+  Ended ended_;
 };
 
 }  // namespace merlin::wall

@@ -76,6 +76,26 @@ bool isGlove(const shm::DeviceSlots& devices, const std::string& name) {
                      [&](const auto& glove) { return glove.name == name; });
 }
 
+bool isTouchSurface(const shm::DeviceSlots& devices, const std::string& name) {
+  return std::any_of(devices.touches.begin(), devices.touches.end(),
+                     [&](const auto& touch) { return touch.name == name; });
+}
+
+bool blanksOrFreezes(const actions::ActionCounts& counts) {
+  return counts.begun[actionIndex("blank")] > 0 || counts.begun[actionIndex("freeze")] > 0;
+}
+
+void takeBegun(const actions::ActionCounts& used, WallInput& input) {
+  const auto begun = [&](std::size_t action) { return used.begun[action]; };
+  input.scene.reset_view = begun(actionIndex("reset_view"));
+  input.scene.next_mode = begun(actionIndex("next_mode"));
+  input.next_content = begun(actionIndex("next_content"));
+  input.previous_content = begun(actionIndex("previous_content"));
+  input.snapshot = begun(actionIndex("snapshot"));
+  input.blank = begun(actionIndex("blank"));
+  input.freeze = begun(actionIndex("freeze"));
+}
+
 bool acts(const actions::ActionCounts& counts) {
   const auto begins = [](std::uint32_t n) { return n > 0; };
   return std::any_of(counts.begun.begin(), counts.begun.end(), begins) ||
@@ -266,6 +286,7 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
     }
     const bool left_out = leaves_out_ball_ && devices.ball(source);
     if (left_out) counts.begun = {};
+    input.by_fingers |= blanksOrFreezes(counts) && isTouchSurface(devices, source);
     used.add(counts);
     for (const std::size_t action : actions.in_order_by_source[i]) {
       const std::uint8_t align = alignActionOf(action);
@@ -278,18 +299,11 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
     for (const std::size_t action : kMoving) used.held[action] = false;
   }
   moved_ = holdsOneOf(used, kMoving);
-  const auto begun = [&](std::size_t action) { return used.begun[action]; };
   input.scene.grab = used.held[actionIndex("grab")];
   input.scene.fly = used.held[actionIndex("fly")];
   input.scene.point_at = used.held[actionIndex("point_at")];
   input.scene.held = motionOf(used);
-  input.scene.reset_view = begun(actionIndex("reset_view"));
-  input.scene.next_mode = begun(actionIndex("next_mode"));
-  input.next_content = begun(actionIndex("next_content"));
-  input.previous_content = begun(actionIndex("previous_content"));
-  input.snapshot = begun(actionIndex("snapshot"));
-  input.blank = begun(actionIndex("blank"));
-  input.freeze = begun(actionIndex("freeze"));
+  takeBegun(used, input);
   return used.held[actionIndex("align_push")];
 }
 

@@ -5,12 +5,6 @@
 #include <vector>
 
 namespace merlin::wall {
-namespace {
-
-constexpr Duration kSecond = std::chrono::seconds(1);
-constexpr Duration kMinute = std::chrono::seconds(60);
-
-}  // namespace
 
 void FrameStats::deadline(Timestamp at, bool moving, bool met) {
   minute_.push_back({at, moving, met});

@@ -13,6 +13,8 @@ namespace merlin::wall {
 // Thread-bound. Memory is bounded by a minute of deadlines.
 class FrameStats {
  public:
+  static constexpr Duration kSecond = std::chrono::seconds(1), kMinute = std::chrono::seconds(60);
+
   // Records a deadline that has passed. `moving`: something moved, so a new frame was due;
   // otherwise the frame shown was still valid. `met`: the frame came in time, or none was due.
   void deadline(Timestamp at, bool moving, bool met);

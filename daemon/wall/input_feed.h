@@ -24,6 +24,7 @@ struct WallInput {
   bool panel_pushed = false;  // the ball is pushed, on the operator's panel
   AlignInput align;
   std::array<char, 20> posture{};  // name of the current posture, NUL-terminated; empty: none
+  bool by_fingers = false;         // fingers on a touch surface requested blank or freeze
 };
 
 // A station of a tracker.

@@ -9,7 +9,7 @@
 namespace merlin::wall {
 namespace {
 
-constexpr auto kStep = std::chrono::milliseconds(500);
+constexpr auto kWriterStep = std::chrono::milliseconds(500);
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void SnapshotWriter::loop(const std::stop_token& stop, Progress& progress) {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      const bool asked = wake_.wait_for(lock, stop, kStep, [&] { return asked_; });
+      const bool asked = wake_.wait_for(lock, stop, kWriterStep, [&] { return asked_; });
       progress.step();
       if (!asked && stop.stop_requested()) return;
       if (!asked) continue;

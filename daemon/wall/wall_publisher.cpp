@@ -10,9 +10,6 @@
 namespace merlin::wall {
 namespace {
 
-constexpr Duration kMinute = std::chrono::seconds(60);
-constexpr Duration kSecond = std::chrono::seconds(1);
-
 template <std::size_t size>
 void copyText(std::string_view text, char (&to)[size]) {
   std::fill(std::begin(to), std::end(to), '\0');
@@ -35,8 +32,8 @@ void fillFrames(shm::WallStats& out, const FrameStats& frames, Timestamp now) {
   out.deadlines = frames.deadlines();
   out.late = frames.late();
   out.longest_late = frames.longestLate();
-  out.late_share_1s = static_cast<float>(frames.lateShare(now, kSecond));
-  out.late_share_1min = static_cast<float>(frames.lateShare(now, kMinute));
+  out.late_share_1s = static_cast<float>(frames.lateShare(now, FrameStats::kSecond));
+  out.late_share_1min = static_cast<float>(frames.lateShare(now, FrameStats::kMinute));
   const double all = static_cast<double>(std::max<std::uint64_t>(frames.deadlines(), 1));
   out.late_share = static_cast<float>(static_cast<double>(frames.late()) / all);
   out.work_median_ms = static_cast<float>(1000 * frames.medianWorkSeconds());

@@ -160,9 +160,11 @@ class Parser {
     for (std::size_t c = 0; c < fields.size(); ++c) {
       if (header_.slot[c] < 0) continue;
       const auto value = parseValue(fields[c]);
-      if (!value)
+      if (!value) {
+        const double most = unit_ == InputUnit::kRadians ? kMostAngle_rad : kMostRaw;
         return errorInLine(fmt::format("{} {}", names_[c], quote(fields[c])),
-                           fmt::format("a number from {} to {}", -kMostRaw, kMostRaw));
+                           fmt::format("a number from {} to {}", -most, most));
+      }
       hand.value[static_cast<std::size_t>(header_.slot[c])] = *value;
       if (std::abs(*value) <= static_cast<float>(kMostAngle_rad)) continue;
       if (unit_ == InputUnit::kRadians)

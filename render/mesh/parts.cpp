@@ -12,7 +12,9 @@
 namespace merlin::render::mesh {
 namespace {
 
-constexpr double kThinnest = 1e-7;  // of a closed part, in diagonals of its box
+constexpr double kThinnest = 1e-7;        // of a closed part, in diagonals of its box
+constexpr double kSameVolume = 1 + 1e-6;  // of the two sides of a surface, by rounding
+constexpr std::size_t kMostComparisons = 1'000'000'000;  // of boxes: a few seconds
 
 using Vector = std::array<double, 3>;
 
@@ -65,6 +67,7 @@ class PartFinder {
   void measure();
   void findBoxes();
   void dropThin(const std::vector<double>& area);
+  std::size_t sweepAxis(const std::vector<std::size_t>& closed) const;
   void findInwards();
 
   const Mesh& mesh_;
@@ -104,6 +107,10 @@ void PartFinder::connect() {
 void PartFinder::joinEnds() {
   std::vector<std::uint32_t> vertices;
   std::vector<float> positions;
+  const std::size_t ends =
+      ends_.size() - static_cast<std::size_t>(std::count(ends_.begin(), ends_.end(), 0U));
+  vertices.reserve(ends);
+  positions.reserve(3 * ends);
   for (std::uint32_t v = 0; v < ends_.size(); ++v) {
     if (ends_[v] == 0) continue;
     vertices.push_back(v);
@@ -192,24 +199,44 @@ void PartFinder::dropThin(const std::vector<double>& area) {
 
 // Goes through the closed parts along x, and keeps those that face outwards as long as their boxes
 // may hold what follows.
+// The axis along which the boxes of the closed parts overlap least.
+std::size_t PartFinder::sweepAxis(const std::vector<std::size_t>& closed) const {
+  std::array<double, 3> overlap{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+    for (const std::size_t p : closed) {
+      low = std::min(low, double{boxes_[p].low[k]});
+      high = std::max(high, double{boxes_[p].high[k]});
+      overlap[k] += double{boxes_[p].high[k]} - boxes_[p].low[k];
+    }
+    overlap[k] = high > low ? overlap[k] / (high - low) : std::numeric_limits<double>::max();
+  }
+  return static_cast<std::size_t>(std::min_element(overlap.begin(), overlap.end()) -
+                                  overlap.begin());
+}
+
 void PartFinder::findInwards() {
   std::vector<Part>& parts = result_.parts;
   std::vector<std::size_t> order, outer;
+  std::size_t left = kMostComparisons;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (parts[p].closed) order.push_back(p);
   }
+  const std::size_t axis = sweepAxis(order);
   std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
-    return std::pair(boxes_[p].low[0], -parts[p].volume) <
-           std::pair(boxes_[q].low[0], -parts[q].volume);
+    return std::pair(boxes_[p].low[axis], -parts[p].volume) <
+           std::pair(boxes_[q].low[axis], -parts[q].volume);
   });
   for (const std::size_t p : order) {
     if (parts[p].volume > 0) {
       outer.push_back(p);
       continue;
     }
-    std::erase_if(outer, [&](std::size_t o) { return boxes_[o].high[0] < boxes_[p].low[0]; });
+    if (outer.size() > left) return;  // the others count as inner walls
+    left -= outer.size();
+    std::erase_if(outer, [&](std::size_t o) { return boxes_[o].high[axis] < boxes_[p].low[axis]; });
     parts[p].inwards = std::none_of(outer.begin(), outer.end(), [&](std::size_t o) {
-      return parts[o].volume > -parts[p].volume && holds(boxes_[o], boxes_[p]);
+      return parts[o].volume * kSameVolume >= -parts[p].volume && holds(boxes_[o], boxes_[p]);
     });
   }
 }

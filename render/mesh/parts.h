@@ -3,7 +3,8 @@
 //
 // A part is a set of triangles that are connected by vertices. Where a surface ends, coincident
 // vertices count as one, so that neither the seams of a texture nor triangles that share no vertex
-// end it. Triangles with two corners at one place are ignored.
+// end it. Triangles with two corners at one place are ignored, but count as triangles of the part
+// of their first corner and turn with it.
 //
 // A part is closed if each of its edges is used as often in the one direction as in the other, and
 // if its volume is that of a layer thicker than about 1e-7 of its box's diagonal, which is what a
@@ -11,8 +12,9 @@
 //
 // A closed part faces inwards if its volume, signed by the order of the triangles' corners, is
 // negative, unless it is an inner wall, as of a hollow body, which faces inwards rightly: one that
-// lies in the bounding box of a closed part that has a larger volume and faces outwards. What faces
-// outwards is never an error by this rule, also not the inner wall of a body that faces inwards.
+// lies in the bounding box of a closed part that has no smaller volume and faces outwards. What
+// faces outwards is never an error by this rule, also not the inner wall of a body that faces
+// inwards.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +35,7 @@ struct Part {
 struct Parts {
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  std::vector<Part> parts;             // in the order of their first vertices
+  std::vector<Part> parts;             // in the order of their second vertices
   std::vector<std::uint32_t> part_of;  // by vertex: its part, or kNone
 };
 
@@ -41,8 +43,9 @@ struct Parts {
 // hashes of positions, of 32 bits for each vertex: an open part is taken for closed with a chance
 // of 2^-64 or less, unless the positions were crafted for it. If a coordinate of a vertex where the
 // surface ends is not finite, no coincident vertices are joined. Expected O(n), and O(p log p) for
-// p closed parts that do not overlap along x, O(p^2) for others; 16 bytes per vertex, more where
-// surfaces end. REQUIRES: every index is in range.
+// p closed parts that do not overlap along some axis, O(p^2) for others up to 10^9 comparisons of
+// boxes: parts that were not examined by then count as inner walls. 16 bytes per vertex, and up to
+// 60 more where surfaces end. REQUIRES: every index is in range.
 Parts partsOf(const Mesh& mesh);
 
 // Counts of closed parts.

@@ -293,7 +293,8 @@ TEST(DevicesConfig, BindingsNameDevicesThatHaveTheInput) {
             "glove; /devices has left\n");
   EXPECT_EQ(bound(R"(pad.button.1", "with": "pad.switch)"),
             "f.json:2: /bindings/0/with is \"pad.switch\", and \"pad\" is not the name of a glove; "
-            "/devices has left\n");
+            "/devices has left\nf.json:2: /bindings/0/with is \"pad.switch\", which is never held "
+            "together with \"pad.button.1\", so the chord would never happen\n");
   EXPECT_EQ(devicesAre("", R"(, "bindings": [{"input": "ball.button.1", "action": "reset_view"}])"),
             "f.json:1: /bindings/0/input is \"ball.button.1\", and \"ball\" is not the name of a "
             "ball; /devices has no ball: leave the binding out, or add one\n");

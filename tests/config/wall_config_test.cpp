@@ -225,7 +225,10 @@ TEST(WallConfig, StereoThatIsProbablyNotMeantIsSaidAndUsed) {
   EXPECT_EQ(findingsOf(loaded),
             "f.json:1: /wall/stereo/eye_separation_m is 0 in stereo mode anaglyph: both eyes see "
             "the same picture, without depth; people's are 0.05 to 0.075 m\n");
-  EXPECT_EQ(wallIs(R"("stereo": {"mode": "anaglyph", "size": "full"})"),
+  const auto whole =
+      loadSettings(R"({"wall": {"stereo": {"mode": "anaglyph", "size": "full"}}})", "");
+  EXPECT_EQ(whole.verdict(), Verdict::kAdjusted);
+  EXPECT_EQ(findingsOf(whole),
             "f.json:1: /wall/stereo/size is full, which has no effect in stereo mode anaglyph: it "
             "is for side_by_side and top_bottom; leave it out\n");
   EXPECT_EQ(wallIs(R"("stereo": {"mode": "top_bottom", "size": "full"})"), "");

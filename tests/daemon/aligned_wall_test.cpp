@@ -30,10 +30,14 @@ TEST(AlignedWall, EachMovedPointIsNamedWithWhatToAddInTheConfiguration) {
 }
 
 TEST(AlignedWall, ARefusalIsTheReasonAlone) {
-  const auto reason = [](Errc code, const char* what) { return wallsReason({code, what}).what; };
+  const auto reason = [](Errc code, const char* what, const char* command = "align") {
+    return wallsReason({code, what}, command).what;
+  };
   EXPECT_EQ(reason(Errc::kInvalidArgument,
                    "ipc:///run/merlin/wall-wall.command: align: there is nothing to undo"),
             "there is nothing to undo");
+  EXPECT_EQ(reason(Errc::kInvalidArgument, "ipc:///x: testcard: there is no test card", "testcard"),
+            "there is no test card");
   EXPECT_EQ(reason(Errc::kTimeout, "ipc:///x: align: no answer"), "ipc:///x: align: no answer");
   EXPECT_EQ(reason(Errc::kInvalidArgument, "there is no output"), "there is no output");
 }

@@ -337,26 +337,28 @@ TEST_F(AlignerTest, AReloadThatTakesTheCornersBackBringsTheAlignmentBack) {
   EXPECT_EQ(keeper_.state().alignment.offset("left", state::cornerAt(0)), (state::Offset{3, 1}));
 }
 
-// What a reload says before it is done.
-TEST(AlignmentFit, NamesTheOutputsOfAWallWhoseAlignmentsDoNotFit) {
-  WallSettings wall;
-  wall.outputs.resize(2);
-  for (render::out::OutputSettings& output : wall.outputs) {
-    output.kind = render::out::OutputKind::kPng;
-    output.tiles = {{wall.tiles.tiles[0].name}};
+// All outputs together have a limit; once somebody makes room, the next fit uses it.
+TEST_F(AlignerTest, AnAlignmentThatComesBackToAnotherOutputThanTheConfiguredOneIsShown) {
+  base_.mesh.columns = base_.mesh.rows = 64;
+  for (int i = 0; i < 64 * 64; ++i) base_.mesh.points.push_back({i % 64 / 63.0, i / 64 / 63.0});
+  state::Alignment left, right;
+  for (int i = 0; i < static_cast<int>(state::kMostMoved); ++i) {
+    left.move({"left", 640, 480, 64, 64, base_.corners}, {state::Place::Of::kMesh, i % 64, i / 64},
+              {0.001, 0});
   }
-  wall.outputs[0].name = "left";
-  wall.outputs[1].name = "right";
-  const auto size = *render::out::pictureSize(wall.outputs[0], wall.tiles);
-  const std::array<double, 8> corners{};
-  state::Alignment alignment;
-  alignment.move({"left", size.width, size.height, 0, 0, corners}, state::cornerAt(0), {1, 1});
-  alignment.move({"right", 64, size.height, 0, 0, corners}, state::cornerAt(0), {1, 1});
-  alignment.move({"gone", 64, 64, 0, 0, corners}, state::cornerAt(0), {1, 1});
-  const auto misfits = misfitsOf(wall, alignment);
-  ASSERT_EQ(misfits.size(), 1u);
-  EXPECT_EQ(misfits[0].output, "right");
-  EXPECT_TRUE(misfits[0].why.starts_with("it was made for 64 x ")) << misfits[0].why;
+  right.move({"right", 640, 480, 2, 2, meshed().corners}, state::cornerAt(0), {3, 1});
+  keeper_.change([&](state::State& s) {
+    s.alignment = left;
+    s.set_aside.add(right);
+  });
+  start();
+  EXPECT_EQ(moved("top_left", 1), json({0, 0})) << "no room";
+  ask("reset left");
+  auto other = base_;
+  other.blend.right = 80;
+  aligner_->configure("left", other);
+  EXPECT_EQ(moved("top_left", 1), json({3, 1}));
+  EXPECT_TRUE(test::eventually([&] { return right_->apply({}).width == 3; }));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ class AttendanceTest : public testing::Test {
     WallInput input = input_;
     attendance_.update(input, now_);
     input_.blank = input_.freeze = input_.snapshot = 0;
+    input_.by_fingers = false;
     input_.next_content = input_.previous_content = 0;
     input_.scene.reset_view = input_.scene.next_mode = 0;
     input_.scene.step = {};
@@ -40,6 +41,7 @@ class AttendanceTest : public testing::Test {
   // Black, and nobody has touched anything for some time.
   void black() {
     input_ = {};
+    attendance_.touch();
     pass(milliseconds(600));
     attendance_.toggleBlank();
     ASSERT_EQ(frame(), Shown::kBlank);
@@ -129,6 +131,7 @@ TEST_F(AttendanceTest, TheFingersThatMakeItBlackOrFrozenDoNotUndoItWhenTheyAreLi
       input_.scene.touch.spread = -0.05F;
       pass(milliseconds(100));
       input_.*action = 1;
+      input_.by_fingers = true;
       EXPECT_EQ(frame(), shown);
       EXPECT_EQ(pass(milliseconds(100)), shown) << "the pinch goes on";
       input_.scene.touch.spread = 0;
@@ -154,11 +157,77 @@ TEST_F(AttendanceTest, AFingerThatComesBesideThoseOfTheGestureUndoesIt) {
   input_.scene.touch.fingers = 3;
   pass(milliseconds(600));
   input_.blank = 1;
+  input_.by_fingers = true;
   ASSERT_EQ(frame(), Shown::kBlank);
   input_.scene.touch.fingers = 1;
   ASSERT_EQ(pass(milliseconds(600)), Shown::kBlank);
   input_.scene.touch.fingers = 2;
   EXPECT_EQ(frame(), Shown::kPicture);
+}
+
+// The fingers that touch when a button makes the wall black are not of its gesture.
+TEST_F(AttendanceTest, WhatStandsOnTheSurfaceWhenAButtonMakesItBlackUndoesItWhenItMoves) {
+  input_.scene.touch.fingers = 1;
+  pass(milliseconds(600));
+  input_.blank = 1;
+  ASSERT_EQ(frame(), Shown::kBlank);
+  ASSERT_EQ(pass(milliseconds(1000)), Shown::kBlank);
+  input_.scene.touch.right = 0.03F;
+  EXPECT_EQ(frame(), Shown::kPicture);
+}
+
+// The first finger shows the picture; the gesture is complete a second later.
+TEST_F(AttendanceTest, TheGestureThatMadeItBlackMakesItLight) {
+  const auto gesture = [&] {
+    input_.scene.touch.fingers = 3;
+    pass(milliseconds(1000));
+    input_.blank = 1;
+    input_.by_fingers = true;
+    frame();
+    pass(milliseconds(200));
+    input_.scene.touch.fingers = 1;
+    return pass(milliseconds(1000));
+  };
+  input_.scene.touch.fingers = 1;  // a marked object
+  EXPECT_EQ(gesture(), Shown::kBlank);
+  EXPECT_EQ(gesture(), Shown::kPicture);
+  EXPECT_EQ(gesture(), Shown::kBlank);
+}
+
+// daemon/actions/README: a short press shows the next content, a long one makes the wall black.
+TEST_F(AttendanceTest, TheLongPressThatMadeItBlackMakesItLight) {
+  const auto press = [&] {
+    input_.scene.ball.emplace().buttons = 5;
+    pass(milliseconds(1500));
+    input_.blank = 1;
+    frame();
+    pass(milliseconds(200));
+    input_.scene.ball->buttons = 1;
+    return pass(milliseconds(1000));
+  };
+  input_.scene.ball.emplace().buttons = 1;  // it is stuck
+  EXPECT_EQ(press(), Shown::kBlank);
+  EXPECT_EQ(press(), Shown::kPicture);
+  EXPECT_EQ(press(), Shown::kBlank);
+}
+
+TEST_F(AttendanceTest, ABoundInputOfAnotherTouchThanTheOneThatEndedItActs) {
+  black();
+  push(1);
+  ASSERT_EQ(pass(milliseconds(1000)), Shown::kPicture);
+  input_.blank = 1;
+  EXPECT_EQ(frame(), Shown::kBlank) << "the ball is still pushed";
+  black();
+  input_.scene.touch.fingers = 1;
+  ASSERT_EQ(pass(milliseconds(1000)), Shown::kPicture);
+  input_.blank = 1;
+  EXPECT_EQ(frame(), Shown::kBlank) << "a button, while a finger rests";
+  black();
+  input_.scene.touch.fingers = 1;
+  ASSERT_EQ(pass(milliseconds(1000)), Shown::kPicture);
+  input_.freeze = 1;
+  input_.by_fingers = true;
+  EXPECT_EQ(frame(), Shown::kFrozen) << "it was black";
 }
 
 TEST_F(AttendanceTest, AFingerThatGoesEndsThePlaylist) {

@@ -21,9 +21,12 @@ constexpr Duration kStaleAfter = milliseconds(500);
 
 class DeviceFeedTest : public testing::Test {
  protected:
-  void SetUp() override {
-    auto made = shm::SegmentWriter<shm::DevicesSegment>::make(
-        name_, shm::devicesFields(test::defaultSlotNames()), 1, now_, {});
+  void SetUp() override { start(test::defaultSlotNames(), 1); }
+  // Starts a devices' process with these devices, which all work.
+  void start(const shm::SlotNames& names, std::uint64_t generation) {
+    segment_.reset();
+    auto made = shm::SegmentWriter<shm::DevicesSegment>::make(name_, shm::devicesFields(names),
+                                                              generation, now_, {});
     ASSERT_TRUE(made);
     segment_.emplace(*std::move(made));
     for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
@@ -86,14 +89,7 @@ TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
 
 // The wheel of a mouse counts from zero in each run of the devices' process.
 TEST_F(DeviceFeedTest, ARestartOfTheDevicesTurnsNoWheel) {
-  const auto start = [&](std::uint64_t generation) {
-    segment_.reset();
-    auto made = shm::SegmentWriter<shm::DevicesSegment>::make(
-        name_, shm::devicesFields({{{"mouse", SampleKind::kTouch}}, {}}), generation, now_, {});
-    ASSERT_TRUE(made);
-    segment_.emplace(*std::move(made));
-    for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
-  };
+  const shm::SlotNames names{{{"mouse", SampleKind::kTouch}}, {}};
   const auto wheel = [&](std::uint16_t notches) {
     TouchSample touch{};
     touch.received_ns = toNanoseconds(now_);
@@ -102,24 +98,17 @@ TEST_F(DeviceFeedTest, ARestartOfTheDevicesTurnsNoWheel) {
     (*segment_)->touch[0].publish(touch);
     return read().scene.touch.spread;
   };
-  start(1);
+  start(names, 1);
   EXPECT_EQ(wheel(40), 0) << "where it stands at first moves nothing";
   EXPECT_GT(wheel(41), 0);
   now_ += seconds(2);  // the old segment counts as alive for one
-  start(2);
+  start(names, 2);
   EXPECT_EQ(wheel(0), 0);
   EXPECT_LT(wheel(65535), 0);
 }
 
 TEST_F(DeviceFeedTest, AMousesWheelCountsBesideTheFingersOfAnotherSurface) {
-  segment_.reset();
-  auto made = shm::SegmentWriter<shm::DevicesSegment>::make(
-      name_,
-      shm::devicesFields({{{"mouse", SampleKind::kTouch}, {"table", SampleKind::kTouch}}, {}}), 1,
-      now_, {});
-  ASSERT_TRUE(made);
-  segment_.emplace(*std::move(made));
-  for (auto& slot : (*segment_)->health) slot.publish(health(HealthState::kOk));
+  start({{{"mouse", SampleKind::kTouch}, {"table", SampleKind::kTouch}}, {}}, 1);
   TouchSample mouse{}, table{};
   mouse.received_ns = table.received_ns = toNanoseconds(now_);
   mouse.aspect = table.aspect = 1;
@@ -138,6 +127,25 @@ TEST_F(DeviceFeedTest, AMousesWheelCountsBesideTheFingersOfAnotherSurface) {
   const render::scene::TouchMotion turned = touched(5);
   EXPECT_EQ(turned.fingers, 2u);
   EXPECT_FLOAT_EQ(turned.spread, render::scene::TouchFollower::kPerNotch);
+}
+
+TEST_F(DeviceFeedTest, SaysWhetherFingersRequestedBlankOrFreeze) {
+  constexpr std::size_t kTable = 0, kBeside = 1;
+  start({{{"table", SampleKind::kTouch}, {"ball", SampleKind::kBall}}, {}}, 1);
+  shm::ActionState begun[2]{};
+  read();
+  for (const std::size_t source : {kTable, kBeside})
+    (*segment_)->actions[source].publish(begun[source]);
+  read();
+  const auto isByFingers = [&](std::size_t source, std::size_t action) {
+    ++begun[source].begun[action];
+    (*segment_)->actions[source].publish(begun[source]);
+    return read().by_fingers;
+  };
+  EXPECT_TRUE(isByFingers(kTable, actionIndex("blank")));
+  EXPECT_TRUE(isByFingers(kTable, actionIndex("freeze")));
+  EXPECT_FALSE(isByFingers(kTable, actionIndex("next_content")));
+  EXPECT_FALSE(isByFingers(kBeside, actionIndex("blank")));
 }
 
 TEST_F(DeviceFeedTest, GivesTheNewestOfWhatThereIs) {

@@ -28,6 +28,7 @@
 #include "daemon/page/scale_down.h"
 #include "daemon/page/settings.h"
 #include "daemon/page/showing.h"
+#include "daemon/page/shown_pictures.h"
 #include "daemon/page/thumbnail_files.h"
 #include "daemon/page/thumbnails.h"
 #include "daemon/page/token.h"
@@ -478,11 +479,30 @@ TEST(PagePictures, AreMadeSmallerByMeans) {
 }
 
 TEST(PageContents, AreADocumentWithTheNumbersOfTheirPictures) {
-  EXPECT_EQ(contentsDocument({}), "{\"contents\":[]}\n");
-  EXPECT_EQ(contentsDocument({{"a \"skull\"", "model", 0, ""}, {"b", "slides", 17, "gone"}}),
+  EXPECT_EQ(contentsDocument({}, {}), "{\"contents\":[],\"shown\":[]}\n");
+  EXPECT_EQ(contentsDocument({{"a \"skull\"", "model", 0, ""}, {"b", "slides", 17, "gone"}},
+                             {{"c \"d\"", 18, 256}, {"e", 19, 257}}),
             R"({"contents":[{"name":"a \"skull\"","kind":"model","thumbnail":null,"fault":""},)"
-            R"({"name":"b","kind":"slides","thumbnail":17,"fault":"gone"}]})"
+            R"({"name":"b","kind":"slides","thumbnail":17,"fault":"gone"}],)"
+            R"("shown":[{"name":"c \"d\"","thumbnail":18,"place":256},)"
+            R"({"name":"e","thumbnail":19,"place":257}]})"
             "\n");
+}
+
+TEST(ShownPictures, KeepTheirPlacesAndForgetTheOldest) {
+  ShownPictures pictures;
+  EXPECT_TRUE(pictures.keep("a", "1", 1));
+  EXPECT_FALSE(pictures.keep("a", "1", 2)) << "the same picture";
+  EXPECT_EQ(pictures.all()[0].number, 1U);
+  for (std::size_t i = 1; i < ShownPictures::kMost; ++i)
+    EXPECT_TRUE(pictures.keep("b" + std::to_string(i), "2", i + 1));
+  EXPECT_TRUE(pictures.keep("a", "3", 100)) << "another picture of the same content";
+  EXPECT_EQ(pictures.all()[0].name, "a");
+  EXPECT_EQ(*pictures.all()[0].jpeg, "3");
+  EXPECT_TRUE(pictures.keep("new", "4", 101));
+  EXPECT_EQ(pictures.all().size(), ShownPictures::kMost);
+  EXPECT_EQ(pictures.all()[0].name, "a");
+  EXPECT_EQ(pictures.all()[1].name, "new") << "in the place of b1, the oldest";
 }
 
 TEST(PageContents, ThumbnailsFitIntoTheirBoxWhateverTheirProportions) {
@@ -562,7 +582,7 @@ TEST(PagePhone, GoesTheWayThatTheBrowserWent) {
   EXPECT_EQ(at("http://10.0.0.9:7480", loopback), "http://10.0.0.9:7480/");
   for (const char* own : {"http://127.0.0.1:7480", "http://localhost:7480", "http://[::1]:7480", "",
                           "null", "http://"}) {
-    EXPECT_NE(at(own, loopback).find("it listens at 127.0.0.1 alone"), std::string::npos) << own;
+    EXPECT_NE(at(own, loopback).find("it listens only at 127.0.0.1"), std::string::npos) << own;
     EXPECT_EQ(at(own, {"0.0.0.0", 80, {"10.0.0.5", "10.1.0.5"}}), "http://10.0.0.5:80/") << own;
     EXPECT_EQ(at(own, {"10.1.0.5", 7480, {"10.0.0.5"}}), "http://10.1.0.5:7480/") << own;
     EXPECT_NE(at(own, {"0.0.0.0", 80, {}}).find("is not connected to a network"), std::string::npos)

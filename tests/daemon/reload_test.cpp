@@ -207,12 +207,15 @@ TEST(ReloadAnswer, SaysWhatAndWhyNot) {
   EXPECT_EQ(refusal(answer), "/etc/m.json: std::bad_alloc; the previous settings stay in effect");
 }
 
-TEST(ReloadAnswer, NamesTheAlignmentsThatAreSetAside) {
+TEST(ReloadAnswer, NamesTheAlignmentsThatAreSetAsideAndThoseThatComeBack) {
   Answer answer;
   answer.set_aside = {{"left", "it was made for 640 x 480 pixels"}};
+  answer.brought_back = {"right"};
+  const auto json = nlohmann::json::parse(answerText(answer));
   EXPECT_EQ(
-      nlohmann::json::parse(answerText(answer))["set_aside"],
+      json["set_aside"],
       (nlohmann::json::array({{{"output", "left"}, {"why", "it was made for 640 x 480 pixels"}}})));
+  EXPECT_EQ(json["brought_back"], nlohmann::json::array({"right"}));
 }
 
 TEST(ReloadAnswer, CutsALongValueBetweenCharacters) {

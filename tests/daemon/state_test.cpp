@@ -132,6 +132,27 @@ TEST(Alignment, TheStepsOfBothAreLimitedWhereOneIsPutBack) {
   EXPECT_EQ(a.offset("right", kTopLeft), Offset{});
 }
 
+// Outputs get new names over the years.
+TEST(Alignment, BeyondTheMostOutputsTheFirstOneIsForgottenAndOneThatIsNotMovedBefore) {
+  const auto formOf = [](std::size_t i) { return OutputForm{std::to_string(i), 640, 480, 0, 0}; };
+  State state;
+  Alignment& a = state.alignment;
+  for (std::size_t i = 0; i < kMostAligned; ++i) a.move(formOf(i), kTopLeft, {1, 0});
+  a.undo();
+  a.move(formOf(1000), kTopLeft, {1, 0});
+  EXPECT_FALSE(a.find(std::to_string(kMostAligned - 1))) << "nothing of it was moved";
+  EXPECT_TRUE(a.find("0"));
+  a.move(formOf(1001), kTopLeft, {1, 0});
+  EXPECT_FALSE(a.find("0"));
+  EXPECT_TRUE(a.find("1") && a.find("1000") && a.find("1001"));
+  const Alignment taken = a.take("1001");
+  a.move(formOf(1002), kTopLeft, {1, 0});
+  a.put(taken);
+  EXPECT_FALSE(a.find("1"));
+  EXPECT_EQ(a.outputs.size(), kMostAligned);
+  EXPECT_TRUE(parseState(stateText(state), "f"));
+}
+
 Alignment alignedAt(int width, const std::string& output = "left") {
   Alignment a;
   a.move({output, width, 480, 0, 0, std::array<double, 8>{}}, kTopLeft, {1, 2});
@@ -157,6 +178,29 @@ TEST(SetAside, KeepsTheLastFormsOfEachOutput) {
   EXPECT_FALSE(aside.take([](const Alignment&) { return false; }));
   aside.add(Alignment{});
   EXPECT_EQ(aside.alignments().size(), 4u) << "nothing is not kept";
+}
+
+// One of them fits the base mesh of one configuration, the other one that of another.
+TEST(SetAside, KeepsTwoOfTheSameForm) {
+  SetAside aside;
+  aside.add(alignedAt(640));
+  Alignment other = alignedAt(640);
+  other.move(other.outputs[0].form, kBottomRight, {5, 5});
+  aside.add(other);
+  const auto fits = [](const Alignment& a) { return a.moved() == 1; };
+  EXPECT_TRUE(aside.take(fits));
+  EXPECT_EQ(widthsOf(aside), std::vector{640});
+}
+
+TEST(SetAside, CountsSteps) {
+  SetAside aside;
+  for (int i = 0; i < 40; ++i) {
+    Alignment one;
+    for (int step = 0; step < 100; ++step)
+      one.move({std::to_string(i), 640, 480, 0, 0}, kTopLeft, {1, 0});
+    aside.add(one);
+  }
+  EXPECT_EQ(aside.alignments().size(), 19u) << "each has 1 place, 100 steps and as many changes";
 }
 
 TEST(SetAside, IsLimitedInAll) {
@@ -275,24 +319,46 @@ TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
   }
 }
 
+// Numbers and names of the greatest length.
+constexpr Offset kLong{-999999.999, -999999.999};
+OutputForm longForm(std::size_t i) {
+  std::string name = std::to_string(i);
+  name.resize(64, 'a');
+  std::array<double, 8> corners{};
+  corners.fill(-999999.999);
+  return {name, 8192, 8192, 64, 64, corners};
+}
+Place pointAt(std::size_t i) {
+  return {Place::Of::kMesh, static_cast<int>(i % 64), static_cast<int>(i / 64)};
+}
+
+// One of this many steps, each of which has this many changes, and of this many moved places.
+Alignment longAlignment(std::size_t number, std::size_t moved, std::size_t steps,
+                        std::size_t changes) {
+  Alignment a;
+  a.outputs = {{longForm(number), {}}};
+  for (std::size_t i = 0; i < moved; ++i) a.outputs[0].moved[pointAt(i)] = kLong;
+  a.steps.assign(steps, {a.outputs[0].form.output, {}});
+  for (Step& step : a.steps) step.changes.assign(changes, {pointAt(4000), kLong, kLong});
+  a.done = steps;
+  return a;
+}
+
 TEST(StateText, OfTheLargestStateIsReadBack) {
-  const OutputForm form{"a", 8192, 8192, 64, 64};
-  State state;
-  for (int step = 0; step < 2; ++step) {
-    for (int i = 0; i < static_cast<int>(kMostMoved); ++i)
-      state.alignment.move(form, {Place::Of::kMesh, i % 64, i / 64}, {-16000.123, 16000.123});
-    state.alignment.reset("a");
-    state.alignment.undo();
+  State few, many;  // of the alignments that are set aside
+  for (State* state : {&few, &many}) {
+    Alignment& a = state->alignment;
+    a = longAlignment(0, kMostMoved, kMostSteps, kMostChanges / kMostSteps);
+    for (std::size_t i = 1; i < kMostAligned; ++i) a.outputs.push_back({longForm(i), {}});
   }
-  EXPECT_EQ(state.alignment.moved(), kMostMoved);
-  EXPECT_EQ(state.alignment.steps.back().changes.size(), kMostChanges);
-  Alignment aside = state.alignment;
-  aside.outputs[0].form.width = 4096;
-  state.set_aside.add(aside);
-  EXPECT_EQ(state.set_aside.alignments().at(0).moved(), kMostMoved);
-  const auto read = parseState(stateText(state), "f");
-  ASSERT_TRUE(read) << read.error().what;
-  EXPECT_EQ(stateText(*read), stateText(state));
+  few.set_aside.add(longAlignment(0, 0, kMostSteps, kMostChanges / kMostSteps));
+  for (std::size_t i = 0; i < kMostAside; ++i) many.set_aside.add(longAlignment(i, 1, 100, 1));
+  EXPECT_EQ(few.set_aside.alignments().at(0).changes(), kMostChanges);
+  for (const State* state : {&few, &many}) {
+    const auto read = parseState(stateText(*state), "f");
+    ASSERT_TRUE(read) << read.error().what;
+    EXPECT_EQ(stateText(*read), stateText(*state));
+  }
 }
 
 std::string errorOf(const std::string& text) {

@@ -372,7 +372,7 @@ TEST(VrpnSettings, NamesStationsAndPortsThatCannotBe) {
   EXPECT_EQ(
       faults(s, "tcp://lab:3883"),
       "/vrpn/device is \"Tracker0@lab\"; needed is the name alone, \"Tracker0\": the host belongs "
-      "into the port, tcp://HOST:3883\n");
+      "in the port, tcp://HOST:3883\n");
   s.device = "";
   EXPECT_EQ(faults(s, ""), "/vrpn/device has 0 characters; allowed are 1 to 99\n");
   s.device = "x";

@@ -118,6 +118,20 @@ TEST(Fit, LearnsWithTheAtanToo) {
   EXPECT_GE(score(fitted->network, test::people(hand::shapes(), 7001, 5, 5, 2)).accuracy(), 0.97);
 }
 
+TEST(Fit, AnErrorThatIsSmallEnoughEndsIt) {
+  const DataSet hands = test::people(hand::shapes(), 1, 4, 5, 1);
+  const auto passesWith = [&](double limit) {
+    const auto fitted =
+        fit(hands, {.starts = 1, .passes = 100, .validation_share = 0, .mse_limit = limit});
+    EXPECT_TRUE(fitted) << fitted.error().what;
+    return fitted ? fitted->curve.size() : 0;
+  };
+  const std::size_t to_the_end = passesWith(0), at_once = passesWith(1);
+  EXPECT_LT(at_once + 10, to_the_end) << "it ends once the noise has settled";
+  EXPECT_GT(at_once, 80u) << "not before";
+  EXPECT_FALSE(fit(hands, {.mse_limit = -1}));
+}
+
 TEST(Fit, RefusesWhatItCannotLearn) {
   const auto why = [](const DataSet& hands, const FitSettings& s = {}) {
     const auto fitted = fit(hands, s);

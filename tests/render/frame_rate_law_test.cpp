@@ -25,6 +25,9 @@ TEST(FrameRateLaw, IsTrianglesASecondOverTheRate) {
   // The model of [GOURLEY98] figure 5.37 at 8 Hz: 306,144 triangles/s, which are 5,102 a frame at
   // 60 Hz.
   EXPECT_EQ(draw(law, 100, 8, 8, 38268, 60), 5102);
+  // The same model at 223,020 and 72,000 triangles/s, as on the two machines of the dissertation.
+  EXPECT_NEAR(draw(law, 200, 223020.0 / 38268, 6, 38268, 60).value_or(0), 3717, 1);
+  EXPECT_NEAR(draw(law, 300, 72000.0 / 38268, 2, 38268, 60).value_or(0), 1200, 1);
 }
 
 TEST(FrameRateLaw, AnswersOnceASecond) {

@@ -100,6 +100,12 @@ TEST(Parts, ALargerPartThatFacesInwardsIsTurnedAndTheOneWithinStays) {
   expectFacing(both, 2, 0, 0);
 }
 
+TEST(Parts, TheBackOfABodyWithTwoSidesIsItsInnerWall) {
+  Mesh both = insideOut(test::cube());
+  addMesh(both, test::cube(), 1, 0);
+  expectFacing(both, 2, 0, 0);
+}
+
 // The tilted plate has the larger box, and the cube in it the larger volume.
 TEST(Parts, OnlyALargerPartHasAnInnerWall) {
   Mesh plate = test::cube();

@@ -697,7 +697,8 @@ TEST_F(RangeFile, FaultsOfAGridNameThePixelOrTheVertex) {
             "a.ply: line 3: num_cols is \"x\"; allowed are 1 to 268435456");
   EXPECT_EQ(fault(with(good, "1 4\n", "1 5\n"), {}, "a.ply"),
             "a.ply: pixel 5 has vertex 5; there are 5");
-  EXPECT_EQ(fault(with(good, "1 4\n", "1 -1\n"), {}, "a.ply"), "a.ply: pixel 5 has vertex -1");
+  EXPECT_EQ(fault(with(good, "1 4\n", "1 -1\n"), {}, "a.ply"),
+            "a.ply: pixel 5 has vertex -1, which is not a vertex's number");
   EXPECT_EQ(fault(with(good, "1 4\n", "2 4 0\n"), {}, "a.ply"),
             "a.ply: pixel 5 has 2 vertices; allowed are 0 and 1");
   EXPECT_EQ(fault(with(good, "1 4\n", ""), {}, "a.ply"), "a.ply: ends at range_grid 5 of 6");

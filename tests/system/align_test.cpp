@@ -392,8 +392,12 @@ TEST_F(Align, AnAlignmentIsSetAsideWhileItsOutputHasAnotherSizeAndComesBack) {
       << wrong.output;
   EXPECT_NE(align({"--list"}).output.find("steps that can be undone: 0"), std::string::npos);
   writeText(wall_->config(), good);
-  const Outcome right = merlin({"reload"});
-  EXPECT_EQ(right.output.find("set aside"), std::string::npos) << right.output;
+  const std::string back = "note: the alignment of output left, which was set aside, ";
+  const Outcome first = merlin({"reload", "--check"}), right = merlin({"reload"});
+  EXPECT_NE(first.output.find(back + "would be in effect again"), std::string::npos)
+      << first.output;
+  EXPECT_NE(right.output.find(back + "is in effect again"), std::string::npos) << right.output;
+  EXPECT_EQ(right.output.find("is set aside"), std::string::npos) << right.output;
   EXPECT_TRUE(eventually([&] { return blackLeft(0) == 20; }));
   EXPECT_EQ(align({"--undo"}).status, 0);
   EXPECT_TRUE(eventually([&] { return blackLeft(0) == 0; }));
@@ -428,6 +432,8 @@ TEST_F(Align, ATestCardIsShownAndCorrected) {
   EXPECT_EQ(at(signal(), 100, 2), 255);
   const Outcome wrong = merlin({"wall", "testcard", "gird"});
   EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.output.find("merlin: there is no test card \"gird\"; "), std::string::npos)
+      << wrong.output;
   EXPECT_NE(
       wrong.output.find("there are grid, edges, ramps, names, focus, black, grey, white, and off"),
       std::string::npos)

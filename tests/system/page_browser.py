@@ -129,6 +129,7 @@ def contents(driver):
     driver.until("a tap shows it again", lambda: status()["content"]["name"] == "valley")
     driver.until("and the page marks it", lambda: driver.run(
         "return document.querySelector('%s').ariaPressed" % (tile % "valley")) == "true")
+    driver.until("and takes its picture from the wall", lambda: driver.run(seen % (tile % "valley")) > 100)
     pressed = "return document.querySelector('%s').ariaPressed" % (tile % "meadow")
     driver.until("another one is shown", lambda: driver.run(pressed) == "false")
     driver.click(tile % "meadow")
@@ -174,9 +175,9 @@ def refusals(driver):
             }
             const answer = await window.served(url, options);
             if (url !== '/api/contents') return answer;
-            const {contents} = await answer.json();
-            for (const content of contents) content.thumbnail = content.thumbnail && content.thumbnail + 1000;
-            return new Response(JSON.stringify({contents}));
+            const {contents, shown} = await answer.json();
+            for (const content of [...contents, ...shown]) content.thumbnail = content.thumbnail && content.thumbnail + 1000;
+            return new Response(JSON.stringify({contents, shown}));
         };""")
     driver.until("every thumbnail is read again, also the one that failed", lambda:
                  len(before) > 1 and len(driver.run(seen)) == len(before) and not set(before) & set(driver.run(seen)))
@@ -212,7 +213,7 @@ def idle(driver):
 def phone(driver):
     """The code for a phone: on loopback the page says why there is none."""
     driver.run("document.getElementById('phone').click()")
-    driver.until("the page says why a phone cannot reach it", lambda: "listens at 127.0.0.1 alone" in driver.run(
+    driver.until("the page says why a phone cannot reach it", lambda: "listens only at 127.0.0.1" in driver.run(
         "return document.getElementById('phone-why').textContent"))
     assert driver.run("return document.getElementById('phone-code').hasAttribute('hidden')"), "a useless code"
     driver.click("#phone-close")

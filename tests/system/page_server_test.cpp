@@ -376,7 +376,7 @@ TEST_F(PageAlone, ThePhonesCodeIsForWhoHasTheTokenAndWhereAPhoneCanGo) {
     const Json here = Json::parse(ask(page.token()).body);
     EXPECT_TRUE(here["address"].is_null());
     EXPECT_TRUE(here["rows"].empty());
-    EXPECT_NE(here["why"].get<std::string>().find("listens at 127.0.0.1 alone"), std::string::npos);
+    EXPECT_NE(here["why"].get<std::string>().find("listens only at 127.0.0.1"), std::string::npos);
     EXPECT_EQ(page.process().kill(SIGTERM), 0) << page.process().output();
   }
   PageProcess page(dir_, config("page.json", {{"address", "0.0.0.0"}}), instance_, port_);

@@ -122,7 +122,7 @@ TEST_F(RfbTest, AClientSeesTheWallTheOperatorsViewOrATile) {
 
   Rfb of_none(wall->instance(), {"--tile", "attic"});
   EXPECT_TRUE(of_none.process().saysEventually(
-      "card: this wall has no tile attic; its tiles are left, centre, right, operator"))
+      "this wall has no tile attic; its tiles are left, centre, right, operator"))
       << of_none.process().output();
 }
 

@@ -190,7 +190,8 @@ void addMeshInfo(Command mesh, Run& run) {
       "of another program, whatever merlin mesh import reads: sizes, the box around it, features "
       "with their "
       "ranges, connected parts, holes with the length of their borders, what is odd, and the "
-      "repairs that reading needed. Vertices at one place count as one for parts and holes. "
+      "repairs that reading needed. Vertices at one place count as one for holes, and for parts "
+      "where a surface ends. "
       "Nothing is written."
       "\nExample: merlin mesh info scan.mrm --json");
   command.option("file", options->file, "The file").required().typeName("FILE");

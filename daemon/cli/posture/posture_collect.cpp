@@ -193,9 +193,13 @@ Result<Ok> checkSensors(const nn::Recording& before, const nn::Slots& measured,
       path + ": was recorded with a glove that has other sensors; choose another file with -o"};
 }
 
-// Appends the recorded hands to those of `before` and writes them all. Errors: those of
-// checkSensors() and nn::saveRecording().
-Result<Ok> saveHands(nn::Recording before, nn::Recording recording, const CollectOptions& options) {
+// Appends the recorded hands to those of the file, which is read again, since it may have changed
+// while the hands were recorded. Errors: those of handsSoFar(), checkSensors() and
+// nn::saveRecording().
+Result<Ok> saveHands(nn::Recording recording, const CollectOptions& options) {
+  auto found = handsSoFar(options);
+  if (!found) return found.error();
+  nn::Recording before = *std::move(found);
   const std::size_t taken = recording.hands.size();
   if (auto fits = checkSensors(before, recording.measured, options.output); !fits) return fits;
   before.hands.insert(before.hands.end(), recording.hands.begin(), recording.hands.end());
@@ -233,7 +237,7 @@ int run(const CollectOptions& options) {
     return fail({Errc::kInvalidArgument,
                  fmt::format("LABEL \"{}\": allowed are 1 to {} letters, digits, - or _",
                              options.label, nn::kLongestName)});
-  auto before = handsSoFar(options);
+  const auto before = handsSoFar(options);
   if (!before) return fail(before.error());
   const UniqueFd stop = stopSignals();
   auto glove = openGloveFor(*before, options, stop.get());
@@ -242,7 +246,7 @@ int run(const CollectOptions& options) {
   CollectedHands collected = collect(*glove, options);
   const std::size_t hands = collected.recording.hands.size();
   if (hands > 0) {
-    const auto saved = saveHands(*std::move(before), std::move(collected.recording), options);
+    const auto saved = saveHands(std::move(collected.recording), options);
     if (!saved) return fail(saved.error());
   }
   if (!collected.ended) return kExitDone;

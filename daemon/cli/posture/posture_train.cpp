@@ -138,6 +138,12 @@ void addPostureTrain(Command posture, Run& run) {
       .range(1, 1000000)
       .showDefault();
   command
+      .option("--error", options->fit.mse_limit,
+              "Go on to the final passes earlier, once the mean squared error of a pass is below "
+              "this (but not in the first four fifths of --passes); 0: never")
+      .range(0.0, 1.0)
+      .showDefault();
+  command
       .option("--folds", options->folds,
               "Cross-validate instead of writing a network: divide the hands into this number of "
               "parts; "

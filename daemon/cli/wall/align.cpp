@@ -86,7 +86,8 @@ int alignByKeys(const AlignOptions& options) {
   AlignSession session({[&](const state::AlignRequest& request) { return wall.ask(request); },
                         [&](const std::string& card) -> Result<Ok> {
                           const auto shown = askRole(options.instance, "wall", {"testcard", card});
-                          return shown ? Result<Ok>(Ok{}) : shown.error();
+                          if (!shown) return wallsReason(shown.error(), "testcard");
+                          return Ok{};
                         }},
                        options.output);
   if (const auto begun = session.begin(); !begun) return fail(begun.error());

@@ -1,7 +1,6 @@
 #include "daemon/cli/wall/aligned_wall.h"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,11 +53,11 @@ const AlignedPicture* AlignAnswer::find(const std::string& output) const {
   return found == outputs.end() ? nullptr : &*found;
 }
 
-Error wallsReason(Error error) {
-  constexpr std::string_view kCommand = ": align: ";
-  const auto at = error.what.find(kCommand);
+Error wallsReason(Error error, std::string_view command) {
+  const std::string before = fmt::format(": {}: ", command);
+  const auto at = error.what.find(before);
   if (error.code == Errc::kInvalidArgument && at != std::string::npos)
-    error.what.erase(0, at + kCommand.size());
+    error.what.erase(0, at + before.size());
   return error;
 }
 
@@ -76,7 +75,7 @@ Result<AlignAnswer> readAlignAnswer(const std::string& text) {
 
 Result<AlignAnswer> AlignedWall::ask(const state::AlignRequest& request) const {
   const auto answer = askRole(instance_, "wall", {"align", state::textOf(request)});
-  if (!answer) return wallsReason(answer.error());
+  if (!answer) return wallsReason(answer.error(), "align");
   return readAlignAnswer(*answer);
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/base/result.h"
@@ -57,7 +58,7 @@ class AlignedWall {
 
 // An error of askRole(), without the socket's address and the command, by which the message of a
 // refused request begins.
-Error wallsReason(Error error);
+Error wallsReason(Error error, std::string_view command);
 
 // Reads the answer. Errors: kMalformed.
 Result<AlignAnswer> readAlignAnswer(const std::string& text);

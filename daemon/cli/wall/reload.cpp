@@ -250,6 +250,10 @@ void printDone(const std::vector<Reloaded>& all, reload::Readers running, const 
       is_check ? +[](const Json& a) { return asideText(a, "would be"); }
                : +[](const Json& a) { return asideText(a, "is"); });
   for (const std::string& note : aside) printNote(note);
+  for (const std::string& output : together(all, "brought_back", itself)) {
+    printNote(fmt::format("the alignment of output {}, which was set aside, {} in effect again",
+                          output, is_check ? "would be" : "is"));
+  }
 }
 
 // Prints why nothing was swapped.
@@ -396,7 +400,8 @@ void addReload(Command app, Run& run) {
       .typeName("PID");
   command.flag("--check", options->check,
                "Only print what would be swapped, what needs a restart, and which outputs' "
-               "alignments would be set aside since they do not fit any more");
+               "alignments would be set aside since they do not fit any more, or would come back "
+               "since they fit again");
   command.flag("--json", options->json, "Print JSON, for programs");
   command.callback([options, &run] { run = [options] { return reloadInstance(*options); }; });
 }

@@ -10,6 +10,7 @@
 #include "daemon/cli/print.h"
 #include "daemon/cli/roles.h"
 #include "daemon/cli/wall/align.h"
+#include "daemon/cli/wall/aligned_wall.h"
 #include "daemon/shm/segment.h"
 #include "render/testcard/card.h"
 
@@ -42,7 +43,7 @@ int testcard(const CardOptions& options) {
     return kExitDone;
   }
   const auto asked = askRole(options.instance, "wall", {"testcard", options.card});
-  if (!asked) return fail(asked.error());
+  if (!asked) return fail(wallsReason(asked.error(), "testcard"));
   const auto answer = nlohmann::json::parse(*asked, nullptr, false);
   awaitFrameAfter(options.instance, answer.value("after", std::uint64_t{0}));
   return kExitDone;

@@ -21,9 +21,10 @@ export class Contents {
   // Reads the list again, and the pictures that are new. `files`: names of the contents that are not in the configuration,
   // and that the wall can show again; the newest first.
   async refresh(open, files) {
-    const {contents} = await getJson("/api/contents");
+    const {contents, shown = []} = await getJson("/api/contents");
     for (const name of files.slice(0, kMostFiles))
-      if (!contents.some(c => c.name === name)) contents.push({name, kind: "file"});
+      if (!contents.some(c => c.name === name))
+        contents.push({kind: "file", ...shown.find(s => s.name === name), name});
     const listed = JSON.stringify(contents.map(c => [c.name, c.kind]));
     if (listed !== this.listed) {
       this.listed = listed;
@@ -36,6 +37,7 @@ export class Contents {
       tile.note.textContent = c.fault ? "cannot be read" : kKinds[c.kind] || c.kind;
       tile.note.classList.toggle("bad", Boolean(c.fault));
       tile.button.title = c.fault || "";
+      if (c.place !== undefined) tile.place = c.place;
       try {
         if (c.thumbnail && c.thumbnail !== tile.number) await this.picture(tile, c.thumbnail);
       } catch (error) {
