@@ -30,9 +30,9 @@ constexpr std::size_t kLastPasses = 40;  // final passes, with the validation ha
 constexpr float kLastRates = 0.1F;       // rate of the final passes, share of kRate
 
 struct Start {
-  std::vector<std::uint32_t> pool, codes;
   Descending at;
   double error = 0;
+  std::vector<std::uint32_t> pool, codes;
 };
 
 // Working data of one call of fit().

@@ -166,12 +166,12 @@ class WallLoop {
   // Detail step of the last moving frame that had a whole period.
   std::optional<std::size_t> moving_step_;
   bool full_detail_ = false;
-  bool resuming_ = false;       // the next frame is the first after a standstill
-  std::size_t new_frames_ = 0;  // first moving frames of another content that are still to come
-  bool held_ = false;           // black or frozen: nothing moves the scene
-  std::uint64_t frames_ = 0;
-  shm::WallStats counted_{};  // only the fields that the loop itself counts
+  bool resuming_ = false;  // the next frame is the first after a standstill
+  bool held_ = false;      // black or frozen: nothing moves the scene
   std::atomic<std::uint32_t> requests_{0};
+  std::size_t new_frames_ = 0;  // first moving frames of another content that are still to come
+  std::uint64_t frames_ = 0;
+  shm::WallStats counted_{};                   // only the fields that the loop itself counts
   std::atomic<std::int64_t> place_asked_{-1};  // -1: none
   std::mutex step_mutex_;
   // Guarded by step_mutex_: the sum of move() since the last frame; the requests that are done.
