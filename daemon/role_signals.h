@@ -1,4 +1,5 @@
-// The signals that end or restart the processes of the roles page and alarms.
+// The signals that end or restart the processes of the roles page and alarms, and the watchdog of
+// every role.
 #pragma once
 
 #include <functional>

@@ -73,8 +73,7 @@ Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int 
   }
   std::byte buffer[256];
   while (clock.now() < end) {
-    pollfd stop{stop_fd, POLLIN, 0};
-    if (::poll(&stop, 1, 0) > 0) break;
+    if (stopArrived(stop_fd)) break;
     Result<Ok> heard = Ok{};
     if (device) {
       heard = device->poll(line);

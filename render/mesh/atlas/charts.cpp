@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
+
+#include "render/mesh/disjoint_sets.h"
 
 namespace merlin::render::mesh {
 namespace {
@@ -52,24 +53,6 @@ bool spans(const Range& range, const std::array<std::int32_t, 2>& shift, int mos
   }
   return true;
 }
-
-// Sets of vertices, joined by triangles.
-class Connected {
- public:
-  explicit Connected(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t rootOf(std::uint32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = rootOf(a);
-    b = rootOf(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 // Returns the colour rounded to `bits` bits per component.
 Colour rounded(const Colour& colour, int bits) {
@@ -126,12 +109,12 @@ class ChartFinder {
 
   // A vertex also connects the triangles of two textures that share it.
   void joinTriangles() {
-    connected_ = Connected(mesh_.vertexCount());
+    connected_ = DisjointSets(mesh_.vertexCount());
     for (std::size_t t = 0; t < mesh_.triangleCount(); ++t) {
       if (!isTextured(t)) continue;
       const std::uint32_t* const c = cornersOf(t);
-      connected_.join(c[0], c[1]);
-      connected_.join(c[0], c[2]);
+      connected_.unite(c[0], c[1]);
+      connected_.unite(c[0], c[2]);
     }
     ranges_.resize(mesh_.vertexCount());
     for (std::size_t t = 0; t < mesh_.triangleCount(); ++t) {
@@ -256,7 +239,7 @@ class ChartFinder {
   Charts charts_;
   std::vector<std::uint32_t> chart_of_;         // of each texture
   std::vector<std::optional<Region>> regions_;  // of each chart
-  Connected connected_{0};
+  DisjointSets connected_{0};                   // vertices that triangles connect
   std::vector<Range> ranges_;             // of connected triangles, at the root of their vertices
   std::vector<Colour> triangle_colours_;  // of triangles without a chart
   std::map<std::uint32_t, Colour> means_;
