@@ -1,5 +1,5 @@
-// The daemon's state: steps and offsets, the file's text, and what happens to files that are
-// damaged, newer, or cannot be written.
+// The daemon's state: steps and offsets, the text of its file, and files that are damaged, newer,
+// or cannot be written.
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -132,7 +132,7 @@ TEST(Alignment, TheStepsOfBothAreLimitedWhereOneIsPutBack) {
   EXPECT_EQ(a.offset("right", kTopLeft), Offset{});
 }
 
-// Outputs get new names over the years.
+// Over the years outputs are renamed.
 TEST(Alignment, BeyondTheMostOutputsTheFirstOneIsForgottenAndOneThatIsNotMovedBefore) {
   const auto formOf = [](std::size_t i) { return OutputForm{std::to_string(i), 640, 480, 0, 0}; };
   State state;
@@ -180,7 +180,7 @@ TEST(SetAside, KeepsTheLastFormsOfEachOutput) {
   EXPECT_EQ(aside.alignments().size(), 4u) << "nothing is not kept";
 }
 
-// One of them fits the base mesh of one configuration, the other one that of another.
+// One alignment fits the base mesh of one configuration, the other that of another configuration.
 TEST(SetAside, KeepsTwoOfTheSameForm) {
   SetAside aside;
   aside.add(alignedAt(640));
@@ -264,7 +264,7 @@ TEST(StateText, OfNothingIsReadBack) {
   EXPECT_EQ(read->alignment.steps.size(), 0u);
 }
 
-// As merlind wrote it before the playlist and the projectors were kept.
+// The text of an older merlind, which did not yet store the playlist and the projectors.
 TEST(StateText, OfVersion1IsRead) {
   const auto read = parseState(R"({"merlin_state": 1,
 "rate_hz": 25.0,
@@ -282,7 +282,7 @@ TEST(StateText, OfVersion1IsRead) {
   EXPECT_FALSE(read->playlist_off || read->projectors);
 }
 
-// As merlind wrote it before alignments were set aside.
+// The text of an older merlind, which did not yet set alignments aside.
 TEST(StateText, OfVersion2IsRead) {
   const auto read = parseState(
       R"({"merlin_state": 2, "playlist": "off",
@@ -303,10 +303,10 @@ TEST(State, HasTheAlignmentThatFitsAnOutput) {
   EXPECT_FALSE(alignmentFor(state, {"left", 801, 480, 0, 0, std::array<double, 8>{}}));
 }
 
-// A file that was cut or of which one byte is another is an error, or a state within its limits.
+// A file that is cut or has one wrong byte gives an error, or a state within the limits.
 TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
   const std::string text = stateText(someState());
-  for (std::size_t size = 0; size + 1 < text.size(); ++size)  // the last byte is the line's end
+  for (std::size_t size = 0; size + 1 < text.size(); ++size)  // the last byte is the line end
     EXPECT_FALSE(parseState(text.substr(0, size), "f")) << size;
   for (std::size_t i = 0; i < text.size(); ++i) {
     for (const char c : {'\0', ' ', '9', '-', '"', '}', '\xff'}) {
@@ -319,7 +319,7 @@ TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
   }
 }
 
-// Numbers and names of the greatest length.
+// Numbers and names of maximum length.
 constexpr Offset kLong{-999999.999, -999999.999};
 OutputForm longForm(std::size_t i) {
   std::string name = std::to_string(i);
@@ -332,7 +332,7 @@ Place pointAt(std::size_t i) {
   return {Place::Of::kMesh, static_cast<int>(i % 64), static_cast<int>(i / 64)};
 }
 
-// One of this many steps, each of which has this many changes, and of this many moved places.
+// An alignment with this many steps of this many changes each, and this many moved places.
 Alignment longAlignment(std::size_t number, std::size_t moved, std::size_t steps,
                         std::size_t changes) {
   Alignment a;
@@ -345,7 +345,7 @@ Alignment longAlignment(std::size_t number, std::size_t moved, std::size_t steps
 }
 
 TEST(StateText, OfTheLargestStateIsReadBack) {
-  State few, many;  // of the alignments that are set aside
+  State few, many;  // the entries that are set aside
   for (State* state : {&few, &many}) {
     Alignment& a = state->alignment;
     a = longAlignment(0, kMostMoved, kMostSteps, kMostChanges / kMostSteps);
@@ -397,7 +397,7 @@ TEST(StateText, WrongFiguresAreNamedWithTheirPlace) {
   EXPECT_EQ(newer.error().code, Errc::kUnsupported);
 }
 
-// Files in memory, whose disk can be full.
+// Files in memory; the disk can be made full.
 class FakeFiles final : public StateFiles {
  public:
   struct Disk {
@@ -435,7 +435,7 @@ class FakeFiles final : public StateFiles {
 
 class StateKeeping : public testing::Test {
  protected:
-  // Runs a daemon's life: reads the state, makes a change if there is one, ends.
+  // A daemon's life: it reads the state, makes a change if there is one, and ends.
   std::unique_ptr<StateKeeper> keeper() {
     return std::make_unique<StateKeeper>(std::make_unique<FakeFiles>(disk_), watch_);
   }
