@@ -1,6 +1,6 @@
-// Two eyes look through the same screens: what lies in a screen has no parallax, what lies behind
-// it the one that its distance says. And impossible stereo is refused, with the reason and a
-// remedy.
+// Two eyes look through the same screens: a point in the plane of a screen has no parallax, a point
+// behind it has the parallax that follows from its distance. Stereo settings that are impossible
+// are refused, with the reason and a remedy.
 #include "render/stereo/eye_tiles.h"
 
 #include <cmath>
@@ -106,7 +106,8 @@ TEST(EyeTiles, HaveTheParallaxThatThePointsDistanceSays) {
 
 TEST(EyeTiles, OfASymmetricTileHaveItsFieldOfViewInTheMiddle) {
   stereo::StereoSettings tracked;
-  tracked.head.station = 2;  // screens, but one eye
+  tracked.head.station =
+      2;  // with head tracking the tiles are screens in the room, but there is one eye
   tiles::TilesSettings tiles;
   tiles.tiles[0].direction_deg = {10, 20, 30};
   tiles.tiles[1].frustum_deg = {-10, 30, -5, 8};
@@ -145,7 +146,7 @@ std::vector<Place> placesIn(const stereo::EyeTiles& eyes) {
   return places;
 }
 
-// One tile of 640 x 480 beside the operator's.
+// One tile of 640 x 480 pixels beside the operator's tile.
 tiles::TilesSettings oneTile() {
   tiles::TilesSettings tiles;
   tiles.frame_height = 480;
@@ -182,7 +183,8 @@ TEST(EyeTiles, OfTheLeftEyeAreTheWallsPicture) {
   EXPECT_EQ(tileNamed(plan, "centre.R").wall_x, -1);
 }
 
-// Along the middle tile, which looks to the left here, unless the settings say otherwise.
+// Unless the settings say otherwise, the eyes are along the middle tile, which is turned to the
+// left here.
 TEST(EyeTiles, HaveEyesAlongTheMiddleTile) {
   tiles::TilesSettings tiles;
   for (std::size_t i = 0; i < 3; ++i) tiles.tiles[i].direction_deg = {30, 0, 0};
@@ -280,8 +282,8 @@ TEST(Anaglyph, TakesBrightnessFromTheLeftEyeAndGreenAndBlueFromTheRightOne) {
   EXPECT_EQ(same, out) << "in place";
 }
 
-// The viewer moves towards the screen and to the right: the frusta follow, the places on the screen
-// stay.
+// The viewer moves towards the screen and to the right. The frusta change, but the screen's corners
+// remain at the tiles' corners.
 TEST(PlaceViewer, KeepsEachScreensCornersAtTheTilesCorners) {
   tiles::TilePlan plan =
       *tiles::planTiles(eyesOf(inMode(stereo::StereoMode::kAnaglyph), hinged()).tiles);

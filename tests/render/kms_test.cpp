@@ -1,4 +1,5 @@
-// Outputs of kind kms on a fake card: choices, and what happens to a wall's displays.
+// Outputs of kind kms on a fake card: the choice of connectors and modes, and what happens to a
+// wall's displays.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -205,7 +206,7 @@ class DisplaysTest : public testing::Test {
     clock_.advance(seconds(1));
     step();
   }
-  // Presents a frame of this blue to both outputs.
+  // Presents a frame with this blue value to both outputs.
   void present(std::uint8_t blue) {
     std::vector<std::uint8_t> pixels(640 * 480 * 4);
     for (std::size_t i = 2; i < pixels.size(); i += 4) pixels[i] = blue;
@@ -256,7 +257,7 @@ TEST_F(DisplaysTest, AFrameIsOneCommitOfAllDisplays) {
 class EveryConnectorTest : public DisplaysTest {
  protected:
   EveryConnectorTest() { every_.add({"", "*", ""}, 640, 480); }
-  // Presents a frame and lets it be shown; returns the fault.
+  // Presents a frame and completes its flip; returns the fault.
   std::string show(std::uint64_t sequence, std::uint8_t blue) {
     std::vector<std::uint8_t> pixels(640 * 480 * 4);
     for (std::size_t i = 2; i < pixels.size(); i += 4) pixels[i] = blue;

@@ -1,4 +1,4 @@
-// Fingers on a touch surface: how they move together, and how what is shown follows them.
+// Fingers on a touch surface: how their common motion is measured, and how the content follows it.
 #include "render/scene/touch.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 struct Finger {
   std::uint32_t id;
-  float right, down;  // shares
+  float right, down;  // shares of the surface's width and height
 };
 
 TouchSample touch(std::initializer_list<Finger> fingers) {
@@ -46,7 +46,8 @@ TEST(Touch, AFingerThatMovesDrags) {
 }
 
 TEST(Touch, TwoFingersPinchAndTurnAboutTheirMiddle) {
-  const TouchSample before = touch({{1, 0.4F, 0.5F}, {2, 0.6F, 0.5F}});  // 0.4 heights apart
+  const TouchSample before =
+      touch({{1, 0.4F, 0.5F}, {2, 0.6F, 0.5F}});  // 0.4 surface heights apart
   const TouchMotion apart = between(before, touch({{2, 0.7F, 0.5F}, {1, 0.3F, 0.5F}}));
   EXPECT_NEAR(apart.spread, std::log(2.0F), 1e-6F);
   EXPECT_NEAR(apart.right, 0, 1e-6F);
