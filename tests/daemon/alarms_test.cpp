@@ -281,11 +281,11 @@ TEST(ChildProgram, IsEndedWithAllThatItStartedWhenItsTimeIsOver) {
   EXPECT_FALSE(program->ended(SystemClock().now()));
   EXPECT_EQ(outcome(*program, 7200), "took longer than its time limit, and was ended");
   const pid_t sleeper = std::stoi(test::readText(dir / "pid"));
-  EXPECT_TRUE(
-      test::eventually([&] {  // the process is gone, or a zombie that init has not collected yet
-        const std::string stat = test::readText("/proc/" + std::to_string(sleeper) + "/stat");
-        return stat.empty() || stat.find(") Z") != std::string::npos;
-      }));
+  // The process is gone, or is a zombie that init has not collected yet.
+  EXPECT_TRUE(test::eventually([&] {
+    const std::string stat = test::readText("/proc/" + std::to_string(sleeper) + "/stat");
+    return stat.empty() || stat.find(") Z") != std::string::npos;
+  }));
 }
 
 TEST(RoleStateTest, TellsOfARoleThatEndedAndIsBackButNotOfARestart) {

@@ -43,9 +43,8 @@ TEST(ChildProcess, ASignalDoesNotEndTheWait) {
   ASSERT_TRUE(pipe);
   signalled = pipe->to.get();
   struct sigaction tell {};
-  tell.sa_handler = [](int) {
-    (void)!::write(signalled, "", 1);
-  };  // without SA_RESTART, so that waits are interrupted
+  // Without SA_RESTART the signal interrupts a wait.
+  tell.sa_handler = [](int) { (void)!::write(signalled, "", 1); };
   struct sigaction before {};
   ASSERT_EQ(::sigaction(SIGUSR1, &tell, &before), 0);
   const pid_t parent = ::getpid();

@@ -41,8 +41,7 @@ TEST(FlightRing, KeepsWhatWentBothWaysWithItsTimes) {
   ring.said(clock.now(), asBytes("S"));
   clock.advance(milliseconds(10));
   ring.heard(clock.now(), asBytes("one"));
-  ring.heard(clock.now(),
-             asBytes("two"));  // recorded at the same time, so it is appended to the same chunk
+  ring.heard(clock.now(), asBytes("two"));  // at the same time: the same chunk
   clock.advance(milliseconds(10));
   ring.heard(clock.now(), asBytes(std::string(100, 'x')));
   Duration left_out{};

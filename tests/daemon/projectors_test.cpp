@@ -229,10 +229,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Restart{14 * 60, false, 15 * 60, kOff},      // switched off in the afternoon
                     Restart{8 * 60, true, 8 * 60 + 30, kOn},     // on before the opening time
                     Restart{14 * 60, false, 17 * 60 + 1, kOff},  //
-                    Restart{14 * 60, true, 17 * 60 + 1,
-                            kOff},  // the time at which the schedule switches has passed
-                    Restart{14 * 60, false, 33 * 60 + 5, kOn},  // two of them have
-                    Restart{18 * 60, true, 27 * 60, kOn},       // a late visitor stays till three
+                    Restart{14 * 60, true, 17 * 60 + 1, kOff},   // the switching time has passed
+                    Restart{14 * 60, false, 33 * 60 + 5, kOn},   // two of them have
+                    Restart{18 * 60, true, 27 * 60, kOn},        // a late visitor stays till three
                     Restart{20 * 60, false, 27 * 60, kOff}));
 
 TEST(Projectors, WhatAPersonDoesIsKeptWithItsTime) {

@@ -32,9 +32,9 @@ using Texts = std::vector<std::string>;
 TEST(KnownSecrets, AreReplacedTheLongestFirst) {
   const KnownSecrets secrets(Texts{"pass", "password-9", "abc"});
   EXPECT_EQ(secrets.without("a password-9, a pass; abc"),
-            "a (left out), a (left out); abc")  // secrets of three letters are not replaced, since
-                                                // they occur everywhere
-                                                << "the shorter one is part of the longer one";
+            // Secrets of three letters are not replaced, since such texts occur everywhere.
+            "a (left out), a (left out); abc")
+      << "the shorter one is part of the longer one";
   EXPECT_TRUE(secrets.isIn("xpassx"));
   EXPECT_FALSE(secrets.isIn("abc"));
 }
@@ -53,8 +53,8 @@ TEST(KnownSecrets, ComeFromTheFilesThatTheSettingsName) {
   Settings settings;
   settings.devices.projectors.resize(2);
   settings.devices.projectors[0].password_file = dir / "left.password";
-  settings.devices.projectors[1].password_file =
-      dir / "typed-in-place";  // a password instead of a file name: there is no such file
+  // This is a password in the place of a file's name: there is no such file.
+  settings.devices.projectors[1].password_file = dir / "typed-in-place";
   settings.serve.samples_keys = dir / "wall.keys";
   const KnownSecrets secrets(settings, {dir / "page.token", dir / "no-such-file"});
   EXPECT_EQ(secrets.without("hunter-22 PUBLICKEY SECRETKEY hunter-22-TOKEN typed-in-place"),
@@ -190,8 +190,8 @@ TEST_F(RunPart, WhatItHasStartedIsEndedToo) {
   const std::string stat = fmt::format("/proc/{}/stat", std::stoi(result.files[0].content));
   EXPECT_TRUE(test::eventually([&] {
     const std::string text = test::readText(stat);
-    return text.empty() ||
-           text.find(") Z") != std::string::npos;  // a zombie: perhaps nobody has waited for it
+    // A zombie counts as ended too, since perhaps nobody has waited for it.
+    return text.empty() || text.find(") Z") != std::string::npos;
   }));
 }
 

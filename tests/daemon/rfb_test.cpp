@@ -139,8 +139,8 @@ TEST(RfbView, ReportsTheBlocksThatChangedAndNoOthers) {
   // Frame position (5, 66) belongs to the tile right, at (85, 66) of the wall: in the block below
   // the first.
   frame.pixels[static_cast<std::size_t>(4 * (66 * frame.width + 5))] = 200;
-  frame.pixels[static_cast<std::size_t>(4 * (120 * frame.width + 5))] =
-      200;  // in the operator's view, which is not shown
+  // This pixel is in the operator's view, which is not shown.
+  frame.pixels[static_cast<std::size_t>(4 * (120 * frame.width + 5))] = 200;
   EXPECT_EQ(copyChanged(frame, *layout, canvas), (std::vector<Rectangle>{{80, 64, 64, 6}}));
   EXPECT_EQ(canvas[static_cast<std::size_t>(4 * (66 * 160 + 85))], 200);
 }

@@ -320,8 +320,8 @@ TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sockaddr_in there = loopback((*server)->port());
-  std::vector<UniqueFd> listeners;  // the kernel accepts connections to these sockets, but nothing
-                                    // is ever sent on them
+  // The kernel accepts connections to these sockets, but nothing is ever sent on them.
+  std::vector<UniqueFd> listeners;
   for (int i = 0; i < 20; ++i) {
     listeners.push_back(*net::listenTcp("127.0.0.1", 0));
     const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listeners.back().get()));

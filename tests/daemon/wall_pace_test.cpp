@@ -180,8 +180,7 @@ TEST_F(WallPaceTest, DetailByHandEndsWithTheUnitThatItIsIn) {
     if (since() > std::chrono::seconds(static_cast<int>(held.size()) + 1)) {
       held.push_back(stats().held_cost);
       if (held.size() == 1) loop_->hold(1000);
-      if (held.size() < 5)
-        loop_->show(held.size() % 3);  // models 1, picture 2, then models 0 and 1
+      if (held.size() < 5) loop_->show(held.size() % 3);  // models 1, picture 2, models 0 and 1
     }
   });
   EXPECT_EQ(held, (std::vector<std::uint32_t>{0, 1000, 0, 0, 0}))

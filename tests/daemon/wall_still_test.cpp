@@ -52,8 +52,8 @@ TEST_F(BigModelTest, GetsFinerInStepsAndThenWhole) {
   EXPECT_EQ(shown.back(), model().triangleCount());
   EXPECT_TRUE(frames_.frames.back().full_detail);
   EXPECT_FALSE((frames_.frames.rbegin() + 1)->full_detail);
-  EXPECT_NEAR(stats().still_to_full_s, 10,
-              0.5);  // 9 s of slices, of which only a part of each period may be used
+  // The slices take 9 s, and only a part of each period may be used for them.
+  EXPECT_NEAR(stats().still_to_full_s, 10, 0.5);
   EXPECT_LE(stats().late, 1u);
 }
 

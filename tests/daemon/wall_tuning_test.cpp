@@ -11,9 +11,8 @@ class WallTuningTest : public FakeWall {
   // Tunes the loop once, after half a second.
   void runAndTune(double seconds, const WallTuning& tuning) {
     run(seconds, [&](Timestamp now) {
-      if (tuned_ && !before_)
-        before_ =
-            scene_.view();  // in the frame in which the settings change, the view has not moved yet
+      // In the frame in which the settings change, the view has not moved yet.
+      if (tuned_ && !before_) before_ = scene_.view();
       if (tuned_ || now - feed_.begins.front() < milliseconds(500)) return;
       tuned_ = true;
       loop_->tune(tuning);

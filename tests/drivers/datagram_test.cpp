@@ -200,9 +200,7 @@ TEST(OscPacket, MessagesOfNestedBundlesComeInTheirOrder) {
 TEST(OscPacket, OfADatagramThatIsMalformedAnywhereNothingIsTaken) {
   const std::string good = oscMessage("/a", {1}), bundle = oscBundle({good, good});
   for (std::size_t n = 0; n < bundle.size(); ++n) {
-    const bool one =
-        n == 16 ||
-        n == 16 + 4 + good.size();  // the text is cut between elements, so all elements are whole
+    const bool one = n == 16 || n == 16 + 4 + good.size();  // cut between two elements
     EXPECT_EQ(read(bundle.substr(0, n)).starts_with("malformed"), !one) << n;
     if (!one) {
       EXPECT_EQ(read(bundle.substr(0, n)), "malformed: ") << n;

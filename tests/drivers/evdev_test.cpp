@@ -108,12 +108,10 @@ TEST_F(EvdevTest, AGamepadMovesTurnsAndRises) {
   EXPECT_EQ(device_->input().chosen(),
             "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east, north, west, tl, start");
   EXPECT_FLOAT_EQ(after(moved(ABS_X, 32767)).translation[0], 1);
-  EXPECT_FLOAT_EQ(after(moved(ABS_Y, -32768)).translation[2],
-                  -1);                        // forwards, which is away from the person
+  EXPECT_FLOAT_EQ(after(moved(ABS_Y, -32768)).translation[2], -1);  // forwards is away
   EXPECT_EQ(sink_.ball.back().raw[2], 1000);  // the z axis of a Spaceball has this direction
   EXPECT_FLOAT_EQ(after(moved(ABS_RZ, 255)).translation[1], 1);
-  EXPECT_FLOAT_EQ(after(moved(ABS_Z, 255)).translation[1],
-                  0);  // both triggers are pressed, so their axes cancel each other
+  EXPECT_FLOAT_EQ(after(moved(ABS_Z, 255)).translation[1], 0);  // triggers cancel out
   EXPECT_FLOAT_EQ(after(moved(ABS_RX, 32767)).rotation[1], 1);
   EXPECT_FLOAT_EQ(after(moved(ABS_RY, 32767)).rotation[0], 1);
   EXPECT_FLOAT_EQ(after(moved(ABS_HAT0X, 1)).rotation[2], -1);
@@ -127,8 +125,8 @@ TEST_F(EvdevTest, ItsResponseIsZeroWithinTheDeadZoneAndFineBeyondIt) {
   settings.curve = 2;
   connect(gamepad(), settings);
   EXPECT_FLOAT_EQ(after(moved(ABS_X, 6500)).translation[0], 0);
-  EXPECT_NEAR(after(moved(ABS_X, 19660)).translation[0], 0.25,
-              1e-3);  // 0.6 deflection: half of what is left of the range beyond the dead zone
+  // A deflection of 0.6 is half of the range that is left beyond the dead zone.
+  EXPECT_NEAR(after(moved(ABS_X, 19660)).translation[0], 0.25, 1e-3);
   EXPECT_NEAR(after(moved(ABS_X, -19660)).translation[0], -0.25, 1e-3);
 }
 

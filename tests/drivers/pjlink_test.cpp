@@ -85,8 +85,7 @@ TEST(Pjlink, EveryDamagedByteOfAnAnswerIsAnErrorOrAnotherValue) {
       const auto answer = session.feed(damaged);
       const bool value_only = answer && *answer && (*answer)->value != "1";
       const bool incomplete = answer && !*answer;
-      const bool same_letter =
-          answer && *answer && std::isalpha(value) != 0;  // in lower case, such as "%1powr"
+      const bool same_letter = answer && *answer && std::isalpha(value) != 0;  // such as "%1powr"
       EXPECT_TRUE(!answer || value_only || incomplete || same_letter) << i << " " << value;
     }
   }

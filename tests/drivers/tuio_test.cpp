@@ -129,8 +129,7 @@ TEST_F(TuioTest, SourcesAreToldApartByNameAndWithoutOneBySender) {
   feed(tuioCursors(5, {{1, 0.9F, 0.9F}}, {}, "right@10.0.0.2"));
   ASSERT_EQ(newest().fingers, 2u);
   EXPECT_NE(newest().id[0], newest().id[1]);
-  feed(tuioCursors(1001, {}, {}, "left@10.0.0.1"),
-       2);  // from another port, but still the source "left"
+  feed(tuioCursors(1001, {}, {}, "left@10.0.0.1"), 2);  // of another port, still "left"
   ASSERT_EQ(newest().fingers, 1u);
   EXPECT_FLOAT_EQ(newest().position[0][0], 0.9F);
   feed(tuioCursors(1, {{1, 0.3F, 0.3F}}), 3);
@@ -150,9 +149,7 @@ TEST_F(TuioTest, ASourceThatIsSilentForTwoSecondsTouchesNoMore) {
   EXPECT_LE(clock_.now() - at, milliseconds(2250));
   EXPECT_STREQ(device_->complaint(), "silent: no TUIO frame for 2 s, so nothing touches");
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(device_->poll(stream_));  // silence is no fault
-  feed(tuioCursors(
-      1,
-      {{1, 0.5F, 0.5F}}));  // the tracker was restarted and numbers its frames from the beginning
+  feed(tuioCursors(1, {{1, 0.5F, 0.5F}}));  // restarted: frames count from 1 again
   EXPECT_EQ(newest().fingers, 1u);
   EXPECT_STREQ(device_->complaint(), "");
 }

@@ -104,13 +104,12 @@ TEST(Atlas, ShowsEachTriangleWhatItsPictureShows) {
                                   {&a, Wrap::kMirror, Wrap::kRepeat},
                                   {&b, Wrap::kRepeat, Wrap::kClamp}},
                                  {0, 1, 2, 3, 4, 0}};
-  Mesh mesh = trianglesWith(
-      {0,    0,    1,    0,  0,    1,      // the whole of a
-       -0.5, -0.5, 1.5,  0,  0,    1.5,    // beyond the border of a texture that is clamped
-       7.25, -3,   8.5,  -3, 7.25, -1.5,   // repeated, far from the origin
-       -0.5, 0.5,  2.25, 1,  0.5,  3,      // mirrored
-       -1.5, -1,   0.5,  2,  0.25, 0.25,   // one of each kind
-       5.25, 9.75, 5.75, 9,  5.5,  9.5});  // a part of a
+  Mesh mesh = trianglesWith({0,    0,    1,    0,  0,    1,      // the whole of a
+                             -0.5, -0.5, 1.5,  0,  0,    1.5,    // beyond a clamped border
+                             7.25, -3,   8.5,  -3, 7.25, -1.5,   // repeated, far from the origin
+                             -0.5, 0.5,  2.25, 1,  0.5,  3,      // mirrored
+                             -1.5, -1,   0.5,  2,  0.25, 0.25,   // one of each kind
+                             5.25, 9.75, 5.75, 9,  5.5,  9.5});  // a part of a
   const Mesh before = mesh;
   const JoinedTextures joined = joinTextures(mesh, textures);
   EXPECT_EQ(joined.pictures, 5u) << "a and b once for each way to wrap";

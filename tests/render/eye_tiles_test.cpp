@@ -106,8 +106,8 @@ TEST(EyeTiles, HaveTheParallaxThatThePointsDistanceSays) {
 
 TEST(EyeTiles, OfASymmetricTileHaveItsFieldOfViewInTheMiddle) {
   stereo::StereoSettings tracked;
-  tracked.head.station =
-      2;  // with head tracking the tiles are screens in the room, but there is one eye
+  // With head tracking, tiles are screens in the room; there is still one eye only.
+  tracked.head.station = 2;
   tiles::TilesSettings tiles;
   tiles.tiles[0].direction_deg = {10, 20, 30};
   tiles.tiles[1].frustum_deg = {-10, 30, -5, 8};

@@ -122,8 +122,8 @@ TEST(WeldDegenerate, CornersOfOtherValuesOrPlacesAndThoseOfNoCommonTriangleStayA
 }
 
 TEST(WeldDegenerate, ARowOfCopiesBecomesItsFirst) {
-  mesh::Mesh fan;  // the pole of a sphere: each triangle has its own copy of it, joined to that of
-                   // the next one
+  // The pole of a sphere: each triangle has its own copy of it, joined to that of the next one.
+  mesh::Mesh fan;
   fan.positions.assign(9, 0);
   for (int i = 0; i < 4; ++i)
     fan.positions.insert(fan.positions.end(),

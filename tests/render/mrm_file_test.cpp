@@ -49,8 +49,7 @@ lod::Dendrogram reducedSphere() {
 TEST(MrmFile, IsTheSameWrittenInPiecesStraightFromTheReduction) {
   const test::TempDir dir;
   const mesh::Mesh mesh = sphere();
-  for (const std::size_t stop :
-       {std::size_t{0}, std::size_t{300}}) {  // with one root, and with many
+  for (const std::size_t stop : {std::size_t{0}, std::size_t{300}}) {  // one root, and many roots
     const reduce::Reduction r = *reduce::reduce(mesh, {.min_triangles = stop});
     ASSERT_TRUE(lod::writeMrm(dir / "whole.mrm", lod::buildDendrogram(mesh, r.log)));
     ASSERT_TRUE(lod::readMrm(dir / "whole.mrm"));

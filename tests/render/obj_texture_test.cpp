@@ -163,9 +163,8 @@ TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
     EXPECT_TRUE(texture.starts_with("\x89PNG")) << faces;
     EXPECT_NE(texture, file) << faces;
   };
-  expectAtlas(two,
-              "usemtl a\nf 1/1 2/2 4/4\nf 1/1 4 3/3\n");  // a corner without texture coordinates
-  expectAtlas(two, "f 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");  // a face without a material
+  expectAtlas(two, "usemtl a\nf 1/1 2/2 4/4\nf 1/1 4 3/3\n");    // a corner without "vt"
+  expectAtlas(two, "f 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");  // a face without "usemtl"
   expectAtlas("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n");
 }
 
@@ -377,8 +376,7 @@ TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
   test::writeText(dir_ / "a.obj", std::string(kSquare) + "vt 0 0\nf 1/1 2/1 3/1\nf 1/2 2/1 3/1\n");
   EXPECT_EQ(mesh::readMesh(dir_ / "a.obj").error().what,
             dir_ / "a.obj: line 7: a corner refers to texture coordinate 2, but there are 1");
-  read(std::string(kSquare) +
-       "f 1/1 2/1 3/1\nvt 0 0\n");  // the coordinate is defined after its use
+  read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // "vt" comes after its use
   read(std::string(kSquare) + "vt 0 0\nvt 1 1\nf 1/-1 2/-2 3/-1\n");
 }
 

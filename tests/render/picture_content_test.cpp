@@ -161,8 +161,8 @@ TEST_F(PictureTest, TakesFewTilesAFrameWhileItMoves) {
 
 TEST_F(PictureTest, ACoarserStepShowsACoarserLevel) {
   make({.width = 2048, .height = 2048, .colour = plain});
-  look(Eigen::Isometry3f(
-      Eigen::Translation3f(0, 0, -0.2F)));  // 1.6 pixels of the picture in one pixel of the view
+  // Now 1.6 pixels of the picture are in one pixel of the view.
+  look(Eigen::Isometry3f(Eigen::Translation3f(0, 0, -0.2F)));
   for (int i = 0; i < 3; ++i) choose(0);
   EXPECT_EQ(levelShown(), 0);
   choose(4);  // texels of up to 4 pixels

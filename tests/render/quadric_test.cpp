@@ -190,8 +190,8 @@ TEST(Quadric, ComponentsStayUntilNothingElseIsLeft) {
   const mesh::Mesh mesh = specks();
   const reduce::Reduction r = reduced(mesh, {.preserve_components = true});
   EXPECT_EQ(specksLeft(mesh, r), 20u);
-  EXPECT_LE(r.report.triangles,
-            2u);  // components are removed too when nothing else is left to collapse
+  // When nothing else is left to collapse, components are removed too.
+  EXPECT_LE(r.report.triangles, 2u);
 }
 
 TEST(Quadric, WhatIsSmallerThanTheErrorVanishes) {

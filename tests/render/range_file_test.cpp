@@ -328,8 +328,7 @@ TEST_F(RangeFile, OrganisedPointsOfAMapKeepTheirDigits) {
       "500000.125 5200001.25 400\n500001.375 5200001.25 400.5\nnan nan nan\n"
       "500001.375 5200000.0625 401\n";
   const auto positions = [&](const LoadedRange& loaded) {
-    RangeImage image =
-        loaded.image;  // merlin mesh import takes the origin from here in the same way
+    RangeImage image = loaded.image;  // from which mesh import takes the origin
     const std::array<double, 3> origin = {500'000, 5'200'000, 0};
     for (std::size_t k = 0; k < 3; ++k) image.geometry.T_world_scanner[4 * k + 3] -= origin[k];
     return pointsOf(image, {});
@@ -381,8 +380,7 @@ std::string pcdCompressed() {
 TEST_F(RangeFile, AndFromCompressedPcd) { expectPcd(read(pcdCompressed())); }
 
 TEST(Lzf, LiteralsAndReferences) {
-  const std::uint8_t bytes[] = {2, 'a',  'b', 'c', 0x20,
-                                2, 0xE0, 3,   0};  // decompressed: abc, abc, c x 12
+  const std::uint8_t bytes[] = {2, 'a', 'b', 'c', 0x20, 2, 0xE0, 3, 0};  // is abc, abc, c x 12
   const auto text = unpackLzf(bytes, 18);
   ASSERT_TRUE(text);
   EXPECT_EQ(std::string(text->begin(), text->end()), "abcabccccccccccccc");

@@ -274,8 +274,7 @@ TEST(ScanFaults, TheSeedDecidesAndTheThreadsDoNot) {
 
 TEST(ScanFaults, AScannerThatLooksElsewhereIsAnError) {
   scan::ScanSettings settings = ahead(8, 8);
-  settings.geometry.T_world_scanner = {-1, 0, 0, 0, 0,  1,
-                                       0,  0, 0, 0, -1, 0};  // the scanner looks away from the wall
+  settings.geometry.T_world_scanner = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};  // away from it
   EXPECT_EQ(scan::scan({wall()}, settings, {}).error().what, "none of the rays meets the mesh");
   settings.geometry.horizontal_rad = 4;
   EXPECT_EQ(scan::scan({wall()}, settings, {}).error().code, Errc::kInvalidArgument);

@@ -187,8 +187,7 @@ TEST(SceneFly, TheViewerTurnsAboutTheEyeAndFliesAhead) {
   play.push(-kZ);
   play.update(100);
   expectAt(play, {2, 0, 0.1F}, turnedBy(-90, kY));
-  play.scene
-      .nextMode();  // back to the mode in which the model moves, still along the viewer's axes
+  play.scene.nextMode();  // moves the model again, along the viewer's axes
   play.push(kX);
   play.update(100);
   expectAt(play, {2.1F, 0, 0.1F}, turnedBy(-90, kY));

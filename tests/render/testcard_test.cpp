@@ -194,8 +194,7 @@ TEST(TestCard, NamesAreAsLargeAsTheTileAllowsAndHaveTheirLinesBelow) {
 
 TEST(TestCard, FocusHasSinglePixelsNextToEachOther) {
   const Canvas c = drawn(testcard::Card::kFocus);
-  const int y = 120,
-            x = 26 * 5 / 4;  // in the middle of the left column, which shows a chequered pattern
+  const int y = 120, x = 26 * 5 / 4;  // in the left column, which is chequered
   EXPECT_NE(c.inTile(x, y), c.inTile(x + 1, y));
   EXPECT_NE(c.inTile(x, y), c.inTile(x, y + 1));
   EXPECT_EQ(c.inTile(x, y), c.inTile(x + 1, y + 1));

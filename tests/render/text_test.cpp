@@ -128,8 +128,7 @@ TEST(Text, ACharacterThatTheFontLacksIsABox) {
   EXPECT_EQ(box, (Rect{11, 25, 10, 15}));
   EXPECT_EQ(picture.alpha(box.x, box.y), 255);
   EXPECT_EQ(picture.alpha(box.x + box.width - 1, box.y + box.height - 1), 255);
-  EXPECT_EQ(picture.alpha(box.x + 4, box.y + 7),
-            0);  // the box for a missing character is empty inside
+  EXPECT_EQ(picture.alpha(box.x + 4, box.y + 7), 0);  // the box is empty inside
 }
 
 TEST(Text, LatinGreekCyrillicAndSignsHaveGlyphs) {

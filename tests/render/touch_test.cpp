@@ -46,8 +46,7 @@ TEST(Touch, AFingerThatMovesDrags) {
 }
 
 TEST(Touch, TwoFingersPinchAndTurnAboutTheirMiddle) {
-  const TouchSample before =
-      touch({{1, 0.4F, 0.5F}, {2, 0.6F, 0.5F}});  // 0.4 surface heights apart
+  const TouchSample before = touch({{1, 0.4F, 0.5F}, {2, 0.6F, 0.5F}});  // 0.4 heights apart
   const TouchMotion apart = between(before, touch({{2, 0.7F, 0.5F}, {1, 0.3F, 0.5F}}));
   EXPECT_NEAR(apart.spread, std::log(2.0F), 1e-6F);
   EXPECT_NEAR(apart.right, 0, 1e-6F);

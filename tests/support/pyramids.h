@@ -39,8 +39,7 @@ struct PyramidSpec {
   std::function<Rgb(int, int)> colour = [](int x, int y) {
     return Rgb{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 128};
   };
-  bool subdirectories = false;  // true: each level is a subdirectory of the first; false: the
-                                // directories follow one another
+  bool subdirectories = false;  // true: subdirectories of the first; false: one after another
   std::string description = "MERLIN picture";
 };
 

@@ -23,8 +23,8 @@ class VncClient {
     client_->serverHost = ::strdup("127.0.0.1");
     client_->serverPort = port;
     client_->canHandleNewFBSize = TRUE;
-    client_->appData.encodingsString =
-        "raw";  // uncompressed and exact; these tests need no other encoding
+    // Raw pixels are exact, and these tests need no other encoding.
+    client_->appData.encodingsString = "raw";
     password_ = password;
     client_->GetPassword = [](rfbClient* c) {
       return ::strdup(
@@ -33,8 +33,7 @@ class VncClient {
     client_->FinishedFrameBufferUpdate = [](rfbClient* c) {
       ++static_cast<VncClient*>(rfbClientGetClientData(c, nullptr))->updates_;
     };
-    if (!rfbInitClient(client_, nullptr, nullptr))
-      client_ = nullptr;  // rfbInitClient() has freed it
+    if (!rfbInitClient(client_, nullptr, nullptr)) client_ = nullptr;  // was freed by the call
   }
   ~VncClient() {
     if (client_) rfbClientCleanup(client_);
