@@ -1,5 +1,5 @@
-// ./dev bench fuzz-config [N]: mutated configurations through the loader. Of each kind of fault the
-// first seed is told, which shows it again.
+// ./dev bench fuzz-config [N]: mutated configurations through the loader. For each kind of fault it
+// prints the first seed, with which the fault can be reproduced.
 #include <array>
 #include <csignal>
 #include <cstring>
@@ -22,7 +22,7 @@ namespace {
 
 volatile std::uint64_t current_seed = 0;
 
-// A crash is a fault too, and its seed has to be said. Only what a signal handler may call.
+// A crash is a fault too, so its seed has to be printed. A signal handler may call few functions.
 void sayWhere(int signal) {
   char text[96] = "\nfault: a crash; again: --count 1 --seed ";
   char* end = text + std::strlen(text);
@@ -53,7 +53,7 @@ std::vector<std::string> examples(const std::string& folder) {
 
 struct Options {
   std::uint64_t seed = 1, count = 100'000;
-  std::string configurations;  // folder; empty: that of the source tree, from within it
+  std::string configurations;  // folder; empty: that of the source tree
 };
 
 struct Faults {
@@ -86,7 +86,7 @@ bool fuzz(const Options& options, Report& report) {
     constexpr std::array kFigures = {"no_json", "invalid", "adjusted", "valid"};
     report.figure(kFigures[i], shareOf(outcomes[i], options.count, "configurations"), "1");
   }
-  // Where all are refused, no accepted one was compared.
+  // If all are refused, no accepted configuration was compared.
   if (options.count >= 1000 && outcomes[3] == 0)
     didNotRun("the loader", "it accepted none", "see tests/bench/config_fuzz.h");
   for (const auto& [what, f] : faults) {

@@ -1,13 +1,13 @@
-// ./dev bench latency: from a byte on a line to a client of the shared memory, for MERLIN's reader,
-// for the same with idle cores kept awake (cpu_latency_us = 0), for that reader over a line
-// that is asked once a millisecond, over one that is asked without a pause, and for a bare blocking
-// loop without a device: interleaved in one run, over a pseudo-terminal and over a socket pair,
-// idle and with all cores loaded. That is a glove; each other kind of device is measured beside a
-// bare loop of its own: those of 1998 in their dialogue, those of today as their ports carry what
-// they say (records of an input device, a VRPN server's messages, datagrams).
+// ./dev bench latency: time from a byte on a line to a client of the shared memory. Compares
+// MERLIN's reader, the same with idle cores kept awake (cpu_latency_us = 0), the same on a line
+// that is polled once a millisecond, on a line that is polled without a pause, and a bare blocking
+// loop without a driver. They take turns in one run, over a pseudo-terminal and over a socket pair,
+// idle and with all cores loaded. The device is a glove; each other kind of device is measured
+// beside a bare loop of its own: those of 1998 with their dialogue, present-day ones in the form in
+// which their ports deliver data (records of an input device, a VRPN server's messages, datagrams).
 //
-// Absolute times belong to this machine and this minute; the ratios are what counts. A pty's bytes
-// pass through a kernel worker, a socket pair's do not.
+// Absolute times are those of this machine at this minute; only ratios can be compared. The bytes
+// of a pty pass through a kernel worker, those of a socket pair do not.
 #include <functional>
 #include <map>
 #include <thread>
@@ -49,7 +49,7 @@ void printRow(Report& report, const std::string& line, const std::string& load, 
                 "1");
 }
 
-// Processes that take all cores, for as long as this is there.
+// Processes that load all cores as long as this object exists.
 class Hogs {
  public:
   explicit Hogs(unsigned count) {
@@ -105,7 +105,7 @@ Rows benchLine(const Setting& s, Line line, bool loaded) {
 
 const char* verdict(bool good) { return good ? "yes" : "NO"; }
 
-// Compares the measurements with what MERLIN's readers promise.
+// Compares the measurements with the limits that MERLIN states for its readers.
 void judge(Reader kind, const Rows& pair_idle, const Rows& pty_idle, const Rows& pair_loaded,
            Report& report) {
   const std::string name = kReaderNames[kind];
@@ -124,7 +124,8 @@ void judge(Reader kind, const Rows& pair_idle, const Rows& pty_idle, const Rows&
   report.figure(name + ".sleeping_by_it_on_pty", pty, "1");
 }
 
-// All readers; without the awake one, and said so, where this machine does not allow it.
+// All readers, except for the one with awake cores if this machine does not allow it, which is
+// reported.
 std::vector<Reader> readersHere(Report& report) {
   std::vector<Reader> readers;
   for (int kind = 0; kind < kReaders; ++kind) readers.push_back(static_cast<Reader>(kind));
@@ -160,8 +161,8 @@ void benchReaders(const Options& options, Report& report) {
   report.figure("pty.by_bare_p99", bare99, "1");
 }
 
-// The other kinds of devices beside a bare loop, which publishes a sample for each record's bytes
-// without looking at them; the rounds of both are interleaved.
+// The other kinds of devices, compared with a bare loop that publishes a sample for the bytes of
+// each record without parsing them. The rounds of both are interleaved.
 void benchKinds(const Options& options, Report& report) {
   report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (asked at most 1.2)\n");
   Times& times = makeTimes();

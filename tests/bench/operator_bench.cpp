@@ -1,5 +1,5 @@
-// ./dev bench operator: what the plates and the panel over the operator's tile cost a frame, beside
-// a memcpy of the tile.
+// ./dev bench operator: the cost for each frame of the plates and the panel over the operator's
+// tile, compared with a memcpy of the tile.
 #include <chrono>
 #include <cstring>
 #include <memory>
@@ -23,7 +23,7 @@ double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
 }
 
-// Facts of a busy wall, which differ each time.
+// The facts of a busy wall, which differ each time that they are read.
 class BusyWall final : public OperatorSource {
  public:
   OperatorFacts read(Timestamp) override {
@@ -95,7 +95,7 @@ Times measureTile(int width, int height, int frames) {
                         [&](int) { clock.advance(std::chrono::milliseconds(34)); });
 }
 
-// A panel whose view differs from the one before in every third frame.
+// A panel whose view changes in every third frame.
 class BusyPanel final : public render::panel::PanelSource {
  public:
   const render::panel::PanelView& view() override { return shown; }

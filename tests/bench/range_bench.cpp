@@ -1,6 +1,7 @@
-// ./dev bench range: a range image of 1024 x 1024 pixels with colours, read, filtered, triangulated
-// and written as binary PLY, beside reading and writing the same bytes alone, on the same file
-// system, both warm. Fails above five times that.
+// ./dev bench range: a range image of 1024 x 1024 pixels with colours is read, filtered,
+// triangulated and written as binary PLY; compared with reading and writing the same bytes alone.
+// Both use the same file system with warm caches. Fails if MERLIN takes more than five times as
+// long.
 //
 // The image is synthetic: a wavy surface with noise, spikes and pixels without a return.
 #include <chrono>
@@ -68,7 +69,7 @@ void makeInput(const Files& files) {
   orEnd(writeFile(files.colour, colours), files.colour);
 }
 
-// Seconds of each step.
+// The seconds of each step.
 struct Steps {
   std::vector<double> reading{}, filtering{}, meshing{}, writing{}, all{}, alone{};
   std::uint64_t triangles = 0;
@@ -135,12 +136,13 @@ void writeCloud(const Files& files) {
   orEnd(writeFile(files.cloud, bytes), files.cloud);
 }
 
-// What a peer's program prints of the same way: from its cloud to a mesh of triangles.
+// Runs a peer's program, which does the same from its cloud to a mesh of triangles, and compares
+// its times.
 void comparePeer(const std::string& program, int rounds, const Files& files, const Measured& all,
                  Report& report) {
   writeCloud(files);
   const auto image = orEnd(range::readRange(files.range, {}), files.range).image;
-  const double edge_m = 10 * range::stepOf(image) * 2;  // at the mean range, 2 m
+  const double edge_m = 10 * range::stepOf(image) * 2;  // at the mean range of 2 m
   const test::Outcome said = test::run(
       {program, files.cloud, files.mesh, fmt::format("{:.6f}", edge_m), std::to_string(rounds)});
   const auto object = nlohmann::json::parse(said.output, nullptr, false);

@@ -1,6 +1,6 @@
 // ./dev bench soak: a day of the wall on a virtual clock, with scripted people, faults and reloads,
-// in minutes: memory, descriptors, late frames, and whether every event is explained. The same seed
-// is the same day. In real time, on the real programs: ./dev soak.
+// in minutes. Measures memory, descriptors and late frames, and whether every event is explained.
+// The same seed gives the same day. In real time, on the real programs: ./dev soak.
 #include <filesystem>
 #include <sstream>
 #include <thread>
@@ -88,7 +88,7 @@ double memoryNow_mb() {
   return static_cast<double>(resident) * 4096 / (1 << 20);
 }
 
-// One simulated lab, from its start to its end.
+// One simulated lab, from start to end.
 class Lab {
  public:
   Lab(const Options& options, const test::TempDir& dir)
@@ -134,7 +134,7 @@ class Lab {
   std::uint64_t measured() const { return measured_; }
 
  private:
-  // A minute in which the renderer was slow on purpose is counted apart.
+  // A minute in which the renderer was slow on purpose is counted separately.
   void sample(double at_h) {
     const shm::WallStats now = wall_.stats();
     const std::uint64_t deadlines = now.deadlines - last_.deadlines, late = now.late - last_.late;
@@ -203,7 +203,7 @@ void reportEvents(const DayCounts& counts, Report& report) {
   report.figure("digest", fmt::format("{:016x}", counts.digest), all);
 }
 
-// Whether memory and descriptors stayed as they were.
+// Whether memory and descriptors have not grown.
 bool reportHeld(const Options& options, const std::vector<Sample>& samples, Report& report) {
   std::vector<std::pair<double, double>> memory;
   std::vector<double> descriptors;
@@ -230,7 +230,7 @@ bool reportHeld(const Options& options, const std::vector<Sample>& samples, Repo
 }
 
 bool bench(const Options& options, Report& report) {
-  // Samples are compared in one heap that the one thread uses.
+  // With a single heap for the one thread, memory of samples can be compared.
   ::mallopt(M_ARENA_MAX, 1);
   const test::TempDir dir;
   Lab lab(options, dir);
