@@ -155,12 +155,13 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What it costs to read back what outputs show");
+  CLI::App app("The cost of reading back what outputs show");
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--seconds", options.seconds, "Length of a run")->check(CLI::Range(6.0, 3600.0));
+  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
+      ->check(CLI::Range(6.0, 3600.0));
   app.add_option("--rounds", options.rounds, "Runs of each kind")->check(CLI::Range(1, 1000));
-  app.add_flag("--json", json, "One JSON object");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("checks", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);

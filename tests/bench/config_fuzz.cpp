@@ -248,15 +248,15 @@ std::string ignoredIn(const Json& written, const Json& used, const LoadedSetting
 std::string faultOf(const std::string& text, const LoadedSettings& loaded) {
   KeysTwice keys;
   const Json written = Json::parse(text, std::ref(keys), false);
-  if (written.is_discarded()) return "accepts what is no JSON";
+  if (written.is_discarded()) return "accepts a text that is no JSON";
   if (!keys.twice.empty()) return "accepts a key twice: " + keys.twice;
   const std::string used = settingsText(loaded.settings);
   const std::string ignored = ignoredIn(written, Json::parse(used, nullptr, false), loaded);
   if (!ignored.empty()) return "ignores " + ignored;
   const LoadedSettings again = loadSettings(used, kFolder);
   if (again.verdict() == LoadedSettings::Verdict::kInvalid)
-    return "refuses what it has written: " + toText("again", again.findings.front());
-  return settingsText(again.settings) == used ? "" : "reads another thing than it has written";
+    return "refuses the settings that it has written: " + toText("again", again.findings.front());
+  return settingsText(again.settings) == used ? "" : "reads other settings than it has written";
 }
 
 }  // namespace
@@ -281,7 +281,7 @@ ConfigFuzz::Result ConfigFuzz::judge(std::string text) {
   const LoadedSettings loaded = loadSettings(text, kFolder);
   Result result{Outcome::kNoJson, "", std::move(text)};
   for (const Finding& finding : loaded.findings) {
-    if (finding.what.empty()) result.fault = "a finding says nothing";
+    if (finding.what.empty()) result.fault = "a finding has no text";
   }
   if (!loaded.parsed) {
     if (loaded.findings.empty()) result.fault = "refuses without a finding";

@@ -88,7 +88,8 @@ bool fuzz(const Options& options, Report& report) {
   }
   // If all are refused, no accepted configuration was compared.
   if (options.count >= 1000 && outcomes[3] == 0)
-    didNotRun("the loader", "it accepted none", "see tests/bench/config_fuzz.h");
+    didNotRun("the loader", "it accepted none of the configurations",
+              "see tests/bench/config_fuzz.h");
   for (const auto& [what, f] : faults) {
     report.text("{:>10}  FAULT: the loader {}; again: --count 1 --seed {}\n", f.count, what,
                 f.first_seed);
@@ -106,14 +107,15 @@ bool fuzz(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Mutated configurations through the loader.");
-  app.add_option("--seed", options.seed, "Of the first one; the next has the next")
+  CLI::App app("Gives mutated configurations to the loader.");
+  app.add_option("--seed", options.seed,
+                 "Seed of the first configuration; each further one has the next seed")
       ->capture_default_str();
-  app.add_option("--count", options.count, "Of configurations")
+  app.add_option("--count", options.count, "Number of configurations")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->capture_default_str();
   app.add_option("--configurations", options.configurations,
-                 "Folder of the examples; the default is config");
+                 "Folder of the example configurations; the default is config");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz-config", json, [&](merlin::bench::Report& report) {

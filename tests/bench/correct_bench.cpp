@@ -85,7 +85,7 @@ std::vector<Subject> subjectsOf(unsigned processors, ThreadTeam& team, Shader& s
   std::vector<Subject> subjects;
   for (const auto& [name, settings] : cases()) {
     if (!validate(settings, kWidth, kHeight).empty())
-      didNotRun(name, "its settings are not valid", "mend the benchmark");
+      didNotRun(name, "its settings are not valid", "fix the benchmark");
     const auto began = Steady::now();
     const auto map = render::correct::makeCorrectionMap(settings, kWidth, kHeight, nullptr,
                                                         Threads(processors, team));
@@ -165,13 +165,15 @@ bool measure(int frames, const std::string& gpu, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What an output's correction costs a frame");
+  CLI::App app("The cost of an output's correction for each frame");
   int frames = 200;
   bool json = false;
-  app.add_option("--frames", frames, "Frames of each")->check(CLI::Range(1, 100'000));
+  app.add_option("--frames", frames, "Number of frames for each correction")
+      ->check(CLI::Range(1, 100'000));
   std::string gpu = merlin::render::gl::kAnyGpu;
-  app.add_option("--gpu", gpu, "Where the shader runs, as /wall/render/gpu")->capture_default_str();
-  app.add_flag("--json", json, "One JSON object");
+  app.add_option("--gpu", gpu, "The GPU that runs the shader, as in /wall/render/gpu")
+      ->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("correct", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(frames, gpu, report);

@@ -347,10 +347,10 @@ bool run(const Options& options, Report& report) {
   auto heights = readHeights(tile);
   const bool real = !heights.empty();
   if (!real && !options.hgt.empty())
-    didNotRun("the model of " + options.hgt, "it is no tile of 1201 x 1201 heights",
+    didNotRun("the model of " + options.hgt, "it is not a tile of 1201 x 1201 heights",
               "without --hgt the model is made of synthetic hills");
   if (!real) {
-    report.text("{}: no such tile; synthetic hills instead\n", kTile);
+    report.text("{}: no such tile; using synthetic hills instead\n", kTile);
     heights = hills();
   }
   for (std::size_t times = 1; times <= (options.small ? 1U : 2U); ++times) {
@@ -374,14 +374,14 @@ bool run(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Cuts of large models beside a memcpy; pictures of a budget spent evenly and by view"};
+      "Cuts of large models compared with a memcpy; pictures of a budget spent evenly and by view"};
   merlin::bench::Options options;
   bool json = false;
   app.add_option("--hgt", options.hgt,
-                 "An SRTM 3 tile; without: " + std::string(merlin::bench::kTile) +
-                     ", and synthetic hills where that is not there");
-  app.add_option("--out", options.out, "Where models and pictures go")->capture_default_str();
-  app.add_flag("--small", options.small, "Without the model of 11.5 million triangles");
+                 "An SRTM 3 tile; the default is " + std::string(merlin::bench::kTile) +
+                     " or, if that does not exist, synthetic hills");
+  app.add_option("--out", options.out, "Folder for models and pictures")->capture_default_str();
+  app.add_flag("--small", options.small, "Leaves out the model of 11.5 million triangles");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("cut", json, [&](merlin::bench::Report& report) {

@@ -19,7 +19,7 @@ nlohmann::json demoConfig(const DemoOptions& options, const std::string& instanc
                           const test::TempDir& dir) {
   auto config = nlohmann::json::parse(test::readText(options.config), nullptr, false);
   if (!config.is_object()) {
-    didNotRun("merlind", fmt::format("{} is not there or no configuration", options.config),
+    didNotRun("merlind", fmt::format("{} is not there or is not a configuration", options.config),
               "--config names the demo's, config/demo.json");
   }
   const auto folder = std::filesystem::absolute(options.config).parent_path();

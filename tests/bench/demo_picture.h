@@ -41,7 +41,7 @@ inline render::tiles::TilePlan planOf(const Picture& picture) {
   settings.frame_height = settings.tile_height = picture.height;
   settings.tiles = {{"wall", render::tiles::TileKind::kWall, 0, 0, 0}};
   auto plan = render::tiles::planTiles(settings);
-  if (!plan) didNotRun("the wall", plan.error().what, "mend the benchmark");
+  if (!plan) didNotRun("the wall", plan.error().what, "fix the benchmark");
   return *std::move(plan);
 }
 

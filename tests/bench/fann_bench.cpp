@@ -142,7 +142,7 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("Recall beside FANN with the same weights.");
+  CLI::App app("Recall compared with FANN with the same weights.");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench(

@@ -125,7 +125,7 @@ bool run(const std::vector<std::string>& paths, Report& report) {
 int main(int argc, char** argv) {
   std::vector<std::string> models;
   bool json = false;
-  CLI::App app("A fixed script of frames of each model, as hashes.");
+  CLI::App app("Hashes of a fixed script of frames of each model.");
   app.add_option("models", models, "Models (.mrm)")->required();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);

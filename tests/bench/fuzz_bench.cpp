@@ -331,11 +331,11 @@ int main(int argc, char** argv) {
   double bytes = 1e8;
   std::uint64_t seed = 1;
   bool json = false;
-  CLI::App app("Random and mutated bytes through every parser.");
-  app.add_option("--bytes", bytes, "Through each")
+  CLI::App app("Gives random and mutated bytes to every parser.");
+  app.add_option("--bytes", bytes, "Number of bytes for each parser")
       ->check(CLI::Range(1.0, 1e15))
       ->capture_default_str();
-  app.add_option("--seed", seed)->capture_default_str();
+  app.add_option("--seed", seed, "Seed of the bytes")->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz", json, [&](merlin::bench::Report& report) {

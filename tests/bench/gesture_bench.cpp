@@ -299,7 +299,7 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("Gestures in time: rates, confusions, inventions, few takes, cost.");
+  CLI::App app("Gestures: rates, confusions, false reports, training from few takes, cost.");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("gesture", json, merlin::bench::run);

@@ -165,7 +165,7 @@ void judge(const Scenario& s, const Figures& f, Verdicts& v, Report& report) {
   const double within = std::string_view(s.name).find("x 4") != std::string_view::npos ? 5 : 3;
   // With hiccups the mean counts, since a hiccup on the frame of the step makes a run longer by
   // itself.
-  report.text(kRow, "  asked of MERLIN", verdict(true, f.late_with.mean() <= 0.015),
+  report.text(kRow, "  MERLIN's limits", verdict(true, f.late_with.mean() <= 0.015),
               verdict(made, f.late_without.mean() <= 0.005),
               verdict(true, f.used.mean() >= (varies ? 0.80 : 0.85)),
               verdict(steps, f.settled.worst <= within), verdict(steps, f.back.worst <= 40),
@@ -205,9 +205,11 @@ int main(int argc, char** argv) {
   std::size_t seeds = 20;
   std::string trace = MERLIN_SOURCE_DIR "/tests/data/governor_demo.txt";
   bool json = false;
-  CLI::App app("MERLIN's governor beside other laws, on a virtual clock.");
-  app.add_option("--seeds", seeds, "Runs of each law on each trace")->check(CLI::Range(1, 1000));
-  app.add_option("--trace", trace, "Frames of the real renderer")->capture_default_str();
+  CLI::App app("MERLIN's governor compared with other control laws, on a virtual clock.");
+  app.add_option("--seeds", seeds, "Number of runs of each law on each trace")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--trace", trace, "File with recorded frames of the real renderer")
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("governor", json, [&](merlin::bench::Report& report) {

@@ -58,7 +58,7 @@ bool run(const Options& options, Report& report) {
     report.figure(name + ".to_regular", ratio, "1");
     kept = kept && ratio.value() <= kMostRatio;
   }
-  report.text("at most {:.0f} is asked: {}\n", kMostRatio, kept ? "kept" : "MISSED");
+  report.text("the limit is {:.0f}: {}\n", kMostRatio, kept ? "kept" : "MISSED");
   return kept;
 }
 
@@ -66,11 +66,13 @@ bool run(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app{"Reduces hostile shapes beside a regular mesh of the same size"};
+  CLI::App app{"Reduces hostile shapes and, for comparison, a regular mesh of the same size"};
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--triangles", options.triangles, "Of each shape")->capture_default_str();
-  app.add_option("--turns", options.turns, "Of all shapes")->capture_default_str();
+  app.add_option("--triangles", options.triangles, "Number of triangles of each shape")
+      ->capture_default_str();
+  app.add_option("--turns", options.turns, "Number of turns; each reduces all shapes")
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("hostile", json, [&](merlin::bench::Report& report) {

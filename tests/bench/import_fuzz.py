@@ -113,7 +113,7 @@ def one(options, pictures, number):
         before = sorted(p.name for p in place.iterdir())
         outcome, made = outcome_of(options.program, kind, form, place / name, place / "work")
         if sorted(p.name for p in place.iterdir()) != before:
-            outcome = "FAULT: something was written beside its folder"
+            outcome = "FAULT: a file was written outside of its folder"
         if number < len(options.originals) and not made:
             outcome = f"FAULT: {outcome}, though it is not damaged"
         if made and kind == "model":
@@ -126,10 +126,10 @@ def one(options, pictures, number):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=5000)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=5000, help="number of files")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the changes")
     parser.add_argument("--first", type=int, default=0, help="number of the first file")
-    parser.add_argument("--seconds", type=float, default=600, help="no further files after that time")
+    parser.add_argument("--seconds", type=float, default=600, help="no further file is begun after this time")
     parser.add_argument("--bin", required=True, help="folder of merlin-import and merlin")
     options = parser.parse_args()
     options.program, options.merlin = options.bin + "/merlin-import", options.bin + "/merlin"

@@ -233,9 +233,9 @@ def measure(options, report):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bin", required=True, help="the folder of merlin and merlind")
-    parser.add_argument("--times", type=int, default=100, help="kills of each role, and starts")
-    parser.add_argument("--rate", type=float, default=30, help="frames a second")
-    parser.add_argument("--seed", type=int, default=1, help="of the emulated devices")
+    parser.add_argument("--times", type=int, default=100, help="number of kills of each role, and of starts")
+    parser.add_argument("--rate", type=float, default=30, help="frame rate of the wall in Hz")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the emulated devices")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     if options.times < 1:

@@ -113,11 +113,11 @@ void judge(Reader kind, const Rows& pair_idle, const Rows& pty_idle, const Rows&
   const auto pair = ratioOf(pair_idle.at(kSleeping).median, idle.median, "samples");
   const auto pty = ratioOf(pty_idle.at(kSleeping).median, pty_idle.at(kind).median, "samples");
   report.text(
-      "{}: median of the sleeping loop's, idle: 1/{:.1f} (socket pair), 1/{:.1f} (pty); asked at "
-      "most 1/20: {}\n",
+      "{}: median of the sleeping loop's, idle: 1/{:.1f} (socket pair), 1/{:.1f} (pty); limit "
+      "1/20: {}\n",
       name, pair.value(), pty.value(), verdict(pair >= 20 && pty >= 20));
   report.text(
-      "{}: socket pair p99: idle {:.0f} us (asked 200): {}; loaded {:.0f} us (asked 2000): {}\n",
+      "{}: socket pair p99: idle {:.0f} us (limit 200): {}; loaded {:.0f} us (limit 2000): {}\n",
       name, idle.p99.value(), verdict(idle.p99 <= 200), loaded.p99.value(),
       verdict(loaded.p99 <= 2000));
   report.figure(name + ".sleeping_by_it_on_socket_pair", pair, "1");
@@ -154,9 +154,8 @@ void benchReaders(const Options& options, Report& report) {
   }
   const auto bare = ratioOf(pty_idle.at(kMerlin).median, pty_idle.at(kBare).median, "samples");
   const auto bare99 = ratioOf(pty_idle.at(kMerlin).p99, pty_idle.at(kBare).p99, "samples");
-  report.text(
-      "pty: {:.2f} times the bare loop's median, {:.2f} times its p99 (asked at most 1.2): {}\n",
-      bare.value(), bare99.value(), verdict(bare <= 1.2 && bare99 <= 1.2));
+  report.text("pty: {:.2f} times the bare loop's median, {:.2f} times its p99 (limit 1.2): {}\n",
+              bare.value(), bare99.value(), verdict(bare <= 1.2 && bare99 <= 1.2));
   report.figure("pty.by_bare_median", bare, "1");
   report.figure("pty.by_bare_p99", bare99, "1");
 }
@@ -164,7 +163,7 @@ void benchReaders(const Options& options, Report& report) {
 // The other kinds of devices, compared with a bare loop that publishes a sample for the bytes of
 // each record without parsing them. The rounds of both are interleaved.
 void benchKinds(const Options& options, Report& report) {
-  report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (asked at most 1.2)\n");
+  report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (limit 1.2)\n");
   Times& times = makeTimes();
   for (const Kind* kind : {&kTrackerKind, &kBallKind, &kGamepadKind, &kTouchKind, &kVrpnTrackerKind,
                            &kVrpnPadKind, &kOscKind, &kTuioKind}) {
@@ -198,10 +197,12 @@ int main(int argc, char** argv) {
   CLI::App app("Latency from a line's byte to a client of the shared memory.");
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The demo's configuration")->required();
-  app.add_option("--samples", options.round.samples, "A round")
+  app.add_option("--samples", options.round.samples, "Number of samples in a round")
       ->check(CLI::Range(1, 60'000))
       ->capture_default_str();
-  app.add_option("--rounds", options.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--rounds", options.rounds, "Number of rounds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("latency", json, [&](merlin::bench::Report& report) {

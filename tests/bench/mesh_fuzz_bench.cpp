@@ -70,8 +70,8 @@ bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
   }
   // If all meshes are refused as invalid, no reduction was tested.
   if (reduced == 0 && faults.empty()) {
-    throw DidNotRun(
-        fmt::format("none of {} meshes came as far as a reduction; --count gives more", count));
+    throw DidNotRun(fmt::format(
+        "none of {} meshes reached the reduction; --count sets a higher number", count));
   }
   const double rate = static_cast<double>(count) / seconds;
   report.text("{:>12.0f}  meshes a second\n", rate);
@@ -90,11 +90,12 @@ bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Hostile meshes through everything that a mesh goes through.");
+  CLI::App app("Gives hostile meshes to every step of mesh processing.");
   std::uint64_t seed = 1, count = 10'000'000;
   bool json = false;
-  app.add_option("--seed", seed, "Of the first mesh; the next has the next")->capture_default_str();
-  app.add_option("--count", count, "Of meshes")
+  app.add_option("--seed", seed, "Seed of the first mesh; each further one has the next seed")
+      ->capture_default_str();
+  app.add_option("--count", count, "Number of meshes")
       ->check(CLI::Range(1, 1'000'000'000))
       ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");

@@ -143,7 +143,7 @@ class Wall {
       if (!outputs_->faultNow(i).empty())
         didNotRun(fmt::format("output {}", kNames[i]), outputs_->faultNow(i), "mend that");
     }
-    didNotRun("the outputs", "not all of them show frames", "see whether the machine is busy");
+    didNotRun("the outputs", "not all outputs show frames", "see whether the machine is busy");
   }
 
   test::XServer x;
@@ -376,12 +376,15 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What an output of each kind costs, and the others while one is slow or stuck");
+  CLI::App app(
+      "The cost of an output of each kind, and late frames of the others while one is slow or "
+      "stuck");
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--seconds", options.seconds, "Length of a run")->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
+      ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--rounds", options.rounds, "Runs of each kind")->check(CLI::Range(1, 1000));
-  app.add_flag("--json", json, "One JSON object");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("outputs", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);

@@ -156,7 +156,7 @@ def measure(options, report):
                 f"{memory[2]:.1f} after {options.open:g} s; pictures that Chromium was seen to show: {len(page.seen)}")
     report.figure("page_memory_after", figures.Measured(memory[2], 1, "memory"), "MiB")
     kept = shares["reader"] - shares["nobody"] <= MOST_MORE_PERCENT
-    report.text(f"promised: the page costs the wall at most {MOST_MORE_PERCENT:g} % of its frames; "
+    report.text(f"limit: the page costs the wall at most {MOST_MORE_PERCENT:g} % of its frames; "
                 + ("kept" if kept else "not kept"))
     return kept
 
@@ -164,11 +164,11 @@ def measure(options, report):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", required=True, help="folder of merlin and merlind")
-    parser.add_argument("--seconds", type=float, default=60, help="of each part")
-    parser.add_argument("--open", type=float, default=600, help="for which Chromium has the page open")
-    parser.add_argument("--rate", type=float, default=30, help="of the wall [Hz]")
+    parser.add_argument("--seconds", type=float, default=60, help="length of each part without the browser")
+    parser.add_argument("--open", type=float, default=600, help="seconds for which Chromium has the page open")
+    parser.add_argument("--rate", type=float, default=30, help="frame rate of the wall in Hz")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--json", action="store_true", help="figures for programs")
+    parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     figures.run_bench("page", options.json, lambda report: measure(options, report))
 

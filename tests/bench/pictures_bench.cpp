@@ -209,7 +209,8 @@ void print(Report& report, const std::string& name, const Motion& m, bool panora
 // Whether a figure is within the limit that MERLIN states; prints a line if it is not.
 int keeps(Report& report, const char* what, double value, double most, const char* unit) {
   if (value <= most) return 1;
-  report.text("not kept: {} {:.2f} {}, at most {} {} promised\n", what, value, unit, most, unit);
+  report.text("beyond its limit: {} {:.2f} {}, the limit is {} {}\n", what, value, unit, most,
+              unit);
   return 0;
 }
 
@@ -257,14 +258,14 @@ bool benchPictures(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  CLI::App app("Late frames, memory and first pictures of large pictures.");
+  CLI::App app("Late frames and memory with large pictures, and the time to the first picture.");
   bool json = false;
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The demo's configuration")->required();
   app.add_option("--work", options.work, "Folder for the pictures");
   app.add_option("--seconds", options.seconds, "Seconds of motion of each kind");
-  app.add_option("--shows", options.shows, "Times that merlin show is called");
-  app.add_flag("--json", json, "JSON, for programs");
+  app.add_option("--shows", options.shows, "Number of calls of merlin show");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("pictures", json, [&](merlin::bench::Report& report) {
     return merlin::bench::benchPictures(options, report);

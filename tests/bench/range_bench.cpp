@@ -193,7 +193,8 @@ bool measure(int rounds, const std::string& folder, const std::string& peer, Rep
   line("writing", steps.writing);
   line("all", steps.all);
   line("bytes_alone", steps.alone);
-  report.text("  {:.2f} times the bytes alone; allowed are {}\n", ratio.value(), kMostTimes);
+  report.text("  {:.2f} times as long as the bytes alone; the limit is {}\n", ratio.value(),
+              kMostTimes);
   report.figure("times_the_bytes_alone", ratio, "1");
   report.figure("triangles", Measured::of(static_cast<double>(steps.triangles), 1, "triangles"),
                 "1");
@@ -205,15 +206,18 @@ bool measure(int rounds, const std::string& folder, const std::string& peer, Rep
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("A range image to two million triangles, beside its bytes alone");
+  CLI::App app(
+      "From a range image to two million triangles, compared with reading and writing the bytes "
+      "alone");
   int rounds = 15;
   bool json = false;
   std::string work = "build/bench/range", peer;
-  app.add_option("--rounds", rounds, "Imports, and copies of the bytes")
+  app.add_option("--rounds", rounds, "Number of imports, and of copies of the bytes")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--work", work, "Folder for its files")->capture_default_str();
-  app.add_option("--peer-program", peer, "PCL's way, which ./dev bench range --peer builds");
-  app.add_flag("--json", json, "One JSON object");
+  app.add_option("--work", work, "Folder for the files")->capture_default_str();
+  app.add_option("--peer-program", peer,
+                 "Program with the same steps by PCL; ./dev bench range --peer builds it");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("range", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(rounds, work, peer, report);

@@ -287,12 +287,12 @@ bool fuzz(std::uint64_t seed, std::uint64_t inputs, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Damaged range files and point clouds through our own readers");
+  CLI::App app("Gives damaged range files and point clouds to MERLIN's own readers");
   std::uint64_t inputs = 10'000'000, seed = 1;
   bool json = false;
   app.add_option("--inputs", inputs, "Number of files");
-  app.add_option("--seed", seed, "Seed of the first one");
-  app.add_flag("--json", json, "One JSON object");
+  app.add_option("--seed", seed, "Seed of the first file; each further one has the next seed");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz-ranges", json, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(seed, inputs, report);

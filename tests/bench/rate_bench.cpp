@@ -188,7 +188,7 @@ bool run(const Options& options, Report& report) {
   if (model.triangleCount() < kRows1998[std::size(kRows1998) - 1].triangles) {
     didNotRun("the scan",
               fmt::format("twice {} has {} triangles", options.scan, model.triangleCount()),
-              "it takes 51,000 in the scan");
+              "the scan needs at least 51,000 triangles");
   }
   const auto plan = render::tiles::planTiles({});
   const SystemClock clock;
@@ -211,9 +211,10 @@ bool run(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Rates at full resolution, beside those of 1998.");
+  CLI::App app("Rates at full resolution, compared with those of 1998.");
   app.add_option("--scan", options.scan, "A scan with colours")->capture_default_str();
-  app.add_option("--raster-threads", options.raster_threads, "Of Mesa's software renderer")
+  app.add_option("--raster-threads", options.raster_threads,
+                 "Number of threads of Mesa's software renderer")
       ->check(CLI::Range(0, 16));
   app.add_flag("!--coloured", options.textured, "Colours at the vertices instead of a texture");
   app.add_flag("--json", json, "The figures as one JSON object");

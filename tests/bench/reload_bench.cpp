@@ -162,13 +162,13 @@ int main(int argc, char** argv) {
   CLI::App app("Late frames, descriptors, threads and memory during thousands of reloads.");
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The wall's configuration")->required();
-  app.add_option("--reloads", options.reloads)
+  app.add_option("--reloads", options.reloads, "Number of reloads")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "Of the run without reloads")
+  app.add_option("--seconds", options.seconds, "Length of the run without reloads, in seconds")
       ->check(CLI::Range(1, 86'400))
       ->capture_default_str();
-  app.add_option("--pause", options.pause, "Between two reloads, in seconds")
+  app.add_option("--pause", options.pause, "Pause between two reloads, in seconds")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");

@@ -69,10 +69,10 @@ def main():
     parser.add_argument("--merlin", required=True)
     parser.add_argument("--tile-scan", required=True)
     parser.add_argument("--scan", required=True)
-    parser.add_argument("--memory", default="16G", help="of the command; 0: what is free")
+    parser.add_argument("--memory", default="16G", help="memory that the command may use; 0: the free memory")
     parser.add_argument("--most", type=float, default=1e7,
                         help="the largest mesh; 1e8 takes 7 GB of disk and 11 GB of memory")
-    parser.add_argument("--folder", help="for the meshes; without: a temporary one")
+    parser.add_argument("--folder", help="folder for the meshes; the default is a temporary one")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     if not options.most >= SIZES[0]:

@@ -50,8 +50,7 @@ json configurationOf(const test::TempDir& dir) {
 Settings settingsOf(const json& configuration, const std::string& folder) {
   LoadedSettings loaded = loadSettings(configuration.dump(), folder);
   if (loaded.verdict() != LoadedSettings::Verdict::kValid)
-    didNotRun("the configuration", toText("soak.json", loaded.findings.at(0)),
-              "mend the benchmark");
+    didNotRun("the configuration", toText("soak.json", loaded.findings.at(0)), "fix the benchmark");
   return loaded.settings;
 }
 
@@ -255,7 +254,7 @@ bool bench(const Options& options, Report& report) {
   reportEvents(counts, report);
   std::vector<std::string> wrong = counts.wrong;
   for (const std::string& missing : lab.day().untold())
-    wrong.push_back("nobody was told of it: " + missing);
+    wrong.push_back("a fault was not reported: " + missing);
   for (const std::string& what : wrong) {
     report.text("WRONG: {}\n", what);
     note("soak: " + what);
@@ -271,12 +270,13 @@ int main(int argc, char** argv) {
   bool json = false;
   double warm_up_h = -1;
   CLI::App app("A day of the wall on a virtual clock, with people, faults and reloads.");
-  app.add_option("--hours", options.hours, "Of virtual time")
+  app.add_option("--hours", options.hours, "Hours of virtual time")
       ->check(CLI::Range(0.2, 10'000.0))
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of people, faults and devices")->capture_default_str();
+  app.add_option("--seed", options.seed, "Seed of people, faults and devices")
+      ->capture_default_str();
   app.add_option("--warm-up", warm_up_h,
-                 "Hours whose memory does not count; default: a quarter, at "
+                 "Hours at the beginning whose memory does not count; the default is a quarter, at "
                  "most two")
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--json", json, "The figures as one JSON object");

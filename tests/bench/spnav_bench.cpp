@@ -279,7 +279,7 @@ bool bench(const Options& options, Report& report) {
   }
   const auto ratio =
       ratioOf(medianOf(all[kMerlind], "records"), medianOf(all[kSpacenavd], "records"), "records");
-  report.text("merlind by spacenavd, medians: {:.2f} (asked at most 1): {}\n", ratio.value(),
+  report.text("merlind by spacenavd, medians: {:.2f} (limit 1): {}\n", ratio.value(),
               ratio <= 1 ? "yes" : "NO");
   report.figure("merlind_by_spacenavd", ratio, "1");
   return true;
@@ -293,10 +293,12 @@ int main(int argc, char** argv) {
   bool json = false;
   CLI::App app("Latency from a ball's byte to a client of the space-mouse socket.");
   app.add_option("--bin", options.bin, "Folder of merlind")->required();
-  app.add_option("--samples", options.samples, "Records a round")
+  app.add_option("--samples", options.samples, "Number of records in a round")
       ->check(CLI::Range(10U, 60'000U))
       ->capture_default_str();
-  app.add_option("--rounds", options.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--rounds", options.rounds, "Number of rounds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("spnav", json, [&](merlin::bench::Report& report) {

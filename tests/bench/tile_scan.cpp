@@ -131,14 +131,14 @@ int run(const std::string& scan, double triangles, const std::string& output) {
 }  // namespace merlin
 
 int main(int argc, char** argv) {
-  CLI::App app("A scan in tiles, as a binary PLY of so many triangles");
+  CLI::App app("Writes copies of a scan in tiles as a binary PLY with a given number of triangles");
   std::string scan, output;
   double triangles = 1e6;
-  app.add_option("scan", scan, "The tile (.ply, .obj)")->required();
-  app.add_option("triangles", triangles, "1e8 is read as well")
+  app.add_option("scan", scan, "The scan that each tile is a copy of (.ply, .obj)")->required();
+  app.add_option("triangles", triangles, "Number of triangles; it may be written as 1e8")
       ->required()
       ->check(CLI::Range(1.0, 1e9));
-  app.add_option("output", output, "The mesh (.ply)")->required();
+  app.add_option("output", output, "The mesh to be written (.ply)")->required();
   CLI11_PARSE(app, argc, argv);
   return merlin::run(scan, triangles, output);
 }

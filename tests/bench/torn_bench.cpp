@@ -246,14 +246,14 @@ int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
   CLI::App app("Torn reads of the shared memory; killed writers.");
-  app.add_option("--reads", options.reads, "In all")
+  app.add_option("--reads", options.reads, "Number of reads, of all processes together")
       ->check(CLI::Range(1.0, 1e15))
       ->capture_default_str();
   app.add_option("--kills", options.kills,
-                 "Writers that are killed with -9 in the middle of a value")
+                 "Number of writers that are killed with -9 in the middle of a value")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option("--readers", options.readers, "Processes that read")
+  app.add_option("--readers", options.readers, "Number of processes that read")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");

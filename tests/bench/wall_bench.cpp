@@ -192,9 +192,8 @@ void benchLate(const Options& options, const test::TempDir& dir, Report& report)
     }
     const auto wall = Measured::of(meanOf(all.wall, "rounds"), all.wall_deadlines, "deadlines");
     const auto bare = Measured::of(meanOf(all.bare, "rounds"), all.bare_deadlines, "deadlines");
-    report.text(
-        "{:8}  mean: late {:.2f} %, bare loop {:.2f} % (asked: at most 2 %, or bare loop + 1 %)\n",
-        script, 100 * wall, 100 * bare);
+    report.text("{:8}  mean: late {:.2f} %, bare loop {:.2f} % (limit: 2 %, or bare loop + 1 %)\n",
+                script, 100 * wall, 100 * bare);
     report.figure(std::string(script) + ".wall_late", wall, "1");
     report.figure(std::string(script) + ".bare_late", bare, "1");
   }
@@ -346,13 +345,15 @@ bool benchFaults(const Options& options, const test::TempDir& dir, Report& repor
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Late frames of the wall beside a bare loop.");
+  CLI::App app("Late frames of the wall compared with those of a bare loop.");
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The wall's configuration")->required();
-  app.add_option("--seconds", options.seconds, "Of a run")
+  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
       ->check(CLI::Range(1, 86'400))
       ->capture_default_str();
-  app.add_option("--rounds", options.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--rounds", options.rounds, "Number of rounds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("wall", json, [&](merlin::bench::Report& report) {

@@ -24,11 +24,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bin", required=True, help="the folder of merlin and merlind")
     parser.add_argument("--source", required=True, help="the source tree")
-    parser.add_argument("--seconds", type=float, default=15, help="of one turn")
-    parser.add_argument("--rounds", type=int, default=3, help="turns of each side")
-    parser.add_argument("--soak-seconds", type=float, default=600, help="of the case soak")
+    parser.add_argument("--seconds", type=float, default=15, help="length of one turn")
+    parser.add_argument("--rounds", type=int, default=3, help="number of turns of each side")
+    parser.add_argument("--soak-seconds", type=float, default=600, help="length of the case soak")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
-    parser.add_argument("case", nargs="*", help="names; without: all but soak")
+    parser.add_argument("case", nargs="*", help="names of cases; the default is all but soak")
     options = parser.parse_args()
     cases = [case for group in GROUPS for case in group.CASES]
     unknown = set(options.case) - {case.name for case in cases}

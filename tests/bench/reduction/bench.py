@@ -231,20 +231,20 @@ def target(mesh, level):
 
 def options_of():
     parser = argparse.ArgumentParser(prog="./dev bench reduction", description=__doc__)
-    parser.add_argument("meshes", nargs="*", metavar="MESH", help="PLY or OBJ, beside the scans")
+    parser.add_argument("meshes", nargs="*", metavar="MESH", help="further meshes, PLY or OBJ")
     parser.add_argument("--quick", action="store_true",
                         help="the repository's own model, and MESH, in two rounds")
-    parser.add_argument("--scans", metavar="NAME,...", help="of " + ", ".join(
-        name for name, _ in SCANS) + "; all that are there unless told, none where empty")
-    parser.add_argument("--levels", default="10,5,1", help="percent of the triangles kept")
-    parser.add_argument("--rounds", type=int, help="3, and 2 with --quick")
+    parser.add_argument("--scans", metavar="NAME,...", help="scans to use, of " + ", ".join(
+        name for name, _ in SCANS) + "; the default is all that exist, empty: none")
+    parser.add_argument("--levels", default="10,5,1", help="triangles to be kept, in percent")
+    parser.add_argument("--rounds", type=int, help="number of rounds; 3, with --quick 2")
     parser.add_argument("--slow", type=float,
-                        help="who needs more seconds runs in the first round only; 5, --quick: 0.5")
+                        help="a program that takes more seconds runs in the first round only; 5, with --quick 0.5")
     parser.add_argument("--width", default="0.005",
-                        help="of the certified maximum's interval, percent of the diagonal")
+                        help="width of the certified maximum's interval, in percent of the diagonal")
     parser.add_argument("--reuse", action="store_true",
-                        help="peers (all but meshoptimizer) and errors from earlier runs")
-    parser.add_argument("--json", action="store_true", help="all figures for programs")
+                        help="take the peers (except meshoptimizer) and errors from earlier runs")
+    parser.add_argument("--json", action="store_true", help="all figures as one JSON object")
     parser.add_argument("--bin", type=pathlib.Path, default=REPOSITORY / "build/release")
     parser.add_argument("--data", type=pathlib.Path, default=REPOSITORY.parent / "shared/data")
     parser.add_argument("--out", type=pathlib.Path, default=REPOSITORY / "build/bench/reduction")

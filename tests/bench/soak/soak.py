@@ -247,7 +247,7 @@ def measure(options, report):
     report_frames(soak.frames, report)
     report_events(soak, report)
     wrong += [f"unexplained event: {event}" for event in soak.unexplained]
-    wrong += [f"nobody was told of it: {what}" for what in soak.day.untold()] + wall.wrong
+    wrong += [f"a fault was not reported: {what}" for what in soak.day.untold()] + wall.wrong
     for what in wrong:
         report.text(f"WRONG: {what}")
         figures.note(f"soak: {what}")
@@ -269,12 +269,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("seconds", metavar="DURATION", type=seconds_of, help="such as 90s, 10m, 2h")
     parser.add_argument("--bin", required=True, help="the folder of merlin and merlind")
-    parser.add_argument("--seed", type=int, default=1, help="of people, faults and devices")
-    parser.add_argument("--rate", type=float, default=30, help="frames a second")
-    parser.add_argument("--every", type=float, default=15, help="seconds from act to act, on average")
+    parser.add_argument("--seed", type=int, default=1, help="seed of people, faults and devices")
+    parser.add_argument("--rate", type=float, default=30, help="frame rate of the wall in Hz")
+    parser.add_argument("--every", type=float, default=15, help="average number of seconds between two acts")
     parser.add_argument("--warm-up", type=float, help="seconds after each start whose memory does not count")
     parser.add_argument("--chart", help="the SVG file to write")
-    parser.add_argument("--keep", metavar="FOLDER", help="where logs and configuration are copied to")
+    parser.add_argument("--keep", metavar="FOLDER", help="folder to which logs and configuration are copied")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     if options.warm_up is None:

@@ -27,7 +27,7 @@ render::tiles::TilePlan smallPlan() {
   settings.frame_height = settings.tile_height = kHeight;
   settings.tiles = {{"wall", render::tiles::TileKind::kWall, 0, 0, 0}};
   auto plan = render::tiles::planTiles(settings);
-  if (!plan) didNotRun("the wall", plan.error().what, "mend the benchmark");
+  if (!plan) didNotRun("the wall", plan.error().what, "fix the benchmark");
   return *std::move(plan);
 }
 
