@@ -159,7 +159,7 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/content", {"render/gl", "render/image", "render/lod"}},
     {"render/content/picture", {"render/content", "render/gl", "render/image"}},
     {"render/content/sample", {"render/content", "render/gl"}},
-    // With the program merlin-import, which merlind neither links nor starts.
+    // The folder has the program merlin-import, which merlind neither links nor starts.
     {"render/import",
      {"render/image", "render/mesh", "render/mesh/atlas", "render/mesh/io", "render/points",
       "render/range", "render/range/io"}},
@@ -170,13 +170,13 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/out",
      {"daemon/shm/seq_slot.h", "render/correct/settings.h", "render/image", "render/out/kms",
       "render/out/picture", "render/out/window", "render/tiles"}},
-    // With the program merlin-window, which includes nothing else of MERLIN.
+    // The folder has the program merlin-window, which includes nothing else of MERLIN.
     {"render/out/window", {}},
     // choice, buffer_turns and settings are pure.
     {"render/out/kms", {"render/out/picture"}},
     // Pure.
     {"render/out/picture", {}},
-    // Pure except for the threads among which it divides the rows; of render/frame it knows the
+    // Pure, except for the threads among which it divides the rows. Of render/frame it includes the
     // port only.
     {"render/correct", {"render/frame/correction.h"}},
     {"render/correct/gpu", {"render/correct", "render/gl"}},

@@ -105,7 +105,7 @@ TEST(VrpnProtocol, EveryPrefixWaitsAndEveryBadLengthIsSaid) {
   for (std::size_t n = 0; n < 12; ++n) (void)readVrpnName(whole.substr(24, n));
 }
 
-// A client that starts as VRPN's own does: with a cookie, descriptions and a ping.
+// A client that begins as VRPN's own client does: with a cookie, descriptions and a ping.
 struct Client {
   explicit Client(int fd_) : fd(fd_) {
     timeval limit{10, 0};

@@ -73,7 +73,7 @@ TEST(Inspect, TheLongestHoleComesFirst) {
   expectNothingOdd(is);
 }
 
-// Where two holes touch at a vertex, each fan of triangles there leads from one to the other.
+// At a vertex where two holes touch, each fan of triangles leads from one hole to the other.
 TEST(Inspect, HolesThatTouchAreOneLoop) {
   mesh::Mesh sheet = test::grid(4, 4);
   for (const int cell : {2 * 4 + 2, 1 * 4 + 1})  // diagonal neighbours, the later one first

@@ -385,8 +385,8 @@ TEST(WriteMesh, RefusesAnEmptyMeshAndAnUnknownEnding) {
   EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
 }
 
-// Without texture coordinates the image is left out; if the image file cannot be written,
-// writeMesh() fails.
+// A mesh without texture coordinates is written without its image. If the image file cannot be
+// written, writeMesh() fails.
 TEST(WriteMesh, HasAPictureOnlyWhereItLiesSomewhere) {
   const TempDir dir;
   mesh::Mesh mesh = test::cube();

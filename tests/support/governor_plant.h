@@ -107,8 +107,8 @@ inline Outcome runOnGrid(render::governor::Governor& governor, const Plant& plan
   return out;
 }
 
-// Judges each frame alone: it is late when its own work exceeds the period. Milder than the grid,
-// where an overrun shortens the next frame.
+// Judges each frame alone: it is late when its own work exceeds the period. This is milder than the
+// grid, where an overrun shortens the next frame.
 inline Outcome runAlone(const std::function<double()>& triangles,
                         const std::function<void(double work_s)>& observe, const Plant& plant) {
   Outcome out;

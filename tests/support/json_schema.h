@@ -1,7 +1,7 @@
-// JsonSchema: checks documents against a JSON schema, as far as daemon/status/status.schema.json
-// uses the language: $ref into $defs, type, enum, properties, required, additionalProperties,
-// patternProperties, items, minItems, maxItems, anyOf. Stricter than the language: a member that is
-// not described is a fault.
+// JsonSchema: checks documents against a JSON schema, with the part of the schema language that
+// daemon/status/status.schema.json uses: $ref into $defs, type, enum, properties, required,
+// additionalProperties, patternProperties, items, minItems, maxItems, anyOf. It is stricter than
+// the language: a member that is not described is a fault.
 #pragma once
 
 #include <algorithm>

@@ -52,7 +52,7 @@ def main():
         count += 1
         try:
             sender.sendto(make(count), ("127.0.0.1", int(sys.argv[2])))
-        except ConnectionRefusedError:  # nobody receives yet
+        except ConnectionRefusedError:  # nobody receives the datagrams yet
             pass
         time.sleep(0.02)
 

@@ -44,7 +44,7 @@ struct LocalSocket {
 
 int freePort() { return LocalSocket().port; }
 
-// Not valid if nobody listens.
+// Connects to the port; the result is invalid if nobody listens there.
 UniqueFd connected(int port) {
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
@@ -407,7 +407,8 @@ TEST_F(InstalledAlarms, TheProgramOfTheDocumentReachesAServerUnderTheUnit) {
   EXPECT_NE(request.find("\"what\": \"ball: absent"), std::string::npos) << request;
 }
 
-// What a killed merlind leaves in shared memory, of any instance; others' files stay.
+// Objects that killed merlinds leave in shared memory are removed, whatever their instance; other
+// programs' files stay.
 TEST(Purge, TakesWhatAKilledMerlindLeftInSharedMemory) {
   const TempDir root;
   fs::create_directories(root / "etc");

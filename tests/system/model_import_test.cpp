@@ -321,8 +321,8 @@ TEST_F(ModelImport, ATextureBesideTheModelIsKeptAndNoOtherFileIsRead) {
   EXPECT_NE(left["notes"].dump().find("this texture is left out"), std::string::npos) << left;
 }
 
-// The three files of a synthetic room (tests/support/textured_models.py): a floor whose picture
-// repeats, a wall, a board, and a pillar without a picture.
+// The synthetic room in the three formats of tests/support/textured_models.py: a floor whose
+// picture repeats, a wall, a board, and a pillar without a picture.
 class TexturedRoom : public ModelImport, public testing::WithParamInterface<const char*> {};
 
 TEST_P(TexturedRoom, HasOneTextureOfAllItsPictures) {

@@ -261,7 +261,7 @@ TEST_F(WindowOutput, DraggingTurnsTheModel) {
   EXPECT_TRUE(showsTheFrameAt(0, 0));
 }
 
-// On the default wall, whose operator's tile is the frame's lower right quarter.
+// Uses the default wall, whose operator's tile is the lower right quarter of the frame.
 TEST_F(WindowOutput, TheMouseWorksTheOperatorsPanel) {
   start(
       {{"operator", {{"panel", true}}},

@@ -21,7 +21,7 @@ import report
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 WAY_OUT = "'./dev bench reduction' builds it"
 
-# name, executable, arguments before the file, what it needs of the mesh, Debian package
+# name, executable, arguments before the file, what the mesh has to have, Debian package
 PEERS = [
     ("meshoptimizer", "bench_meshoptimizer", "plain", "", "libmeshoptimizer-dev"),
     ("meshoptimizer, colour", "bench_meshoptimizer", "colour", "colour", "libmeshoptimizer-dev"),
