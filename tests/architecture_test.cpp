@@ -1,4 +1,4 @@
-// Tests the dependency rules of README.md, "Who may include whom".
+// Tests the dependency rules of README.md, "Who may include whom", and a few rules about files.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,8 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using Folders = std::set<std::string>;
 
-// The folders that a folder may include besides itself and daemon/base. A new folder needs an entry
-// here, and a review of it. "a/settings.h" allows that header alone.
+// For each folder: the folders that it may include besides itself and daemon/base. A new folder
+// needs an entry here and a review of that entry. "a/settings.h" allows this header only.
 const std::map<std::string, Folders> kMayInclude = {
     {"daemon/base", {}},
     {"daemon/json", {}},
@@ -96,7 +96,7 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/correct/io", "render/gl/gpu_list.h", "render/image", "render/out", "render/room",
       "render/testcard/card.h", "render/tiles"}},
     {"daemon/cli/watch", {"daemon/cli", "daemon/cli/wall", "daemon/status"}},
-    // The composition root.
+    // The composition root, which may include every component.
     {"daemon",
      {"config", "daemon/actions", "daemon/alarms", "daemon/cli", "daemon/devices", "daemon/net",
       "daemon/page", "daemon/reload", "daemon/serve", "daemon/shm", "daemon/state", "daemon/status",
@@ -159,7 +159,7 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/content", {"render/gl", "render/image", "render/lod"}},
     {"render/content/picture", {"render/content", "render/gl", "render/image"}},
     {"render/content/sample", {"render/content", "render/gl"}},
-    // With the program merlin-import, which merlind neither links nor starts.
+    // The folder has the program merlin-import, which merlind neither links nor starts.
     {"render/import",
      {"render/image", "render/mesh", "render/mesh/atlas", "render/mesh/io", "render/points",
       "render/range", "render/range/io"}},
@@ -170,13 +170,13 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/out",
      {"daemon/shm/seq_slot.h", "render/correct/settings.h", "render/image", "render/out/kms",
       "render/out/picture", "render/out/window", "render/tiles"}},
-    // With the program merlin-window, which includes nothing else of MERLIN.
+    // The folder has the program merlin-window, which includes nothing else of MERLIN.
     {"render/out/window", {}},
     // choice, buffer_turns and settings are pure.
     {"render/out/kms", {"render/out/picture"}},
     // Pure.
     {"render/out/picture", {}},
-    // Pure except for the threads among which it divides the rows; of render/frame it knows the
+    // Pure, except for the threads among which it divides the rows. Of render/frame it includes the
     // port only.
     {"render/correct", {"render/frame/correction.h"}},
     {"render/correct/gpu", {"render/correct", "render/gl"}},
@@ -273,7 +273,8 @@ const std::map<std::string, Folders> kOnlyIn = {
     {"spdlog/spdlog.h", {"daemon/base"}},
 };
 
-// Pure folders may not include the headers in kImpure: no clock, no file, no thread of their own.
+// Pure folders may not include the headers in kImpure: they have no clock, no file and no thread of
+// their own.
 const Folders kPure = {"nn",
                        "nn/gesture",
                        "drivers/port",
@@ -318,9 +319,9 @@ const Folders kImpure = {"fstream",
                          "daemon/base/log.h",
                          "daemon/base/shared_memory.h"};
 
-// Folders whose subfolders are private: only the folder itself may include them, and folders whose
-// row above names one of them. The set is what
-// each subfolder may include. A new subfolder needs no entry.
+// Folders with private subfolders: only the folder itself may include them, and folders whose row
+// above names one of them. The set is what each subfolder may include. A new subfolder needs no
+// entry.
 const std::map<std::string, Folders> kPrivateTo = {
     // Pure.
     {"render/mesh/atlas", {"render/image", "render/mesh"}},
@@ -328,13 +329,13 @@ const std::map<std::string, Folders> kPrivateTo = {
     {"render/reduce", {"render/lod", "render/mesh", "render/reduce/quadric"}},
 };
 
-// The parent folder if `folder` is private to it, otherwise empty.
+// The parent folder if the folder is private to it; empty if it is not private.
 std::string ownerOf(const std::string& folder) {
   const std::string above = fs::path(folder).parent_path().generic_string();
   return kPrivateTo.count(above) ? above : "";
 }
 
-// Null if there are no rules for the folder.
+// The folders that `folder` may include; null if there are no rules for it.
 const Folders* rulesOf(const std::string& folder) {
   if (const std::string owner = ownerOf(folder); !owner.empty()) return &kPrivateTo.at(owner);
   const auto found = kMayInclude.find(folder);
@@ -400,7 +401,8 @@ TEST(Architecture, EveryIncludeFollowsTheRules) {
   EXPECT_GT(files, 100);
 }
 
-// Whether a file of `folder`, or of a folder that is private to it, includes what the rule names.
+// Whether a file of `folder`, or of a folder that is private to it, includes the folder or header
+// that the rule names.
 bool isUsed(const fs::path& root, const std::string& folder, const std::string& rule) {
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const auto extension = entry.path().extension();
@@ -445,8 +447,8 @@ TEST(Architecture, EveryPrivateFolderSaysWhatItIsFor) {
   }
 }
 
-// Expects that `start` is not reachable from `folder` through allowed includes; `seen` holds the
-// folders visited so far.
+// Expects that allowed includes lead from `folder` to no folder from which `start` can be reached;
+// `seen` holds the folders visited so far.
 void expectNoWayBack(const std::string& start, const std::string& folder, Folders& seen) {
   for (const std::string& rule : *rulesOf(folder)) {
     const std::string to = rule.ends_with(".h") ? folderOf(rule) : rule;
@@ -485,7 +487,7 @@ TEST(Architecture, AFileOfRenderIsInTheNamespaceOfItsFolder) {
   for (const auto& entry : fs::recursive_directory_iterator(render)) {
     const auto extension = entry.path().extension();
     if (extension != ".h" && extension != ".cpp") continue;
-    // Node classes of Coin stand in the global namespace, as its own do.
+    // Node classes of Coin are in the global namespace, as Coin's own are.
     if (entry.path().filename().string().starts_with("so_")) continue;
     ++files;
     const std::string folder = fs::relative(entry.path(), render).begin()->string();

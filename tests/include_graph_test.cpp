@@ -1,4 +1,4 @@
-// Tests the includes as they are, where architecture_test has what they may be: no file and no
+// Tests the actual includes, whereas architecture_test tests the allowed ones: no file and no
 // folder includes itself through others.
 #include <algorithm>
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 using Graph = std::map<std::string, std::set<std::string>>;
 
-// The files that each file of the product includes, as paths from the top of the tree.
+// For each file of the product: the files that it includes, as paths from the top of the tree.
 Graph filesGraph() {
   const fs::path root = MERLIN_SOURCE_DIR;
   Graph graph;
@@ -39,8 +39,8 @@ Graph filesGraph() {
   return graph;
 }
 
-// The folders that each folder includes. Headers of plain settings, which only include other
-// settings, do not count: config includes those of many folders.
+// For each folder: the folders that it includes. Headers that are only settings do not count:
+// config includes those of many folders.
 Graph foldersGraph(const Graph& files) {
   const auto folderOf = [](const std::string& file) {
     return fs::path(file).parent_path().generic_string();
@@ -55,7 +55,7 @@ Graph foldersGraph(const Graph& files) {
   return folders;
 }
 
-// A way from a node back to itself, "a > b > a"; empty if there is none.
+// A path from a node back to itself, "a > b > a"; empty if there is none.
 std::string cycleIn(const Graph& graph) {
   std::set<std::string> done;
   std::vector<std::string> path;

@@ -1,10 +1,11 @@
-// ./dev bench checks: what it costs to read back what outputs show: each frame's digest, each
-// check, and whether frames are late because of it.
+// ./dev bench checks: the cost of reading back what outputs show: of each frame's digest, of each
+// check, and whether frames are late because of them.
 //
-// The frames are the demo's wall, 1920 x 480, moved by a row from frame to frame, presented to an
-// output in shared memory after a wait as long as the demo's drawing. Runs without checks, with one
-// every 5 s (the default) and with one every 20 ms take turns in one process with the same output.
-// What a graphics card's output costs depends on its memory: `picture_ms` of its status says it.
+// The frames are those of the demo's wall, 1920 x 480, moved by one row from frame to frame. They
+// are presented to an output in shared memory after a wait that is as long as the demo's drawing.
+// Runs without checks, with one every 5 s (the default) and with one every 20 ms take turns in one
+// process with the same output. The cost for an output of a graphics card depends on the card's
+// memory; `picture_ms` of its status shows it.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -54,7 +55,7 @@ class Wall {
   }
   const Picture& picture() const { return picture_; }
 
-  // Frames on a grid, with a check every so often; 0: none.
+  // Presents frames on a grid, with a check every `every`; 0: no checks.
   void run(Duration every, double seconds, Counts& counts) {
     out::PictureChecks checks({{&outputs_->output(0), every}}, clock_);
     outputs_->checkWith(&checks);
@@ -84,7 +85,7 @@ class Wall {
  private:
   SystemClock clock_;
   Picture picture_;
-  std::array<std::vector<std::uint8_t>, 8> moved_;  // by a row each; made beforehand
+  std::array<std::vector<std::uint8_t>, 8> moved_;  // each moved by one more row; made beforehand
   render::tiles::TilePlan plan_;
   std::uint64_t sequence_ = 0;
   std::optional<out::OutputSet> outputs_;
@@ -154,12 +155,13 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What it costs to read back what outputs show");
+  CLI::App app("The cost of reading back what outputs show");
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--seconds", options.seconds, "Length of a run")->check(CLI::Range(6.0, 3600.0));
+  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
+      ->check(CLI::Range(6.0, 3600.0));
   app.add_option("--rounds", options.rounds, "Runs of each kind")->check(CLI::Range(1, 1000));
-  app.add_flag("--json", json, "One JSON object");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("checks", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);

@@ -23,7 +23,7 @@ constexpr const char* kFolder = "/etc/merlin";
 
 // ---- mutation
 
-// Every value of the tree but its root.
+// Adds pointers to all values of the tree, except for its root.
 void collect(const Json& at, const Pointer& pointer, std::vector<Pointer>& all) {
   if (at.is_object()) {
     for (const auto& [key, value] : at.items()) {
@@ -80,7 +80,7 @@ Json strangeValue(Random& r) {
   return oneOf(kValues, r);
 }
 
-// A key that is almost this one.
+// Returns a key that differs a little from this one.
 std::string nearKey(std::string key, Random& r) {
   const auto at = static_cast<std::size_t>(r.below(key.size() + 1));
   switch (r.below(5)) {
@@ -113,7 +113,7 @@ void addUnknownKey(Json& root, const Pointer& at, Random& r) {
   if (value.is_object()) value[oneOf(kKeys, r)] = strangeValue(r);
 }
 
-// Puts a part of the tree somewhere else, beside the one there.
+// Copies a part of the tree to another place, in addition to what is there.
 void moveSubtree(Json& root, const Pointer& from, const Pointer& to) {
   const Json value = root[from];
   Json& parent = root[to];
@@ -160,7 +160,7 @@ void mutateTree(Json& root, Random& r) {
   }
 }
 
-// A member of the text twice, as a careless merge leaves it.
+// Duplicates a member of the text, as a careless merge does.
 void doubleMember(std::string& text, Random& r) {
   const std::size_t from = text.find('"', r.below(text.size()));
   const std::size_t to = from == std::string::npos ? from : text.find(',', from);
@@ -213,13 +213,13 @@ bool isSame(const Json& written, const Json& used) {
   return used == (kFolder / path).lexically_normal().string();
 }
 
-// Whether the value says, as its help promises, that the driver's usual one is taken.
+// Whether the value stands for the driver's own default, as the setting's help describes it.
 bool isTheDriversOwn(const Pointer& at, const Json& written) {
   if (!at.to_string().starts_with("/devices/")) return false;
   return (at.back() == "baud" && written == 0) || (at.back() == "name" && written == "");
 }
 
-// The first value of the text that the settings do not have; empty: they have all of them.
+// Pointer to the first value of the text that the settings lack; empty if they have all values.
 std::string ignoredIn(const Json& written, const Json& used, const LoadedSettings& loaded,
                       const Pointer& at = Pointer()) {
   const auto adjusted = [&](const Finding& f) { return f.pointer == at.to_string(); };
@@ -244,19 +244,19 @@ std::string ignoredIn(const Json& written, const Json& used, const LoadedSetting
   return known ? "" : at.to_string();
 }
 
-// Why the settings that were accepted are not those of the text.
+// The difference between the accepted settings and the text; empty if there is none.
 std::string faultOf(const std::string& text, const LoadedSettings& loaded) {
   KeysTwice keys;
   const Json written = Json::parse(text, std::ref(keys), false);
-  if (written.is_discarded()) return "accepts what is no JSON";
+  if (written.is_discarded()) return "accepts a text that is no JSON";
   if (!keys.twice.empty()) return "accepts a key twice: " + keys.twice;
   const std::string used = settingsText(loaded.settings);
   const std::string ignored = ignoredIn(written, Json::parse(used, nullptr, false), loaded);
   if (!ignored.empty()) return "ignores " + ignored;
   const LoadedSettings again = loadSettings(used, kFolder);
   if (again.verdict() == LoadedSettings::Verdict::kInvalid)
-    return "refuses what it has written: " + toText("again", again.findings.front());
-  return settingsText(again.settings) == used ? "" : "reads another thing than it has written";
+    return "refuses the settings that it has written: " + toText("again", again.findings.front());
+  return settingsText(again.settings) == used ? "" : "reads other settings than it has written";
 }
 
 }  // namespace
@@ -281,7 +281,7 @@ ConfigFuzz::Result ConfigFuzz::judge(std::string text) {
   const LoadedSettings loaded = loadSettings(text, kFolder);
   Result result{Outcome::kNoJson, "", std::move(text)};
   for (const Finding& finding : loaded.findings) {
-    if (finding.what.empty()) result.fault = "a finding says nothing";
+    if (finding.what.empty()) result.fault = "a finding has no text";
   }
   if (!loaded.parsed) {
     if (loaded.findings.empty()) result.fault = "refuses without a finding";

@@ -1,5 +1,5 @@
-// Mutated configurations through the loader, and whether what it accepts is what was written: a key
-// that is ignored is a fault. Deterministic: a seed says everything.
+// Gives mutated configurations to the loader, and checks that what it accepts equals what is
+// written there: a key that is ignored is a fault. A seed determines everything.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace merlin::bench {
 
 class ConfigFuzz {
  public:
-  // `examples`: good configurations, the texts that are mutated. REQUIRES: at least one, each JSON.
+  // `examples`: good configurations, whose texts are mutated. REQUIRES: at least one, and each is
+  // valid JSON.
   explicit ConfigFuzz(std::vector<std::string> examples) : examples_(std::move(examples)) {}
 
   enum class Outcome { kNoJson, kInvalid, kAdjusted, kValid };
@@ -22,13 +23,13 @@ class ConfigFuzz {
     std::string fault;  // empty: none
     std::string text;   // the mutated configuration
   };
-  // Mutates an example by the seed and loads it.
+  // Mutates an example as the seed says, and loads it.
   Result run(std::uint64_t seed) const;
 
-  // What is wrong with the loader's answer to this text; empty: nothing. Faults: it is accepted and
-  // is no JSON, has a key twice, has a key or value that the settings do not have as it was written
-  // (unless a finding says that it was adjusted), or its settings, written, are refused or change
-  // when they are read again.
+  // Describes the fault in the loader's answer to this text; empty if there is none. Faults: the
+  // loader accepts a text that is no JSON, that has a key twice, or that has a key or value which
+  // the settings do not have as written (unless a finding says that it was adjusted); or the
+  // settings, when written, are refused or change when they are read again.
   static Result judge(std::string text);
 
  private:

@@ -1,5 +1,5 @@
-// ./dev bench fuzz-config [N]: mutated configurations through the loader. Of each kind of fault the
-// first seed is told, which shows it again.
+// ./dev bench fuzz-config [N]: mutated configurations through the loader. For each kind of fault it
+// prints the first seed, with which the fault can be reproduced.
 #include <array>
 #include <csignal>
 #include <cstring>
@@ -22,7 +22,7 @@ namespace {
 
 volatile std::uint64_t current_seed = 0;
 
-// A crash is a fault too, and its seed has to be said. Only what a signal handler may call.
+// A crash is a fault too, so its seed has to be printed. A signal handler may call few functions.
 void sayWhere(int signal) {
   char text[96] = "\nfault: a crash; again: --count 1 --seed ";
   char* end = text + std::strlen(text);
@@ -53,7 +53,7 @@ std::vector<std::string> examples(const std::string& folder) {
 
 struct Options {
   std::uint64_t seed = 1, count = 100'000;
-  std::string configurations;  // folder; empty: that of the source tree, from within it
+  std::string configurations;  // folder; empty: that of the source tree
 };
 
 struct Faults {
@@ -86,9 +86,10 @@ bool fuzz(const Options& options, Report& report) {
     constexpr std::array kFigures = {"no_json", "invalid", "adjusted", "valid"};
     report.figure(kFigures[i], shareOf(outcomes[i], options.count, "configurations"), "1");
   }
-  // Where all are refused, no accepted one was compared.
+  // If all are refused, no accepted configuration was compared.
   if (options.count >= 1000 && outcomes[3] == 0)
-    didNotRun("the loader", "it accepted none", "see tests/bench/config_fuzz.h");
+    didNotRun("the loader", "it accepted none of the configurations",
+              "see tests/bench/config_fuzz.h");
   for (const auto& [what, f] : faults) {
     report.text("{:>10}  FAULT: the loader {}; again: --count 1 --seed {}\n", f.count, what,
                 f.first_seed);
@@ -106,14 +107,15 @@ bool fuzz(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Mutated configurations through the loader.");
-  app.add_option("--seed", options.seed, "Of the first one; the next has the next")
+  CLI::App app("Gives mutated configurations to the loader.");
+  app.add_option("--seed", options.seed,
+                 "Seed of the first configuration; each further one has the next seed")
       ->capture_default_str();
-  app.add_option("--count", options.count, "Of configurations")
+  app.add_option("--count", options.count, "Number of configurations")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->capture_default_str();
   app.add_option("--configurations", options.configurations,
-                 "Folder of the examples; the default is config");
+                 "Folder of the example configurations; the default is config");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz-config", json, [&](merlin::bench::Report& report) {

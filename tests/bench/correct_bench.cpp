@@ -1,10 +1,9 @@
-// ./dev bench correct: what an output's correction costs a frame, beside a memcpy of as many bytes
-// and as a share of the period of a frame: each part of it alone and all together, on all
-// processors, on one, and by a shader.
+// ./dev bench correct: the cost of an output's correction for each frame, compared with a memcpy of
+// as many bytes and as a share of a frame's period. Measures each part of the correction alone and
+// all together, on all processors, on one, and by a shader.
 //
-// The picture is noise of 1280 x 960 pixels, as large as the demo's frame. Nothing but the loop
-// runs, so that the tables come from memory as they do in a wall, where a frame lies between two
-// passes.
+// The picture is noise of 1280 x 960 pixels, the size of the demo's frame. Nothing but the loop
+// runs, so the tables come from memory, as in a wall, where a whole frame lies between two passes.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -37,7 +36,7 @@ double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
 }
 
-// Settings by name, each with one part more to compute.
+// Settings by name; each has more parts to compute than the one before.
 std::vector<std::pair<std::string, CorrectionSettings>> cases() {
   CorrectionSettings pin, mesh, blend, all;
   pin.corners = {24, 12, -31, 7, 9, -20, -14, -33};
@@ -58,7 +57,7 @@ std::vector<std::pair<std::string, CorrectionSettings>> cases() {
   return {{"pin", pin}, {"mesh_pin", mesh}, {"mesh_pin_blend", blend}, {"all", all}};
 }
 
-// The shader, where there is an OpenGL; its context is current.
+// The shader, if OpenGL is available; its context is current.
 struct Shader {
   std::unique_ptr<render::gl::GlContext> context;
   render::correct::ShaderPass pass;
@@ -73,20 +72,20 @@ struct Shader {
   ~Shader() { pass.end(); }
 };
 
-// A correction that is measured.
+// A correction to be measured.
 struct Subject {
   std::string name;
   render::correct::OutputCorrection correction;
   std::vector<double> passes{};  // [ms]
 };
 
-// All of them; adds the times of making maps of meshes to `maps` [ms].
+// Makes all subjects; adds the times of computing maps of meshes to `maps` [ms].
 std::vector<Subject> subjectsOf(unsigned processors, ThreadTeam& team, Shader& shader,
                                 std::vector<double>& maps) {
   std::vector<Subject> subjects;
   for (const auto& [name, settings] : cases()) {
     if (!validate(settings, kWidth, kHeight).empty())
-      didNotRun(name, "its settings are not valid", "mend the benchmark");
+      didNotRun(name, "its settings are not valid", "fix the benchmark");
     const auto began = Steady::now();
     const auto map = render::correct::makeCorrectionMap(settings, kWidth, kHeight, nullptr,
                                                         Threads(processors, team));
@@ -98,7 +97,7 @@ std::vector<Subject> subjectsOf(unsigned processors, ThreadTeam& team, Shader& s
   return subjects;
 }
 
-// All in turn, so that whatever else the machine does falls on all alike. Returns the times of
+// Measures all in turns, so that other work of the machine affects all alike. Returns the times of
 // copying the picture [ms].
 std::vector<double> measureInTurn(int frames, std::vector<Subject>& subjects) {
   std::mt19937 random(1);
@@ -149,7 +148,7 @@ bool measure(int frames, const std::string& gpu, Report& report) {
   const Measured map_ms = medianOf(maps, "maps of meshes");
   report.text("  {:<22} {:7.2f} ms, once\n", "map of a mesh", map_ms.value());
   report.figure("map_ms", map_ms, "ms");
-  const std::size_t of_a_case = processors > 1 ? 3 : 2;  // the shader is the last of each case
+  const std::size_t of_a_case = processors > 1 ? 3 : 2;  // each case's last one is the shader
   for (std::size_t i = 0; i < subjects.size(); ++i) {
     printSubject(subjects[i], memcpy_ms, report);
     if (i % of_a_case != of_a_case - 1) continue;
@@ -166,13 +165,15 @@ bool measure(int frames, const std::string& gpu, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What an output's correction costs a frame");
+  CLI::App app("The cost of an output's correction for each frame");
   int frames = 200;
   bool json = false;
-  app.add_option("--frames", frames, "Frames of each")->check(CLI::Range(1, 100'000));
+  app.add_option("--frames", frames, "Number of frames for each correction")
+      ->check(CLI::Range(1, 100'000));
   std::string gpu = merlin::render::gl::kAnyGpu;
-  app.add_option("--gpu", gpu, "Where the shader runs, as /wall/render/gpu")->capture_default_str();
-  app.add_flag("--json", json, "One JSON object");
+  app.add_option("--gpu", gpu, "The GPU that runs the shader, as in /wall/render/gpu")
+      ->capture_default_str();
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("correct", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(frames, gpu, report);

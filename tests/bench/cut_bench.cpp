@@ -1,6 +1,7 @@
-// ./dev bench cut: any number of triangles of a large model: how long a cut takes beside a memcpy
-// of what it returns, what it needs in memory, when the first picture of a cold file stands, and
-// what a budget spent where the tiles look is worth, in pixels, also with views of their own.
+// ./dev bench cut: cuts with any number of triangles of a large model. Measures the time of a cut
+// compared with a memcpy of its result, the memory, the time to the first picture from a file that
+// is not cached, and the gain in pixels from spending the budget where the tiles look, also with
+// tiles that have cameras of their own.
 //
 // The model: --hgt FILE, an elevation tile of 1201 x 1201 big-endian heights (SRTM 3), as it is
 // (2.9 million triangles) or mirrored 2 x 2 (11.5 million; synthetic in that), reduced once and
@@ -38,7 +39,7 @@ double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
 }
 
-// Heights in metres, row by row; empty where there is no such file.
+// Heights in metres, row by row; empty if there is no such file.
 std::vector<float> readHeights(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<unsigned char> bytes(2 * kSide * kSide);
@@ -47,7 +48,7 @@ std::vector<float> readHeights(const std::string& path) {
   std::vector<float> heights;
   for (std::size_t i = 0; i < bytes.size(); i += 2) {
     const auto raw = static_cast<std::int16_t>(bytes[i] << 8 | bytes[i + 1]);
-    heights.push_back(raw == -32768 ? 0 : raw);  // a void
+    heights.push_back(raw == -32768 ? 0 : raw);  // no data
   }
   return heights;
 }
@@ -63,7 +64,7 @@ std::vector<float> hills() {
   return heights;
 }
 
-// The heights mirrored `times` x `times`; posts are 66 m by 92.6 m apart (at 44 degrees north).
+// The heights, mirrored `times` x `times`. Samples are 66 m by 92.6 m apart (at 44 degrees north).
 Mesh heightField(const std::vector<float>& heights, std::size_t times) {
   const std::size_t side = (kSide - 1) * times + 1;
   const auto mirrored = [&](std::size_t i) {
@@ -90,7 +91,7 @@ Mesh heightField(const std::vector<float>& heights, std::size_t times) {
   return mesh;
 }
 
-// The value; else the benchmark ends.
+// Returns the value, or ends the benchmark.
 template <typename T>
 T expect(Result<T> result, const std::string& subject) {
   if (!result) didNotRun(subject, result.error().what, "--out names the folder of the models");
@@ -107,7 +108,7 @@ void makeModel(const std::vector<float>& heights, std::size_t times, const std::
 
 // --- cuts ----------------------------------------------------------------------------------------
 
-// Budgets in random order, every cut beside a memcpy of what it returned.
+// Makes cuts for budgets in random order; each is compared with a memcpy of its result.
 void timeCuts(const Dendrogram& model, const std::string& name, Report& report) {
   const auto began = Steady::now();
   const Clusters clusters(model, {});
@@ -153,13 +154,13 @@ void timeCuts(const Dendrogram& model, const std::string& name, Report& report) 
 
 // --- pictures ------------------------------------------------------------------------------------
 
-// Three tiles that touch and the operator's, 640 x 480 each.
+// Three tiles that touch each other and the operator's tile, 640 x 480 pixels each.
 render::tiles::TilePlan plan() {
   auto made = render::tiles::planTiles({});
   return *std::move(made);
 }
 
-// Low over the middle of the field, looking along it.
+// A view from low over the middle of the field along the ground.
 Eigen::Isometry3f closeUp() {
   Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
   view.translate(Eigen::Vector3f(0.1F, -0.08F, 0.25F));
@@ -178,7 +179,7 @@ std::unique_ptr<render::frame::FrameRenderer> rendererOf(const Dendrogram& model
   return *std::move(made);
 }
 
-// The root of the mean square difference, 0..255, over the wall's tiles.
+// Root mean square difference, 0..255, over the wall's tiles.
 double difference(render::frame::FrameRenderer& renderer, const std::vector<std::uint8_t>& full) {
   double sum = 0, count = 0;
   const render::tiles::TilePlan p = plan();
@@ -232,8 +233,9 @@ void comparePictures(const Dendrogram& model, const std::string& prefix, const s
   report.text("  pictures: {0}-full.png, {0}-even.png, {0}-view.png\n", prefix);
 }
 
-// Views of their own beside the wall's three tiles: one cut for all, which each view asks for as
-// much as it would alone, against a cut of the same size for the wall and for each of the views.
+// Tiles with cameras of their own, beside the wall's three tiles. Compares one cut for all of them,
+// in which each view requests what it would request alone, with cuts of the same size for the wall
+// alone and for each view alone.
 struct ViewGroup {
   const char* name;
   std::vector<render::tiles::TileCamera> cameras;
@@ -255,7 +257,7 @@ render::tiles::TilePlan planOf(const std::vector<render::tiles::TileCamera>& cam
 }
 
 struct DrawnViews {
-  std::vector<double> error;  // by tile: root of the mean square difference to full detail
+  std::vector<double> error;  // for each tile: root mean square difference from full detail
   double drawing_ms = 0;
 };
 
@@ -310,7 +312,7 @@ void compareViews(const Dendrogram& model, const std::string& name, Report& repo
   report.figure(name + ".views_one_cut_by_each", ratio, "1");
 }
 
-// From a file that no cache holds to the first picture in memory.
+// Time from a file that is in no cache to the first picture in memory.
 void firstPicture(const std::string& path, const std::string& name, Report& report) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   ::fsync(fd);
@@ -331,7 +333,7 @@ void firstPicture(const std::string& path, const std::string& name, Report& repo
 }
 
 struct Options {
-  std::string hgt;  // empty: synthetic hills, or the tile beside the repository
+  std::string hgt;  // empty: the tile beside the repository or, without it, synthetic hills
   std::string out = "build/bench/cut";
   bool small = false;
 };
@@ -345,10 +347,10 @@ bool run(const Options& options, Report& report) {
   auto heights = readHeights(tile);
   const bool real = !heights.empty();
   if (!real && !options.hgt.empty())
-    didNotRun("the model of " + options.hgt, "it is no tile of 1201 x 1201 heights",
+    didNotRun("the model of " + options.hgt, "it is not a tile of 1201 x 1201 heights",
               "without --hgt the model is made of synthetic hills");
   if (!real) {
-    report.text("{}: no such tile; synthetic hills instead\n", kTile);
+    report.text("{}: no such tile; using synthetic hills instead\n", kTile);
     heights = hills();
   }
   for (std::size_t times = 1; times <= (options.small ? 1U : 2U); ++times) {
@@ -372,14 +374,14 @@ bool run(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Cuts of large models beside a memcpy; pictures of a budget spent evenly and by view"};
+      "Cuts of large models compared with a memcpy; pictures of a budget spent evenly and by view"};
   merlin::bench::Options options;
   bool json = false;
   app.add_option("--hgt", options.hgt,
-                 "An SRTM 3 tile; without: " + std::string(merlin::bench::kTile) +
-                     ", and synthetic hills where that is not there");
-  app.add_option("--out", options.out, "Where models and pictures go")->capture_default_str();
-  app.add_flag("--small", options.small, "Without the model of 11.5 million triangles");
+                 "An SRTM 3 tile; the default is " + std::string(merlin::bench::kTile) +
+                     " or, if that does not exist, synthetic hills");
+  app.add_option("--out", options.out, "Folder for models and pictures")->capture_default_str();
+  app.add_flag("--small", options.small, "Leaves out the model of 11.5 million triangles");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("cut", json, [&](merlin::bench::Report& report) {

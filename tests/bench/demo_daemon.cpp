@@ -19,7 +19,7 @@ nlohmann::json demoConfig(const DemoOptions& options, const std::string& instanc
                           const test::TempDir& dir) {
   auto config = nlohmann::json::parse(test::readText(options.config), nullptr, false);
   if (!config.is_object()) {
-    didNotRun("merlind", fmt::format("{} is not there or no configuration", options.config),
+    didNotRun("merlind", fmt::format("{} is not there or is not a configuration", options.config),
               "--config names the demo's, config/demo.json");
   }
   const auto folder = std::filesystem::absolute(options.config).parent_path();
@@ -31,7 +31,7 @@ nlohmann::json demoConfig(const DemoOptions& options, const std::string& instanc
   return config;
 }
 
-// The end of a program's output, where the message of a failure is.
+// The last part of a program's output, which has the message of a failure.
 std::string endOf(const std::string& output) {
   constexpr std::size_t kMost = 400;
   const std::size_t end = output.find_last_not_of('\n');
@@ -76,7 +76,7 @@ nlohmann::json& deviceOf(nlohmann::json& config, const std::string& name) {
 DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
                        const std::string& role, const Change& change)
     : subject_(options.bin + "/merlind --role " + role) {
-  // A new name for each start, since a process that ends may still hold its name.
+  // Each start has a new name, since a process that is ending may still hold its name.
   static int started = 0;
   instance_ = test::privateName(fmt::format("bench{}", ++started));
   if (::access((options.bin + "/merlind").c_str(), X_OK) != 0) fail("there is no such program");
@@ -90,7 +90,7 @@ DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
     fail((process_->ended() ? "it ended before it was ready; " : "it was not ready within 30 s; ") +
          endOf(process_->output()));
   }
-  // It runs without contents too, and then there is nothing to measure.
+  // merlind runs without contents too, but then there is nothing to measure.
   const std::string left_out = lineWith(process_->output(), "is left out until it can be read");
   if (!left_out.empty()) fail("it shows none of its contents; it said: " + left_out);
   std::string fault = open(devices_, instance_, "devices");

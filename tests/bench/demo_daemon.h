@@ -1,4 +1,4 @@
-// The demo's merlind as the subject of a benchmark; if it does not run and deliver, the benchmark
+// The demo's merlind as the subject of a benchmark. If it does not run and deliver, the benchmark
 // ends.
 #pragma once
 
@@ -20,8 +20,8 @@ struct DemoOptions {
   std::string config;  // the demo's configuration
 };
 
-// The entry of the configuration's list of devices with this name: "glove", "tracker" or "ball" of
-// a configuration without a list of its own, which then has the default one.
+// The entry with this name in the configuration's list of devices. If the configuration has no
+// list, it is the default one, whose names are "glove", "tracker" and "ball".
 nlohmann::json& deviceOf(nlohmann::json& config, const std::string& name);
 
 // Thread-bound. Every function throws DidNotRun if merlind does not run or deliver as expected.
@@ -37,20 +37,20 @@ class DemoDaemon {
 
   pid_t pid() const { return process_->pid(); }
   const std::string& instance() const { return instance_; }
-  // Where its wall takes commands. Not for the role "devices".
+  // The address at which its wall takes commands. Not for the role "devices".
   std::string commandEndpoint() const { return (*wall_)->header.command_endpoint; }
 
   // Throws if merlind has ended; to be called after the measurement.
   void expectRunning();
 
-  // The statistics that its wall has published last. Not for the role "devices".
+  // The latest statistics of its wall. Not for the role "devices".
   shm::WallStats wall();
   const shm::DeviceSlots& devices() const { return **devices_; }
-  // The last health of the device with this name; nothing before the first.
+  // The latest health of the device with this name; nothing before the first report.
   std::optional<DeviceHealth> health(const std::string& device) const;
 
-  // Who draws its wall, as it says: "EGL, llvmpipe (...), two contexts". Not for the role
-  // "devices".
+  // How its wall draws, as merlind reports it: "EGL, llvmpipe (...), two contexts". Not for the
+  // role "devices".
   std::string renderer() const;
 
   // Kills it and waits for its end.

@@ -1,4 +1,4 @@
-// The demo's wall as frames for benchmarks of outputs: its picture, its plan, its rate.
+// The demo's wall as frames for benchmarks of outputs: its picture, plan and rate.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace merlin::bench {
 
 inline constexpr double kRate_hz = 30;         // the demo's
-inline constexpr double kDrawingShare = 0.65;  // of the period: the demo's median
+inline constexpr double kDrawingShare = 0.65;  // share of the period: the demo's median
 
 inline double msOf(Duration d) { return 1000 * toSeconds(d); }
 
@@ -22,7 +22,7 @@ struct Picture {
   std::vector<std::uint8_t> pixels;  // RGBA
 };
 
-// Ends the benchmark where the picture cannot be read.
+// Ends the benchmark if the picture cannot be read.
 inline Picture demoPicture() {
   const auto read = render::image::readImage(MERLIN_SOURCE_DIR "/config/wall.png");
   if (!read) didNotRun("the picture", read.error().what, "run it in a source tree");
@@ -34,14 +34,14 @@ inline Picture demoPicture() {
   return picture;
 }
 
-// One tile that is the whole picture.
+// A plan with one tile that covers the whole picture.
 inline render::tiles::TilePlan planOf(const Picture& picture) {
   render::tiles::TilesSettings settings;
   settings.frame_width = settings.tile_width = picture.width;
   settings.frame_height = settings.tile_height = picture.height;
   settings.tiles = {{"wall", render::tiles::TileKind::kWall, 0, 0, 0}};
   auto plan = render::tiles::planTiles(settings);
-  if (!plan) didNotRun("the wall", plan.error().what, "mend the benchmark");
+  if (!plan) didNotRun("the wall", plan.error().what, "fix the benchmark");
   return *std::move(plan);
 }
 

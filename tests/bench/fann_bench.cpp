@@ -1,6 +1,8 @@
-// ./dev bench posture: recall beside FANN with the same weights; a pass in double judges both.
+// ./dev bench posture: recall compared with FANN with the same weights; a pass in double precision
+// is the reference for both.
 //
-// Built twice, since FANN's libraries share their names: with its floats and with its doubles.
+// Built twice, once with FANN's floats and once with its doubles, since the two libraries use the
+// same names.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -64,7 +66,7 @@ nn::TrainingWeights widen(const nn::Weights& weights) {
 using FannInput = std::array<fann_type, nn::kInputs>;
 
 struct Differences {
-  double between = 0, ours = 0, theirs = 0;  // the last two: from the pass in double
+  double between = 0, ours = 0, theirs = 0;  // `ours` and `theirs`: from the pass in double
 };
 
 Differences differencesOf(const nn::PostureNetwork& network, const std::vector<nn::Input>& inputs) {
@@ -140,7 +142,7 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("Recall beside FANN with the same weights.");
+  CLI::App app("Recall compared with FANN with the same weights.");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench(

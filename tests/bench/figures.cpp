@@ -33,7 +33,7 @@ Measured shareOf(std::uint64_t part, std::uint64_t whole, std::string_view what)
 }
 
 Measured quantileOf(const std::vector<double>& values, double share, std::string_view what) {
-  if (values.empty()) return Measured::of(0, 0, what);  // throws
+  if (values.empty()) return Measured::of(0, 0, what);  // throws, since the count is 0
   std::vector<double> sorted = values;
   const auto at = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(at), sorted.end());
@@ -58,7 +58,7 @@ Measured scaled(const Measured& measured, double factor) {
   return Measured::of(factor * measured, measured.count(), "measurements");
 }
 
-// As in soak/measures.py, of which the tests are the same.
+// The same method as in soak/measures.py; both pass the same tests.
 Slope slopeOf(const std::vector<std::pair<double, double>>& points, std::string_view what) {
   if (points.size() < 10)
     throw DidNotRun(fmt::format("{} {} are too few for a slope", points.size(), what));
@@ -117,8 +117,8 @@ void note(std::string_view what) {
 }
 
 int runBench(const std::string& bench, bool json, const std::function<bool(Report&)>& measure) {
-  // Unexpected exceptions too (an invalid configuration, a folder that cannot be made) must leave
-  // no figure.
+  // No figure must be printed after an unexpected exception either (an invalid configuration, a
+  // folder that cannot be made).
   try {
     Report report(bench);
     const bool kept = measure(report);

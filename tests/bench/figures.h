@@ -1,10 +1,10 @@
-// Output of every benchmark, for people and for programs (--json), and the rule that a benchmark
-// whose subject did not run fails and prints no figure.
+// The output of every benchmark, for people and for programs (--json), and the rule that a
+// benchmark whose subject did not run fails and prints no figure.
 //
-// A figure is made from at least one measurement: Measured cannot be made otherwise. Where there is
-// none, where a subject does not start or ends early, DidNotRun ends the benchmark. So nothing is
-// printed on standard output before everything has been measured; progress of a long benchmark goes
-// to standard error (note).
+// A figure is made from at least one measurement, since Measured cannot be made otherwise. If there
+// is no measurement, or if a subject does not start or ends early, DidNotRun ends the benchmark. So
+// nothing is printed on standard output before everything has been measured; a long benchmark
+// reports its progress on standard error (note).
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,7 @@ class Measured {
   std::uint64_t count_;
 };
 
-// part / whole, where `whole` is the number of things counted.
+// part / whole; `whole` is the number of things that were counted.
 Measured shareOf(std::uint64_t part, std::uint64_t whole, std::string_view what);
 
 // The quantile at `share`, 0..1.
@@ -54,7 +54,7 @@ Measured quantileOf(const std::vector<double>& values, double share, std::string
 Measured medianOf(const std::vector<double>& values, std::string_view what);
 Measured meanOf(const std::vector<double>& values, std::string_view what);
 
-// Throws DidNotRun also if `under` is zero, since then its subject did not run.
+// Throws DidNotRun also if `under` is zero, since its subject did not run then.
 Measured ratioOf(const Measured& over, const Measured& under, std::string_view what);
 
 // The value multiplied by `factor`, for another unit; the count stays.
@@ -98,9 +98,9 @@ class Report {
 // Reports progress on standard error at once; figures do not belong here.
 void note(std::string_view what);
 
-// A benchmark's main() after its options were read. `measure` returns whether the figures are
-// within their limits. Returns the exit status: 0; 1 if they are not, or, with a message and
-// without a figure, if a subject did not run.
+// The rest of a benchmark's main() after it has read its options. `measure` returns whether the
+// figures are within their limits. Returns the exit status: 0 if they are; 1 if they are not, or,
+// with a message and without figures, if a subject did not run.
 int runBench(const std::string& bench, bool json, const std::function<bool(Report&)>& measure);
 
 }  // namespace merlin::bench

@@ -1,6 +1,5 @@
-"""What every benchmark in Python prints, and the rule that one whose subject did not run fails and
-prints no figure. As figures.h, which says why. Python's own library alone.
-"""
+"""The output of every benchmark in Python, and the rule that a benchmark whose subject did not run fails and
+prints no figure; figures.h gives the reasons. Uses Python's standard library alone."""
 import json
 import math
 import os
@@ -9,16 +8,17 @@ import sys
 
 
 class DidNotRun(Exception):
-    """The message that the benchmark ends with."""
+    """Ends the benchmark with this message."""
 
 
 def did_not_run(subject, found, way_out):
-    """Which subject does not run or is not there, what was found instead, and the way out."""
+    """Ends the benchmark with the subject that does not run or does not exist, what was found instead, and the
+    way out."""
     raise DidNotRun(f"{subject}: {found}; {way_out}")
 
 
 class Measured(float):
-    """A finite number made of `count` measurements, at least one. `what` names them."""
+    """A finite number made from `count` measurements, at least one; `what` names them."""
 
     def __new__(cls, value, count, what):
         if not count > 0:
@@ -40,22 +40,22 @@ def mean_of(values, what):
 
 
 class Report:
-    """What was measured so far, held back until all of it was."""
+    """The results so far, which are held back until everything has been measured."""
 
     def __init__(self, bench):
         self.bench, self.lines, self.figures, self.more = bench, [], {}, {}
 
     def text(self, line):
-        """For people: a line of the table."""
+        """Adds a line to the table for people."""
         self.lines.append(line)
 
     def figure(self, name, measured, unit):
-        """For programs: `unit` is a unit's symbol, "1" for a pure number."""
+        """Adds a figure for programs; `unit` is a unit's symbol, "1" for a pure number."""
         assert name not in self.figures, name
         self.figures[name] = {"value": float(measured), "unit": unit, "count": measured.count}
 
     def object(self):
-        """One object for programs; `more` are members of the benchmark's own."""
+        """Prints one object for programs; `more` are further members of this benchmark's own."""
         return {"bench": self.bench, "machine": {"cores": os.cpu_count()},
                 "figures": self.figures, **self.more}
 
@@ -66,12 +66,12 @@ class Report:
 
 
 def note(what):
-    """Says at once, on standard error, what a benchmark is doing: no figures."""
+    """Prints at once, on standard error, what the benchmark is doing; figures do not belong here."""
     print(what, file=sys.stderr, flush=True)
 
 
 def run(command, subject, way_out):
-    """The standard output of a command that has to succeed."""
+    """The standard output of a command; ends the benchmark if the command fails."""
     command = [str(word) for word in command]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -84,9 +84,9 @@ def run(command, subject, way_out):
 
 
 def run_bench(bench, as_json, measure):
-    """The whole of a benchmark's main() after its options were read: ends the process. `measure`
-    says whether what was measured is what is promised."""
-    # Also what was not foreseen leaves no figure.
+    """The rest of a benchmark's main() after it has read its options; ends the process. `measure` returns
+    whether the figures are within their limits."""
+    # No figure must be printed after an unexpected exception either.
     try:
         report = Report(bench)
         kept = measure(report)

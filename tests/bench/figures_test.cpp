@@ -68,7 +68,7 @@ TEST(Figures, TextIsForPeopleAndOneObjectForPrograms) {
 TEST(Figures, WhoseSubjectDidNotRunPrintsNoFigureAndFails) {
   for (const bool json : {false, true}) {
     const Said s = said(json, [](Report& report) {
-      measureTwo(report);  // this part did run
+      measureTwo(report);  // this part has run
       didNotRun("merlind", "it ended", "build it");
       return true;
     });

@@ -1,5 +1,6 @@
-// ./dev bench frames: a fixed script of frames of each model, as hashes. Equal hashes before and
-// after a change of the drawing code mean equal pixels. Not for comparing machines: drivers differ.
+// ./dev bench frames: hashes of a fixed script of frames of each model. Equal hashes before and
+// after a change of the drawing code mean equal pixels. Not for comparing machines, since drivers
+// differ.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -26,7 +27,7 @@ std::uint64_t hash(std::span<const std::uint8_t> bytes, std::uint64_t h = 0xcbf2
   return h;
 }
 
-// A turn and a walk past the model; the first is the usual start.
+// The poses turn the model and move it past the viewer; the first one is the usual start.
 Isometry3f pose(int i) {
   Isometry3f T_eye_model(Eigen::Translation3f(0.12F * static_cast<float>(i), 0.05F, -2.5F));
   T_eye_model.rotate(Eigen::AngleAxisf(0.5F * static_cast<float>(i), Eigen::Vector3f::UnitY()));
@@ -56,7 +57,7 @@ class Script {
                        settings_.gl.backend == render::gl::GlBackend::kEgl ? "egl" : "osmesa",
                        settings_.gl.contexts);
   }
-  // A picture of one colour is none of the model.
+  // Ends the benchmark if the picture has one colour only, since then the model was not drawn.
   void expectDrawn() const {
     const auto pixels = renderer_->pixels();
     if (std::equal(pixels.begin() + 4, pixels.end(), pixels.begin()))
@@ -124,7 +125,7 @@ bool run(const std::vector<std::string>& paths, Report& report) {
 int main(int argc, char** argv) {
   std::vector<std::string> models;
   bool json = false;
-  CLI::App app("A fixed script of frames of each model, as hashes.");
+  CLI::App app("Hashes of a fixed script of frames of each model.");
   app.add_option("models", models, "Models (.mrm)")->required();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);

@@ -1,9 +1,9 @@
 // ./dev bench fuzz: random and mutated bytes through every parser, in a build with AddressSanitizer
-// and UBSan: a fault ends it. Prints how many packets each recovered.
+// and UBSan: a fault ends the run. Prints how many packets each parser recovered.
 //
-// Half of the bytes are random; the other half is a good stream in which every so often a byte is
-// flipped, lost, doubled or replaced by a burst, or four bytes by an extreme length, so that a
-// parser is hit in the middle of its work.
+// Half of the bytes are random. The other half is a good stream with occasional damage: a byte is
+// flipped, lost, doubled or replaced by a burst, or four bytes are replaced by an extreme length.
+// So parsers are hit in the middle of their work.
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -41,7 +41,7 @@ using Feed = std::function<std::uint64_t(const std::string&)>;
 struct Target {
   const char* name;
   std::function<Feed()> make;
-  std::function<std::string(Random&)> packet;  // a good one
+  std::function<std::string(Random&)> packet;  // makes a good packet
 };
 
 std::int16_t anyShort(Random& r) { return static_cast<std::int16_t>(r.next()); }
@@ -119,8 +119,8 @@ std::string vrpnMessage(Random& r) {
   return bytes;
 }
 
-// The wire has no marks at which a message begins: the driver closes a connection that is broken.
-// A new one begins with the next piece, and with every sixteenth one.
+// The format has no marks by which a reader finds the beginning of a message, so the driver closes
+// a connection with a fault. A new one begins with the next piece, and with every sixteenth one.
 Feed vrpnFeed() {
   auto parser = std::make_shared<vrpn::Parser>();
   return [parser, pieces = 0](const std::string& bytes) mutable {
@@ -265,7 +265,7 @@ const Target kTargets[] = {
      transcriptLine},
 };
 
-// The packet, now and then damaged.
+// The packet, sometimes damaged.
 std::string mutated(std::string bytes, Random& r) {
   if (bytes.empty()) return bytes;
   const std::size_t at = r.below(bytes.size());
@@ -287,7 +287,7 @@ struct Count {
   std::uint64_t bytes = 0, sent = 0, recovered = 0, from_noise = 0;
 };
 
-// Packets beyond those that were sent whole are chance: random bytes that form a packet.
+// Packets beyond the number that was sent whole are random bytes that happen to form a packet.
 void fuzz(const Target& target, double most, std::uint64_t seed, Report& report) {
   note(fmt::format("{} ...", target.name));
   Random random(seed);
@@ -331,11 +331,11 @@ int main(int argc, char** argv) {
   double bytes = 1e8;
   std::uint64_t seed = 1;
   bool json = false;
-  CLI::App app("Random and mutated bytes through every parser.");
-  app.add_option("--bytes", bytes, "Through each")
+  CLI::App app("Gives random and mutated bytes to every parser.");
+  app.add_option("--bytes", bytes, "Number of bytes for each parser")
       ->check(CLI::Range(1.0, 1e15))
       ->capture_default_str();
-  app.add_option("--seed", seed)->capture_default_str();
+  app.add_option("--seed", seed, "Seed of the bytes")->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz", json, [&](merlin::bench::Report& report) {

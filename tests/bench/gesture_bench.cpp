@@ -1,6 +1,7 @@
-// ./dev bench gesture: the shipped gestures in time, of people on whom neither the training nor any
-// choice was made: rates and confusions, gestures invented in hours of ordinary motion, beside the
-// nearest template without rejection; a training from few takes of one person; cost of a pose.
+// ./dev bench gesture: the shipped gestures on people who influenced neither the training nor any
+// other choice. Measures rates and confusions, gestures that are reported in hours of ordinary
+// motion (compared with the nearest template without rejection), a training from few takes of one
+// person, and the cost for a pose.
 //
 // All people are synthetic. Absolute times differ between machines; ratios are within one run.
 #include <algorithm>
@@ -20,12 +21,12 @@
 namespace merlin::bench {
 namespace {
 
-constexpr std::uint64_t kFirst = 7001;  // on people from here on no choice was made
+constexpr std::uint64_t kFirst = 7001;  // people from this number on influenced no choice
 constexpr std::size_t kPeople = 60, kTimes = 5, kOrdinaryPeople = 60, kKindPeople = 20;
 constexpr double kOrdinary_s = 1200, kKind_s = 600, kAfterTake_s = 0.8;
 constexpr std::uint64_t kSeed = 77;
 
-// Adds one person after another, so that no recording of many hours is in memory.
+// Evaluates one person after another, so that no recording of many hours is in memory.
 template <typename Record>
 nn::GestureEvaluation evaluateAll(const nn::GestureModel& model, std::size_t people,
                                   Record record) {
@@ -63,7 +64,7 @@ Measured perTenMinutes(const nn::GestureEvaluation& e) {
                       "seconds");
 }
 
-// Returns whether what was promised holds.
+// Returns whether the figures keep what MERLIN promises.
 bool held(const nn::GestureModel& model, Report& report) {
   const auto gestures = evaluateAll(
       model, kPeople, [](std::uint64_t n) { return nn::test::gesturesOf(n, 1, kTimes, kSeed); });
@@ -100,7 +101,7 @@ void kinds(const nn::GestureModel& model, Report& report) {
   report.text("\n");
 }
 
-// A stroke's path, resampled by length, about its middle, of size 1.
+// The path of a stroke, resampled at equal lengths, moved to its middle, and scaled to size 1.
 constexpr std::size_t kTemplatePoints = 16;
 using Template = std::array<float, 4 * kTemplatePoints>;
 
@@ -141,8 +142,8 @@ struct LabelledTemplate {
   Template path;
 };
 
-// Calls use(stroke, take) for each stroke of the recording; `take`: the one in which it mostly
-// lies, null for none.
+// Calls use(stroke, take) for each stroke of the recording. `take`: the take that contains most of
+// it, or null.
 template <typename Use>
 void eachStroke(const nn::PathRecording& recording, Use use) {
   for (const auto session : nn::sessionsOf(recording)) {
@@ -160,7 +161,7 @@ void eachStroke(const nn::PathRecording& recording, Use use) {
   }
 }
 
-// The plain way: each stroke is the gesture of the nearest of 600 templates, whatever it is.
+// The simplest method: each stroke is taken for the gesture of the nearest of 600 templates.
 void nearestTemplate(Report& report) {
   std::vector<LabelledTemplate> templates;
   const nn::PathRecording train = nn::test::gesturesOf(1, 20, 3, 1);
@@ -199,7 +200,7 @@ void nearestTemplate(Report& report) {
   report.figure("nearest_template.invented_per_10_min", ten, "1");
 }
 
-// What the limits of distance alone do, without the discriminants.
+// Evaluates the limits of distance alone, without the discriminants.
 void withoutDiscriminant(nn::GestureModel model, Report& report) {
   for (nn::TrainedGesture& gesture : model.gestures) gesture.discriminant.reset();
   nn::GestureEvaluation e;
@@ -215,7 +216,7 @@ void withoutDiscriminant(nn::GestureModel model, Report& report) {
   report.figure("without_discriminant.invented_per_10_min", invented, "1");
 }
 
-// One person teaches, five takes of each gesture; ordinary motion of 20 others goes with it.
+// One person records five takes of each gesture; ordinary motion of 20 other people is added.
 void fewTakes(Report& report) {
   std::size_t lost = 0;
   std::vector<nn::LabelledStroke> ordinary;
@@ -260,7 +261,7 @@ void cost(const nn::GestureModel& model, Report& report) {
     next = 0;
     shift_ns += poses.back().pose.at_ns - poses.front().pose.at_ns + 10'000'000;
   });
-  // The longest stroke that there is, with which the most is to do at once.
+  // The longest possible stroke, which needs the most work for a single pose.
   std::vector<nn::PathPoint> longest(600);
   for (std::size_t n = 0; n < longest.size(); ++n) {
     const auto t = static_cast<float>(n) * 0.01F;
@@ -298,7 +299,7 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("Gestures in time: rates, confusions, inventions, few takes, cost.");
+  CLI::App app("Gestures: rates, confusions, false reports, training from few takes, cost.");
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("gesture", json, merlin::bench::run);

@@ -1,9 +1,11 @@
-// ./dev bench governor: MERLIN's law beside those of others, on a virtual clock: under a minute.
+// ./dev bench governor: MERLIN's control law compared with those of other systems, on a virtual
+// clock; takes under a minute.
 //
 // Every law sees the same renderer (tests/support/governor_plant.h) with the same noise and the
-// same hiccups, 20 seeds of 1,200 frames each. MERLIN's frames begin on the wall's grid, where one
-// that runs over takes from the next one's time and counts for every deadline that passes; the
-// others' are each judged alone, which is kinder to them. The first second is not counted.
+// same hiccups: 20 seeds of 1,200 frames each. MERLIN's frames begin on the wall's grid, where a
+// frame that overruns takes time from the next one and counts as late for every deadline that
+// passes. The others' frames are each judged alone, which is milder. The first second is not
+// counted.
 #include <cstdlib>
 #include <fstream>
 
@@ -21,7 +23,7 @@ using test::Outcome;
 using test::Plant;
 using test::Trace;
 
-// Mean and worst of some seeds.
+// Mean and worst value over several seeds.
 struct Figure {
   double sum = 0, worst = 0;
   std::size_t count = 0;
@@ -64,7 +66,7 @@ struct Scenario {
   enum Kind { kSteady, kSteps, kRamp, kRecorded } kind;
 };
 
-// A trace of the real renderer, with its own noise and hiccups; the file says how it was made.
+// A trace of the real renderer with its own noise and hiccups; the file says how it was recorded.
 Trace recordedTrace(const std::string& path) {
   constexpr const char* kWayOut = "--trace names tests/data/governor_demo.txt";
   std::ifstream in(path);
@@ -130,7 +132,7 @@ class Verdicts {
   int short_ = 0;
 };
 
-// A figure, or nothing where a scenario has none such.
+// A figure as text; empty if the scenario has none.
 std::string meanAndWorst(bool there, const Figure& x) {
   return there ? fmt::format("{:.1f} ({:.0f})", x.mean(), x.worst) : "";
 }
@@ -161,8 +163,9 @@ void judge(const Scenario& s, const Figures& f, Verdicts& v, Report& report) {
   const bool steps = s.kind == Scenario::kSteps, made = s.kind != Scenario::kRecorded;
   const bool varies = s.kind == Scenario::kRamp || !made;
   const double within = std::string_view(s.name).find("x 4") != std::string_view::npos ? 5 : 3;
-  // With hiccups the mean run: one that falls on the step's own frame makes it longer by itself.
-  report.text(kRow, "  asked of MERLIN", verdict(true, f.late_with.mean() <= 0.015),
+  // With hiccups the mean counts, since a hiccup on the frame of the step makes a run longer by
+  // itself.
+  report.text(kRow, "  MERLIN's limits", verdict(true, f.late_with.mean() <= 0.015),
               verdict(made, f.late_without.mean() <= 0.005),
               verdict(true, f.used.mean() >= (varies ? 0.80 : 0.85)),
               verdict(steps, f.settled.worst <= within), verdict(steps, f.back.worst <= 40),
@@ -202,9 +205,11 @@ int main(int argc, char** argv) {
   std::size_t seeds = 20;
   std::string trace = MERLIN_SOURCE_DIR "/tests/data/governor_demo.txt";
   bool json = false;
-  CLI::App app("MERLIN's governor beside other laws, on a virtual clock.");
-  app.add_option("--seeds", seeds, "Runs of each law on each trace")->check(CLI::Range(1, 1000));
-  app.add_option("--trace", trace, "Frames of the real renderer")->capture_default_str();
+  CLI::App app("MERLIN's governor compared with other control laws, on a virtual clock.");
+  app.add_option("--seeds", seeds, "Number of runs of each law on each trace")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--trace", trace, "File with recorded frames of the real renderer")
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("governor", json, [&](merlin::bench::Report& report) {

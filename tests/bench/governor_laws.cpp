@@ -11,7 +11,7 @@ namespace {
 
 using test::kPeriod_s;
 
-// [GOURLEY98] figure 5.36: the triangles drawn within a second give the triangles/s; divided by the
+// [GOURLEY98] figure 5.36: the triangles drawn within a second are the triangles/s. Divided by the
 // desired rate they give the next resolution, unless the change is within a tolerance (5 per cent
 // here; the text gives none).
 class Law1998 final : public Law {

@@ -1,6 +1,6 @@
-// How other systems hold a frame rate, for comparison: their published control laws, written anew;
-// the vendors' own code may do better. Each law observes a frame's time and returns the number of
-// triangles for the next one.
+// How other systems hold a frame rate, for comparison: their published control laws, implemented
+// anew; the vendors' own code may do better. Each law observes the time of a frame and returns the
+// number of triangles for the next one.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// ./dev bench hostile: shapes that have many triangles where others have few, reduced as merlin
-// mesh reduce does, beside a regular mesh of the same number of triangles, in turns.
+// ./dev bench hostile: shapes with many triangles at one vertex or edge, reduced as by merlin mesh
+// reduce, compared with a regular mesh of the same number of triangles, in turns.
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -15,14 +15,14 @@
 namespace merlin::bench {
 namespace {
 
-constexpr double kMostRatio = 10;  // of a shape's time to the regular mesh's
+constexpr double kMostRatio = 10;  // limit of a shape's time relative to that of the regular mesh
 
 struct Options {
   std::size_t triangles = 100'000;
   int turns = 3;
 };
 
-// All that a reduction does with a mesh that was read, seconds.
+// Seconds of everything that a reduction does after it has read a mesh.
 double secondsOf(const test::HostileShape& shape, std::size_t triangles) {
   render::mesh::Mesh mesh = shape.make(triangles);
   const auto began = std::chrono::steady_clock::now();
@@ -37,7 +37,7 @@ double secondsOf(const test::HostileShape& shape, std::size_t triangles) {
 }
 
 bool run(const Options& options, Report& report) {
-  const std::vector<test::HostileShape> shapes = test::hostileShapes();  // the first is the regular
+  const std::vector<test::HostileShape> shapes = test::hostileShapes();  // the first one is regular
   std::vector<std::vector<double>> seconds(shapes.size());
   for (int turn = 0; turn < options.turns; ++turn) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -58,7 +58,7 @@ bool run(const Options& options, Report& report) {
     report.figure(name + ".to_regular", ratio, "1");
     kept = kept && ratio.value() <= kMostRatio;
   }
-  report.text("at most {:.0f} is asked: {}\n", kMostRatio, kept ? "kept" : "MISSED");
+  report.text("the limit is {:.0f}: {}\n", kMostRatio, kept ? "kept" : "MISSED");
   return kept;
 }
 
@@ -66,11 +66,13 @@ bool run(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app{"Reduces hostile shapes beside a regular mesh of the same size"};
+  CLI::App app{"Reduces hostile shapes and, for comparison, a regular mesh of the same size"};
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--triangles", options.triangles, "Of each shape")->capture_default_str();
-  app.add_option("--turns", options.turns, "Of all shapes")->capture_default_str();
+  app.add_option("--triangles", options.triangles, "Number of triangles of each shape")
+      ->capture_default_str();
+  app.add_option("--turns", options.turns, "Number of turns; each reduces all shapes")
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("hostile", json, [&](merlin::bench::Report& report) {

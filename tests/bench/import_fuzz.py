@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Damaged models and FITS files through the isolated merlin-import: what becomes of each.
+"""Gives damaged models and FITS files to the isolated merlin-import, and counts the outcomes.
 
-The files are synthetic (tests/support/textured_models.py, and what is written here). Each input is
-one of them with one to four changes: bytes, pieces that are cut out or doubled, numbers that become
-large. The same seed gives the same files. Every run must end by itself with a result or with one
-line that says why not; a library that crashes is counted, and must leave nothing beside its folder.
+The files are synthetic (tests/support/textured_models.py, and those written here). Each input is one of them
+with one to four changes: bytes are changed, pieces cut out or doubled, numbers made large. The same seed gives
+the same files. Every run must end by itself with a result, or with one line that gives the reason why there is
+none. A library that crashes is counted, and must leave no file outside of its folder.
 """
 import argparse
 import base64
@@ -107,13 +107,13 @@ def one(options, pictures, number):
         (place / "work").mkdir()
         for picture in pictures:
             shutil.copy(picture, place)
-        if number < len(options.originals):  # as they are, to see that the program reads them
+        if number < len(options.originals):  # undamaged, to see that the program reads it
             kind, form, name, data = options.originals[number]
         (place / name).write_bytes(data if number < len(options.originals) else changed(data, rng))
         before = sorted(p.name for p in place.iterdir())
         outcome, made = outcome_of(options.program, kind, form, place / name, place / "work")
         if sorted(p.name for p in place.iterdir()) != before:
-            outcome = "FAULT: something was written beside its folder"
+            outcome = "FAULT: a file was written outside of its folder"
         if number < len(options.originals) and not made:
             outcome = f"FAULT: {outcome}, though it is not damaged"
         if made and kind == "model":
@@ -126,10 +126,10 @@ def one(options, pictures, number):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=5000)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=5000, help="number of files")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the changes")
     parser.add_argument("--first", type=int, default=0, help="number of the first file")
-    parser.add_argument("--seconds", type=float, default=600, help="no further files after that time")
+    parser.add_argument("--seconds", type=float, default=600, help="no further file is begun after this time")
     parser.add_argument("--bin", required=True, help="folder of merlin-import and merlin")
     options = parser.parse_args()
     options.program, options.merlin = options.bin + "/merlin-import", options.bin + "/merlin"

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""./dev bench kill: kill -9 of the wall's and of the devices' process, again and again, until there is a
-picture and data again, and what the other process does meanwhile; and how long a start takes.
+"""./dev bench kill: kills merlind's roles with kill -9, and measures how soon there is a picture and data again.
 
-A supervisor restarts at once; what systemd waits before (RestartSec) is added and said apart. The devices
-are emulated and outlive merlind, as real ones do. Times are those of the kernel's monotonic clock: of the
-kill, of the last pixel of the first new frame, of the first new sample of the slowest device.
+The wall's and the devices' process are killed repeatedly. Also measured: what the other process does meanwhile, and
+how long a start takes.
+
+The supervisor of this benchmark restarts a process at once; the time that systemd waits before (RestartSec) is
+added and reported separately. The devices are emulated and outlive merlind, as real ones do. Times are those of
+the kernel's monotonic clock: of the kill, of the last pixel of the first new frame, of the first new sample of
+the slowest device.
 """
 import argparse
 import math
@@ -20,23 +23,23 @@ import figures
 import roles
 from figures import Measured
 
-PICTURE_S, DATA_S, READY_S = 2.0, 1.0, 1.0  # bounds: of the picture, of data, of a start
-RESTART_SEC = (0.1, 1.0)  # the units', and a common setting
+PICTURE_S, DATA_S, READY_S = 2.0, 1.0, 1.0  # limits of the time to the picture, to data, and of a start
+RESTART_SEC = (0.1, 1.0)  # that of the units, and a common setting
 POLL_S, GIVE_UP_S, SETTLE_S = 0.0005, 30, 0.5
-BEAT_S = 0.5  # heartbeats come ten times a second; beyond this clients take a role for gone
-TRACKER_HZ, MOST_MISSING = 120, 2  # the emulated Fastrak's; what the ends of the interval may leave
+BEAT_S = 0.5  # heartbeats come ten times a second; after this time clients regard a role as gone
+TRACKER_HZ, MOST_MISSING = 120, 2  # rate of the emulated Fastrak; tolerance for the ends of the interval
 SHARES = (("minimum", 0), ("median", 0.5), ("95 %", 0.95), ("99 %", 0.99), ("maximum", 1))
 WAY_OUT = "run merlind by hand, its log says why"
 
 
 def quantile(values, share):
-    """The least value that so many of all are not above."""
+    """The smallest value that is not below this share of all values."""
     values = sorted(values)
     return values[max(0, math.ceil(share * len(values)) - 1)]
 
 
 class Other:
-    """The process that is not killed, looked at again and again: whether it goes on."""
+    """Watches the process that is not killed: whether it goes on."""
 
     def __init__(self, segment):
         self.segment = segment
@@ -48,7 +51,7 @@ class Other:
         self.late_s = max(self.late_s, (time.monotonic_ns() - heartbeat_ns) / 1e9)
 
     def missed(self):
-        """In words, what it missed; empty: nothing."""
+        """What the process missed, in words; empty: nothing."""
         self.segment.reopen()
         if self.segment.value("segment.generation") != self.generation:
             return "it was started anew"
@@ -56,8 +59,7 @@ class Other:
 
 
 class Records:
-    """Whether the tracker's records came without a gap: as many as its rate gives in the time between the
-    first and the last of them."""
+    """Whether the tracker's records came without a gap: as many as its rate gives between the first and the last."""
 
     def __init__(self, segment):
         self.segment, self.begin = segment, self.now(segment)
@@ -93,10 +95,10 @@ class Bench:
         for role, program in self.programs.items():
             program.start()
             self.wait_for_word("READY=1", role)
-        time.sleep(2)  # the governor has learnt
+        time.sleep(2)  # by now the governor knows the machine
 
     def wait_for_word(self, word, role):
-        """When merlind told its supervisor this."""
+        """Waits until merlind has sent this word to its supervisor; returns when that was."""
         while True:
             try:
                 said = self.told.recv(4096).decode()
@@ -106,18 +108,18 @@ class Bench:
                 return time.monotonic_ns()
 
     def new_picture(self, since_ns):
-        """The time of the oldest frame that was finished after `since_ns`; 0: there is none."""
+        """The end of the oldest frame that was finished after `since_ns`; 0: there is none."""
         finished = self.segments["framebuffer"].values("buffer.finished_ns") or []
         return min((ns for ns in finished if ns > since_ns), default=0)
 
     def new_data(self, since_ns):
-        """When the first samples of all devices were there."""
+        """The time at which the first samples of all devices had come."""
         segment = self.segments["devices"]
         all_ = [segment.value(f"{name}.received_ns") for name in ("glove", "tracker1", "ball")]
         return max(all_) if min(all_) > since_ns else 0
 
     def kill(self, role, shown, came, other):
-        """Seconds from the kill to what the role delivers, in its segment `shown`."""
+        """Seconds from the kill until the role delivers again, as its segment `shown` shows."""
         program, segment = self.programs[role], self.segments[shown]
         began = time.monotonic_ns()
         program.process.send_signal(signal.SIGKILL)
@@ -134,7 +136,7 @@ class Bench:
             time.sleep(POLL_S)
 
     def kills(self, role, shown, came, other_role):
-        """The times of all kills, and what the other one missed."""
+        """The times of all kills, and what the other process missed."""
         times, missed = [], []
         for i in range(self.options.times):
             other = Other(self.segments[other_role])
@@ -152,12 +154,12 @@ class Bench:
         return times, missed
 
     def deadlines(self):
-        """(deadlines while something moved, those that were missed) of the wall."""
+        """(deadlines while something moved, missed ones) of the wall."""
         self.segments["wall"].reopen()
         return [self.segments["wall"].value(f"wall.{name}") for name in ("deadlines", "late")]
 
     def starts(self, role):
-        """Seconds from exec to READY; the other role runs, the model was read before."""
+        """Seconds from exec to READY; the other role is running, and the model was read before."""
         times, program = [], self.programs[role]
         for _ in range(self.options.times):
             code = program.stop()
@@ -176,7 +178,7 @@ class Bench:
 
 
 def row(report, name, times, bound):
-    """Whether all are within the bound."""
+    """Adds a row; returns whether all times are within the limit."""
     values = [(label, quantile(times, share)) for label, share in SHARES]
     over = sum(t > bound for t in times)
     report.text(f"{name:32}" + "".join(f"{1000 * value:9.0f}" for _, value in values)
@@ -188,7 +190,7 @@ def row(report, name, times, bound):
 
 
 def waits(report, name, times, bound):
-    """What is added where systemd waits before it starts a unit again: said, not judged."""
+    """Adds the time that systemd waits before it restarts a unit; reported, but not judged."""
     for wait in RESTART_SEC:
         over = sum(t + wait > bound for t in times)
         report.text(f"  with RestartSec={1000 * wait:.0f}ms: at most {1000 * (max(times) + wait):.0f} ms; "
@@ -231,9 +233,9 @@ def measure(options, report):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bin", required=True, help="the folder of merlin and merlind")
-    parser.add_argument("--times", type=int, default=100, help="kills of each role, and starts")
-    parser.add_argument("--rate", type=float, default=30, help="frames a second")
-    parser.add_argument("--seed", type=int, default=1, help="of the emulated devices")
+    parser.add_argument("--times", type=int, default=100, help="number of kills of each role, and of starts")
+    parser.add_argument("--rate", type=float, default=30, help="frame rate of the wall in Hz")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the emulated devices")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     if options.times < 1:

@@ -1,13 +1,13 @@
-// ./dev bench latency: from a byte on a line to a client of the shared memory, for MERLIN's reader,
-// for the same with idle cores kept awake (cpu_latency_us = 0), for that reader over a line
-// that is asked once a millisecond, over one that is asked without a pause, and for a bare blocking
-// loop without a device: interleaved in one run, over a pseudo-terminal and over a socket pair,
-// idle and with all cores loaded. That is a glove; each other kind of device is measured beside a
-// bare loop of its own: those of 1998 in their dialogue, those of today as their ports carry what
-// they say (records of an input device, a VRPN server's messages, datagrams).
+// ./dev bench latency: time from a byte on a line to a client of the shared memory. Compares
+// MERLIN's reader, the same with idle cores kept awake (cpu_latency_us = 0), the same on a line
+// that is polled once a millisecond, on a line that is polled without a pause, and a bare blocking
+// loop without a driver. They take turns in one run, over a pseudo-terminal and over a socket pair,
+// idle and with all cores loaded. The device is a glove; each other kind of device is measured
+// beside a bare loop of its own: those of 1998 with their dialogue, present-day ones in the form in
+// which their ports deliver data (records of an input device, a VRPN server's messages, datagrams).
 //
-// Absolute times belong to this machine and this minute; the ratios are what counts. A pty's bytes
-// pass through a kernel worker, a socket pair's do not.
+// Absolute times are those of this machine at this minute; only ratios can be compared. The bytes
+// of a pty pass through a kernel worker, those of a socket pair do not.
 #include <functional>
 #include <map>
 #include <thread>
@@ -49,7 +49,7 @@ void printRow(Report& report, const std::string& line, const std::string& load, 
                 "1");
 }
 
-// Processes that take all cores, for as long as this is there.
+// Processes that load all cores as long as this object exists.
 class Hogs {
  public:
   explicit Hogs(unsigned count) {
@@ -105,7 +105,7 @@ Rows benchLine(const Setting& s, Line line, bool loaded) {
 
 const char* verdict(bool good) { return good ? "yes" : "NO"; }
 
-// Compares the measurements with what MERLIN's readers promise.
+// Compares the measurements with the limits that MERLIN states for its readers.
 void judge(Reader kind, const Rows& pair_idle, const Rows& pty_idle, const Rows& pair_loaded,
            Report& report) {
   const std::string name = kReaderNames[kind];
@@ -113,18 +113,19 @@ void judge(Reader kind, const Rows& pair_idle, const Rows& pty_idle, const Rows&
   const auto pair = ratioOf(pair_idle.at(kSleeping).median, idle.median, "samples");
   const auto pty = ratioOf(pty_idle.at(kSleeping).median, pty_idle.at(kind).median, "samples");
   report.text(
-      "{}: median of the sleeping loop's, idle: 1/{:.1f} (socket pair), 1/{:.1f} (pty); asked at "
-      "most 1/20: {}\n",
+      "{}: median of the sleeping loop's, idle: 1/{:.1f} (socket pair), 1/{:.1f} (pty); limit "
+      "1/20: {}\n",
       name, pair.value(), pty.value(), verdict(pair >= 20 && pty >= 20));
   report.text(
-      "{}: socket pair p99: idle {:.0f} us (asked 200): {}; loaded {:.0f} us (asked 2000): {}\n",
+      "{}: socket pair p99: idle {:.0f} us (limit 200): {}; loaded {:.0f} us (limit 2000): {}\n",
       name, idle.p99.value(), verdict(idle.p99 <= 200), loaded.p99.value(),
       verdict(loaded.p99 <= 2000));
   report.figure(name + ".sleeping_by_it_on_socket_pair", pair, "1");
   report.figure(name + ".sleeping_by_it_on_pty", pty, "1");
 }
 
-// All readers; without the awake one, and said so, where this machine does not allow it.
+// All readers, except for the one with awake cores if this machine does not allow it, which is
+// reported.
 std::vector<Reader> readersHere(Report& report) {
   std::vector<Reader> readers;
   for (int kind = 0; kind < kReaders; ++kind) readers.push_back(static_cast<Reader>(kind));
@@ -153,17 +154,16 @@ void benchReaders(const Options& options, Report& report) {
   }
   const auto bare = ratioOf(pty_idle.at(kMerlin).median, pty_idle.at(kBare).median, "samples");
   const auto bare99 = ratioOf(pty_idle.at(kMerlin).p99, pty_idle.at(kBare).p99, "samples");
-  report.text(
-      "pty: {:.2f} times the bare loop's median, {:.2f} times its p99 (asked at most 1.2): {}\n",
-      bare.value(), bare99.value(), verdict(bare <= 1.2 && bare99 <= 1.2));
+  report.text("pty: {:.2f} times the bare loop's median, {:.2f} times its p99 (limit 1.2): {}\n",
+              bare.value(), bare99.value(), verdict(bare <= 1.2 && bare99 <= 1.2));
   report.figure("pty.by_bare_median", bare, "1");
   report.figure("pty.by_bare_p99", bare99, "1");
 }
 
-// The other kinds of devices beside a bare loop, which publishes a sample for each record's bytes
-// without looking at them; the rounds of both are interleaved.
+// The other kinds of devices, compared with a bare loop that publishes a sample for the bytes of
+// each record without parsing them. The rounds of both are interleaved.
 void benchKinds(const Options& options, Report& report) {
-  report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (asked at most 1.2)\n");
+  report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (limit 1.2)\n");
   Times& times = makeTimes();
   for (const Kind* kind : {&kTrackerKind, &kBallKind, &kGamepadKind, &kTouchKind, &kVrpnTrackerKind,
                            &kVrpnPadKind, &kOscKind, &kTuioKind}) {
@@ -197,10 +197,12 @@ int main(int argc, char** argv) {
   CLI::App app("Latency from a line's byte to a client of the shared memory.");
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The demo's configuration")->required();
-  app.add_option("--samples", options.round.samples, "A round")
+  app.add_option("--samples", options.round.samples, "Number of samples in a round")
       ->check(CLI::Range(1, 60'000))
       ->capture_default_str();
-  app.add_option("--rounds", options.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--rounds", options.rounds, "Number of rounds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("latency", json, [&](merlin::bench::Report& report) {

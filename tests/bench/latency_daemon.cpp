@@ -66,7 +66,7 @@ void benchCpu(const DemoOptions& options, const test::TempDir& dir, Report& repo
   daemon.stop();
   report.text(
       "three devices at full rate, with postures, status and shared memory: {:.1f} % of a "
-      "core (asked at most 5): {}\n",
+      "core (limit 5): {}\n",
       100 * share, share <= 0.05 ? "yes" : "NO");
   report.figure("devices.core_share", share, "1");
 }

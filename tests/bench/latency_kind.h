@@ -1,4 +1,4 @@
-// The kinds of devices in ./dev bench latency: what each sends, and where its samples are.
+// The kinds of devices in ./dev bench latency: their records, and the channels of their samples.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,27 @@
 namespace merlin::bench {
 
 struct Kind {
-  const char* name;      // "glove"
-  const char* emulator;  // that answers the driver's dialogue: "cyberglove"; null: greeting() does
+  const char* name;  // for example "glove"
+  // The emulator that answers the driver's dialogue, for example "cyberglove"; null: greeting()
+  // does.
+  const char* emulator;
   SampleKind kind;
   std::unique_ptr<Device> (*make)(const Clock&, SampleSink&);
   // The n-th record as the device sends it. All records of a kind have the same length.
   std::string (*record)(std::uint32_t n);
-  // What a device without an emulator says when its line is opened, whatever it is asked.
+  // The bytes that a device without an emulator sends when its line is opened.
   std::string (*greeting)() = nullptr;
 };
 
 // A CyberGlove, a Fastrak with one station, a Spaceball.
 extern const Kind kGloveKind, kTrackerKind, kBallKind;
-// A gamepad and a touch frame of the kernel, a tracker and the analogs of a VRPN server, a tracker
-// by OSC, a touch surface by TUIO: as their ports carry what they say.
+// Present-day devices in the form in which their ports deliver data: a gamepad and a touch frame of
+// the kernel, a tracker and the analogs of a VRPN server, a tracker by OSC, a touch surface by
+// TUIO.
 extern const Kind kGamepadKind, kTouchKind, kVrpnTrackerKind, kVrpnPadKind, kOscKind, kTuioKind;
 
-// Calls `use` with the channel of the first device of this kind; of a tracker its first station's.
-// `segment`: a shm::DevicesSegment, const or not.
+// Calls `use` with the channel of the first device of this kind; for a tracker, that of its first
+// station. `segment`: a shm::DevicesSegment, const or not.
 template <typename Segment, typename Use>
 auto withChannel(Segment& segment, const Kind& kind, Use use) {
   if (kind.kind == SampleKind::kGlove) return use(segment.glove[0].samples);

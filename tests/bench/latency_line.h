@@ -1,4 +1,4 @@
-// The device's end of a line in a latency benchmark: the dialogue that a driver begins with, and
+// The device's end of a line in a latency benchmark: the dialogue with which a driver begins, and
 // records at times that no reader can foresee.
 #pragma once
 
@@ -13,15 +13,15 @@ namespace merlin::bench {
 // Gives this thread real-time priority. False if that is not allowed.
 bool askForRealTime();
 
-// Lets the emulator answer what is asked on the line until `done`. `fd`: the device's end,
+// Lets the emulator answer the driver's queries on the line until `done`. `fd`: the device's end,
 // non-blocking.
 void serveDialogue(int fd, emulate::Emulator& emulator, const std::function<bool()>& done);
 
-// Says `greeting` on the line, and takes what is asked there without an answer until `done`.
+// Sends `greeting` on the line, then discards what is received there until `done`.
 void serveGreeting(int fd, const std::string& greeting, const std::function<bool()>& done);
 
 // Calls `send` with 0, 1 ... `count` - 1, at irregular intervals around the rate, so that no loop
-// can synchronise to it.
+// can synchronise to them.
 void atIrregularTimes(std::uint32_t count, double rate_hz,
                       const std::function<void(std::uint32_t n)>& send);
 

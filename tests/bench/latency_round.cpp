@@ -59,7 +59,7 @@ using Segment = shm::DevicesSegment;
 
 std::int64_t now() { return toNanoseconds(SystemClock().now()); }
 
-// Waits for the channel's next sample and notes the time, again and again.
+// Waits for the channel's next sample and stores its time of arrival, repeatedly.
 template <typename Sample>
 void noteArrivals(const shm::Channel<Sample>& channel, Times& times) {
   times.received = 0;
@@ -76,7 +76,7 @@ void noteArrivals(const shm::Channel<Sample>& channel, Times& times) {
   }
 }
 
-// A client like any other, which maps the segment.
+// A usual client, which maps the segment.
 void runClient(const std::string& name, const Kind& kind, Times& times) {
   askForRealTime();
   const auto reader = shm::SegmentReader<Segment>::open(name);
@@ -84,7 +84,7 @@ void runClient(const std::string& name, const Kind& kind, Times& times) {
   withChannel(**reader, kind, [&](const auto& channel) { noteArrivals(channel, times); });
 }
 
-// A line that is polled instead of waited for, every millisecond or without a pause.
+// A line that is polled, every millisecond or without a pause, instead of waited for.
 class AskedStream final : public ByteStream {
  public:
   AskedStream(int fd, bool sleeps) : fd_(fd), sleeps_(sleeps) {}
@@ -202,7 +202,8 @@ void sendRecords(int fd, const RoundSize& size, const Kind& kind, std::uint32_t 
   });
 }
 
-// What the driver begins with; a bare loop begins with nothing, and must not count a greeting.
+// The dialogue with which the driver begins. A bare loop has none, and must not count a greeting as
+// a record.
 void beginDialogue(int fd, const Kind& kind, Reader reader, const std::function<bool()>& done) {
   if (!kind.emulator) return serveGreeting(fd, reader == kBare ? "" : kind.greeting(), done);
   const auto emulator = emulate::findEmulator(kind.emulator)
@@ -274,7 +275,7 @@ Round runRound(const RoundSize& size, Reader reader, Line line, Times& times, co
   });
   const Timestamp start = clock.now();
   std::thread sender([&] {
-    askForRealTime();  // it stands for the hardware, so nothing may delay it
+    askForRealTime();  // this thread plays the hardware, so nothing may delay it
     sendRecords(ends.deviceFd(), size, kind, first, times);
   });
   sender.join();

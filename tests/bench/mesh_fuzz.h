@@ -10,7 +10,7 @@ namespace merlin::bench {
 struct MeshFuzz {
   // Number of each kind of refusal and repair, by name.
   std::map<std::string, std::uint64_t> counts;
-  std::string fault;  // of the last mesh; empty if there was none
+  std::string fault;  // of the last mesh; empty if there was no fault
 
   // Runs validate, tidy, splitNonManifold, reduce with each cost, the dendrogram and cuts. False if
   // there was a fault.

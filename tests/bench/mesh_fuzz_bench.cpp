@@ -1,6 +1,6 @@
-// ./dev bench fuzz-meshes [N]: hostile meshes through reading's repairs, both costs and the
-// dendrogram. Of each kind of fault the
-// first seed is told, which shows it again.
+// ./dev bench fuzz-meshes [N]: hostile meshes through the repairs of reading, both costs and the
+// dendrogram. For each kind of fault it prints the first seed, with which the fault can be
+// reproduced.
 #include <csignal>
 #include <cstring>
 #include <map>
@@ -20,7 +20,7 @@ namespace {
 
 volatile std::uint64_t current_seed = 0;
 
-// A crash is a fault too, and its seed has to be said. Only what a signal handler may call.
+// A crash is a fault too, so its seed has to be printed. A signal handler may call few functions.
 void sayWhere(int signal) {
   char text[96] = "\nfault: a crash; again: --count 1 --seed ";
   char* end = text + std::strlen(text);
@@ -68,10 +68,10 @@ bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
     if (name.starts_with("reduced by ")) reduced += n;
     report.text("{:>12}  {}\n", n, name);
   }
-  // Meshes that are all refused at the door test no reduction.
+  // If all meshes are refused as invalid, no reduction was tested.
   if (reduced == 0 && faults.empty()) {
-    throw DidNotRun(
-        fmt::format("none of {} meshes came as far as a reduction; --count gives more", count));
+    throw DidNotRun(fmt::format(
+        "none of {} meshes reached the reduction; --count sets a higher number", count));
   }
   const double rate = static_cast<double>(count) / seconds;
   report.text("{:>12.0f}  meshes a second\n", rate);
@@ -90,11 +90,12 @@ bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Hostile meshes through everything that a mesh goes through.");
+  CLI::App app("Gives hostile meshes to every step of mesh processing.");
   std::uint64_t seed = 1, count = 10'000'000;
   bool json = false;
-  app.add_option("--seed", seed, "Of the first mesh; the next has the next")->capture_default_str();
-  app.add_option("--count", count, "Of meshes")
+  app.add_option("--seed", seed, "Seed of the first mesh; each further one has the next seed")
+      ->capture_default_str();
+  app.add_option("--count", count, "Number of meshes")
       ->check(CLI::Range(1, 1'000'000'000))
       ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");

@@ -1,4 +1,4 @@
-// Times calls that take some hundred nanoseconds.
+// Measures calls that take some hundred nanoseconds.
 #pragma once
 
 #include <algorithm>

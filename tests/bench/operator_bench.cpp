@@ -1,5 +1,5 @@
-// ./dev bench operator: what the plates and the panel over the operator's tile cost a frame, beside
-// a memcpy of the tile.
+// ./dev bench operator: the cost for each frame of the plates and the panel over the operator's
+// tile, compared with a memcpy of the tile.
 #include <chrono>
 #include <cstring>
 #include <memory>
@@ -23,7 +23,7 @@ double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
 }
 
-// Facts of a busy wall, which differ each time.
+// The facts of a busy wall, which differ each time that they are read.
 class BusyWall final : public OperatorSource {
  public:
   OperatorFacts read(Timestamp) override {
@@ -60,7 +60,7 @@ render::tiles::TilePlan planOf(int width, int height) {
   settings.frame_height = settings.tile_height = height;
   settings.tiles = {{"operator", render::tiles::TileKind::kOperator, 0, 0, 0}};
   const auto plan = render::tiles::planTiles(settings);
-  if (!plan) didNotRun("the tile", plan.error().what, "mend the benchmark");
+  if (!plan) didNotRun("the tile", plan.error().what, "fix the benchmark");
   return *plan;
 }
 
@@ -89,13 +89,13 @@ Times measureTile(int width, int height, int frames) {
   BusyWall source;
   test::FakeClock clock;
   const auto overlay = OperatorOverlay::make(plan, source, clock);
-  if (!overlay) didNotRun("the overlay", overlay.error().what, "mend the benchmark");
+  if (!overlay) didNotRun("the overlay", overlay.error().what, "fix the benchmark");
   // The plates are drawn anew ten times a second: every third frame at 30 Hz.
   return measureOverlay(**overlay, static_cast<std::size_t>(4 * width * height), frames,
                         [&](int) { clock.advance(std::chrono::milliseconds(34)); });
 }
 
-// A panel whose view differs from the one before in every third frame.
+// A panel whose view changes in every third frame.
 class BusyPanel final : public render::panel::PanelSource {
  public:
   const render::panel::PanelView& view() override { return shown; }
@@ -111,9 +111,9 @@ Times measurePanel(int width, int height, int frames) {
   BusyPanel source;
   source.shown.facts.content = "ankylosaurus";
   source.shown.facts.projectors = "warming";
-  if (!place) didNotRun("the panel", "it has no place", "mend the benchmark");
+  if (!place) didNotRun("the panel", "it has no place", "fix the benchmark");
   const auto overlay = render::panel::PanelOverlay::make(plan, *place, options, source);
-  if (!overlay) didNotRun("the panel", overlay.error().what, "mend the benchmark");
+  if (!overlay) didNotRun("the panel", overlay.error().what, "fix the benchmark");
   return measureOverlay(**overlay, static_cast<std::size_t>(4 * width * height), frames,
                         [&](int i) { source.shown.facts.rate_hz = 30 + i / 3; });
 }
@@ -146,12 +146,12 @@ bool measure(int frames, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What the plates and the panel over the operator's tile cost a frame");
+  CLI::App app("The cost of the plates and the panel over the operator's tile for each frame");
   int frames = 100;
   bool json = false;
-  app.add_option("--frames", frames, "Frames that draw the plates anew")
+  app.add_option("--frames", frames, "Number of frames that draw the plates anew")
       ->check(CLI::Range(1, 100'000));
-  app.add_flag("--json", json, "One JSON object");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("operator", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(frames, report);

@@ -1,10 +1,11 @@
-// ./dev bench outputs: what an output of each kind costs a frame of the demo's wall, beside a
-// memcpy of it; and whether the others' frames are late while one output is slow or stuck.
+// ./dev bench outputs: the cost of an output of each kind for a frame of the demo's wall, compared
+// with a memcpy of it; and whether frames of the other outputs are late while one output is slow or
+// stuck.
 //
-// The frames are one picture of the demo's wall, 1920 x 480, which is presented after a wait as
-// long as the demo's drawing, so that a frame is late if an output keeps the wall's thread, and not
-// since the machine has other work. The window is merlin-window's at an Xvfb. Disturbed and
-// undisturbed runs take turns in one process with the same outputs.
+// All frames are the same picture of the demo's wall, 1920 x 480. It is presented after a wait that
+// is as long as the demo's drawing, so that a frame is late if an output blocks the wall's thread,
+// and not because the machine has other work. The window is that of merlin-window at an Xvfb.
+// Disturbed and undisturbed runs take turns in one process with the same outputs.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -47,7 +48,7 @@ struct Options {
   int rounds = 5;
 };
 
-// A stand-in for a file system: writes, writes half a second late, or not before it is let go.
+// Plays a file system: it writes at once, half a second late, or not before it is released.
 class Disk {
  public:
   enum class State { kFast, kSlow, kStuck };
@@ -61,7 +62,7 @@ class Disk {
   }
 };
 
-// A process that has mapped the frames and stopped while it reads them.
+// A process that has mapped the frames and was stopped while it read them.
 class StoppedReader {
  public:
   explicit StoppedReader(const std::string& name) : pid_(::fork()) {
@@ -88,7 +89,7 @@ class StoppedReader {
 enum Kind : std::size_t { kShared, kPng, kWindow, kKinds };
 constexpr const char* kNames[] = {"shared_memory", "png", "window"};
 
-// The outputs of a wall, and what may be wrong with each.
+// The outputs of a wall, and the disturbance of each.
 class Wall {
  public:
   explicit Wall(const test::TempDir& dir) : picture_(demoPicture()), plan_(planOf(picture_)) {
@@ -142,7 +143,7 @@ class Wall {
       if (!outputs_->faultNow(i).empty())
         didNotRun(fmt::format("output {}", kNames[i]), outputs_->faultNow(i), "mend that");
     }
-    didNotRun("the outputs", "not all of them show frames", "see whether the machine is busy");
+    didNotRun("the outputs", "not all outputs show frames", "see whether the machine is busy");
   }
 
   test::XServer x;
@@ -158,7 +159,7 @@ class Wall {
   std::optional<out::OutputSet> outputs_;
 };
 
-// Time on the processors that a process has taken [ms].
+// Processor time that a process has used [ms].
 double cpuMs(pid_t pid) {
   double ns = 0;
   for (const auto& thread :
@@ -256,7 +257,7 @@ void measureCosts(Wall& wall, int frames, const test::TempDir& dir, Report& repo
 
 struct Counts {
   std::array<std::uint64_t, kKinds> due{}, late{};
-  std::vector<double> outputs_ms;  // what all outputs take of each frame
+  std::vector<double> outputs_ms;  // time that all outputs together take for each frame
 
   void add(const Counts& o) {
     for (std::size_t i = 0; i < kKinds; ++i) {
@@ -267,7 +268,7 @@ struct Counts {
   }
 };
 
-// Frames on a grid; a frame is due when the next one begins.
+// Presents frames on a grid; a frame is due when the next one begins.
 Counts run(Wall& wall, double seconds) {
   SystemClock clock;
   const Duration period = fromSeconds(1 / kRate_hz);
@@ -291,7 +292,7 @@ Counts run(Wall& wall, double seconds) {
 
 struct Disturbance {
   const char* name;
-  Kind of;  // the output that is disturbed; the others are judged
+  Kind of;  // the disturbed output; the others are judged
   std::function<void()> begin, end;
 };
 
@@ -311,11 +312,11 @@ std::vector<Disturbance> disturbances(Wall& wall, std::optional<StoppedReader>& 
            [&] { reader.reset(); }}};
 }
 
-// Judges one of the others: the late frames that it has beyond those of the undisturbed runs.
+// Judges one of the other outputs by its late frames beyond those of the undisturbed runs.
 bool judge(Report& report, const std::string& name, std::size_t i, const Counts& disturbed,
            const Counts& undisturbed) {
-  constexpr double kMostMoreLate = 0.02;  // of its frames
-  constexpr double kChance = 3;           // frames that may be late for another reason
+  constexpr double kMostMoreLate = 0.02;  // limit, as a share of its frames
+  constexpr double kChance = 3;           // number of frames that may be late for other reasons
   const std::string what = fmt::format("frames of {} in {}", kNames[i], name);
   const Measured late = shareOf(disturbed.late[i], disturbed.due[i], what);
   const Measured before = shareOf(undisturbed.late[i], undisturbed.due[i], what);
@@ -375,12 +376,15 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("What an output of each kind costs, and the others while one is slow or stuck");
+  CLI::App app(
+      "The cost of an output of each kind, and late frames of the others while one is slow or "
+      "stuck");
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--seconds", options.seconds, "Length of a run")->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
+      ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--rounds", options.rounds, "Runs of each kind")->check(CLI::Range(1, 1000));
-  app.add_flag("--json", json, "One JSON object");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("outputs", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""./dev bench page: the wall's late frames while nobody looks at the operator's page, while a headless
-Chromium has it open for --open seconds, and after it was closed again, the others for --seconds; and what
-the page's process holds.
+"""./dev bench page: the wall's late frames while nobody looks at the operator's page, while a headless Chromium has
+it open for --open seconds, and after it was closed again (both of these for --seconds); and the resources of the
+page's process.
 
 The devices are emulated, and the ball turns the model all the time, so that every frame has a deadline.
-Chromium draws the page on the same processors as the wall draws its frames: in a lab it runs elsewhere, so
-this is worse than what an operator's phone does. Beside it, so that this can be told apart, a reader that
-fetches what the page fetches, five times a second, and draws nothing.
+Chromium draws the page on the processors on which the wall draws its frames; in a lab it runs elsewhere, so the
+effect is worse here than with an operator's phone. To tell the two apart, a reader that fetches what the page
+fetches, five times a second, and draws nothing is measured too.
 """
 import argparse
 import os
@@ -24,13 +24,13 @@ import browser
 import figures
 import roles
 
-MOST_MORE_PERCENT = 1.0  # late frames that the page may cost, in % of those due
+MOST_MORE_PERCENT = 1.0  # late frames that the page may cost, in % of the frames that are due
 WAY_OUT = "./dev setup installs chromium and chromedriver"
 ASKED = ("/api/status", "/api/frames?since=0", "/picture.jpg")
 
 
 class Wall:
-    """The wall's counts, and the page's memory."""
+    """A wall: its counts of frames, and the memory of the page's process."""
 
     def __init__(self, options):
         self.place = roles.Place(options, "page")
@@ -47,7 +47,7 @@ class Wall:
             program.start()
         for program in self.programs.values():
             program.wait_ready()
-        time.sleep(3)  # the governor has learnt
+        time.sleep(3)  # by now the governor knows the machine
 
     def counts(self):
         if not self.segment.reopen():
@@ -65,7 +65,7 @@ class Wall:
 
 
 def late_share(wall, seconds, meanwhile=lambda: None):
-    """Late frames of those due, in %, over so many seconds; `meanwhile` is called every second."""
+    """Late frames in % of those that are due, over `seconds`; `meanwhile` is called every second."""
     before, end = wall.counts(), time.monotonic() + seconds
     while time.monotonic() < end:
         meanwhile()
@@ -75,7 +75,7 @@ def late_share(wall, seconds, meanwhile=lambda: None):
 
 
 class Chromium:
-    """The page in a browser, which has to show that it lives: its chart and its picture change."""
+    """The page in a browser. Its chart and its picture have to change, which shows that it works."""
 
     def __init__(self, port):
         self.driver = browser.Driver(1280, 900)
@@ -92,7 +92,7 @@ class Chromium:
 
 
 class Reader:
-    """Fetches what the page shows until it is stopped."""
+    """Fetches what the page shows, until it is stopped."""
 
     def __init__(self, port):
         self.port, self.answers, self.ended = port, 0, threading.Event()
@@ -106,7 +106,7 @@ class Reader:
                     with urllib.request.urlopen(f"http://127.0.0.1:{self.port}{path}", timeout=10) as answer:
                         self.answers += bool(answer.read())
                 except OSError:
-                    pass  # counted as no answer
+                    pass  # counts as no answer
 
     def close(self):
         self.ended.set()
@@ -156,7 +156,7 @@ def measure(options, report):
                 f"{memory[2]:.1f} after {options.open:g} s; pictures that Chromium was seen to show: {len(page.seen)}")
     report.figure("page_memory_after", figures.Measured(memory[2], 1, "memory"), "MiB")
     kept = shares["reader"] - shares["nobody"] <= MOST_MORE_PERCENT
-    report.text(f"promised: the page costs the wall at most {MOST_MORE_PERCENT:g} % of its frames; "
+    report.text(f"limit: the page costs the wall at most {MOST_MORE_PERCENT:g} % of its frames; "
                 + ("kept" if kept else "not kept"))
     return kept
 
@@ -164,11 +164,11 @@ def measure(options, report):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", required=True, help="folder of merlin and merlind")
-    parser.add_argument("--seconds", type=float, default=60, help="of each part")
-    parser.add_argument("--open", type=float, default=600, help="for which Chromium has the page open")
-    parser.add_argument("--rate", type=float, default=30, help="of the wall [Hz]")
+    parser.add_argument("--seconds", type=float, default=60, help="length of each part without the browser")
+    parser.add_argument("--open", type=float, default=600, help="seconds for which Chromium has the page open")
+    parser.add_argument("--rate", type=float, default=30, help="frame rate of the wall in Hz")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--json", action="store_true", help="figures for programs")
+    parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     figures.run_bench("page", options.json, lambda report: measure(options, report))
 

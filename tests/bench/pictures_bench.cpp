@@ -1,6 +1,7 @@
-// ./dev bench pictures: a picture of 20000 x 10000 pixels that is panned and zoomed without pause,
-// a panorama that is turned: late frames, rate, memory; and the time from `merlin show` to the
-// first picture of a file that the wall has not seen before, of 10^11 pixels too.
+// ./dev bench pictures: a picture of 20000 x 10000 pixels that is panned and zoomed without a
+// pause, and a panorama that is turned: late frames, rate and memory. Also the time from `merlin
+// show` to the first picture of a file that the wall has not seen before, including one of 10^11
+// pixels.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -31,7 +32,7 @@ struct Options : DemoOptions {
   int shows = 10;
 };
 
-// Structure of every size, so that no tile compresses to nothing.
+// The picture has structures of every size, so that no tile compresses to almost nothing.
 void writePpm(const std::string& path, int width, int height) {
   std::ofstream out(path, std::ios::binary);
   out << "P6\n" << width << " " << height << "\n255\n";
@@ -66,7 +67,7 @@ std::string pyramid(const Options& options, int width, int height, bool panorama
   return fs::absolute(name + ".tif").string();
 }
 
-// 10^11 pixels in a sparse file.
+// A picture of 10^11 pixels in a sparse file.
 std::string gigapixels(const Options& options) {
   fs::create_directories(options.work);
   const std::string name = options.work + "/400000x250000.tif";
@@ -77,14 +78,14 @@ std::string gigapixels(const Options& options) {
   return fs::absolute(name).string();
 }
 
-// What a file takes on the disk [kB].
+// The disk space that a file takes [kB].
 double diskOf(const std::string& file) {
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0) didNotRun(file, "it is not there", "make it again");
   return static_cast<double>(s.st_blocks) * 512 / 1000;
 }
 
-// Memory of a process [MB]: its greatest resident size, or the present one.
+// Resident memory of a process [MB]: its maximum, or its present value.
 double memoryOf(pid_t pid, const std::string& field) {
   std::ifstream status(fmt::format("/proc/{}/status", pid));
   for (std::string line; std::getline(status, line);) {
@@ -93,8 +94,8 @@ double memoryOf(pid_t pid, const std::string& field) {
   didNotRun("merlind", "/proc has no " + field + " of it", "is /proc there?");
 }
 
-// Times to copy a frame of the demo's wall, which it does three times for each frame: while memory
-// is slow, because another machine on the same hardware uses it, frames take longer.
+// Times of copying a frame of the demo's wall, which the wall does three times for each frame.
+// While memory is slow, because another machine on the same hardware uses it, frames take longer.
 std::string frameCopies() {
   std::vector<char> from(std::size_t{4} * 640 * 480 * 4, 1), to(from.size());
   SystemClock clock;
@@ -116,7 +117,7 @@ struct Motion {
   std::string renderer;
 };
 
-// A person at the wall, 30 steps a second: circles and zooms.
+// The motion of a person at the wall, 30 steps a second: circles and zooms.
 std::string stepAt(double t, bool panorama) {
   if (panorama) return fmt::format("0 0 0 {:.4f} {:.4f} 0", 0.6 * std::sin(t), -1.5);
   const double zoom = 0.06 * std::sin(2 * std::numbers::pi * t / 12);
@@ -132,7 +133,7 @@ Motion move(const Options& options, const test::TempDir& dir, const std::string&
     config["wall"]["contents"] = {{{"picture", file}}};
   });
   SystemClock clock;
-  clock.sleepUntil(clock.now() + std::chrono::seconds(3), {});  // everything sharp, nothing moves
+  clock.sleepUntil(clock.now() + std::chrono::seconds(3), {});  // until all is sharp and at rest
   status::CommandSender sender;
   const std::string endpoint = daemon.commandEndpoint();
   const shm::WallStats from = daemon.wall();
@@ -166,7 +167,8 @@ struct Shown {
   double model_memory_mb = 0, most_memory_mb = 0;
 };
 
-// `merlin show` of a picture and of the model in turns, on a wall that the demo's script moves.
+// Shows a picture and the model in turns with `merlin show`, on a wall that the demo's script
+// moves.
 Shown show(const Options& options, const test::TempDir& dir, const std::string& file) {
   DemoDaemon daemon(options, dir, "all",
                     [&](nlohmann::json& config) { config["script"] = "turning"; });
@@ -204,14 +206,15 @@ void print(Report& report, const std::string& name, const Motion& m, bool panora
   report.figure(key + ".work", m.work_ms, "ms");
 }
 
-// Whether a figure is within what the wall promises; says so if it is not.
+// Whether a figure is within the limit that MERLIN states; prints a line if it is not.
 int keeps(Report& report, const char* what, double value, double most, const char* unit) {
   if (value <= most) return 1;
-  report.text("not kept: {} {:.2f} {}, at most {} {} promised\n", what, value, unit, most, unit);
+  report.text("beyond its limit: {} {:.2f} {}, the limit is {} {}\n", what, value, unit, most,
+              unit);
   return 0;
 }
 
-// Returns whether all that is promised was kept.
+// Returns whether all limits were kept.
 bool benchPictures(const Options& options, Report& report) {
   const std::string large = pyramid(options, 20'000, 10'000, false);
   const std::string of_1998 = pyramid(options, 7000, 4000, false);
@@ -255,14 +258,14 @@ bool benchPictures(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  CLI::App app("Late frames, memory and first pictures of large pictures.");
+  CLI::App app("Late frames and memory with large pictures, and the time to the first picture.");
   bool json = false;
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The demo's configuration")->required();
   app.add_option("--work", options.work, "Folder for the pictures");
   app.add_option("--seconds", options.seconds, "Seconds of motion of each kind");
-  app.add_option("--shows", options.shows, "Times that merlin show is called");
-  app.add_flag("--json", json, "JSON, for programs");
+  app.add_option("--shows", options.shows, "Number of calls of merlin show");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("pictures", json, [&](merlin::bench::Report& report) {
     return merlin::bench::benchPictures(options, report);

@@ -1,6 +1,6 @@
 // ./dev bench posture: training compared with the simplest classifiers on unseen people, adapting
-// to one more person, gloves that drift, flicker of the reported postures, and recall. Compared
-// with FANN: fann_bench.cpp.
+// to one more person, gloves that drift, flicker of the reported postures, and recall. The
+// comparison with FANN is in fann_bench.cpp.
 //
 // All hands are synthetic. Absolute times differ between machines; ratios are within one run.
 #include <algorithm>
@@ -35,7 +35,7 @@ DataSet people(std::size_t first, std::size_t count, std::size_t per_take, std::
   return nn::test::people(hand::allShapes(), first, count, per_take, seed);
 }
 
-// The value of a training that succeeded; otherwise ends the benchmark.
+// The value of a training that succeeded; ends the benchmark if it failed.
 template <typename T>
 const T& expect(const Result<T>& result, const char* subject) {
   if (!result) didNotRun(subject, result.error().what, "see nn/README.md");
@@ -119,8 +119,8 @@ void adapting(const nn::Fitted& fitted, Report& report) {
   }
 }
 
-// Each person's first half of a session trains, the second half tests. No choice of the training
-// was made on these people.
+// The first half of each person's session is for training, the second half for the test. These
+// people influenced no choice of the training method.
 void drifts(Report& report) {
   constexpr std::uint64_t kFirst = 4001, kPeople = 20;
   std::size_t hands = 0, faults = 0, followed = 0;
@@ -182,7 +182,7 @@ Flicker countOf(const std::vector<std::string>& reported, std::span<const hand::
 }
 
 struct Reported {
-  std::vector<std::string> held, plain;  // with hold time and hysteresis, and without
+  std::vector<std::string> held, plain;  // with hold time and hysteresis, and without them
 };
 
 Reported reportedBy(const nn::PostureNetwork& network, std::span<const hand::Shot> shots) {

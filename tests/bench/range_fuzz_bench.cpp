@@ -1,9 +1,10 @@
-// ./dev bench fuzz-ranges: damaged range files and point clouds of every kind through our own
-// readers, and what is read of ranges through filters and triangulation. Each has to end with a
-// valid mesh, with a sound cloud, or with one sentence that names the file. With the sanitizers.
+// ./dev bench fuzz-ranges: damaged range files and point clouds of every kind through MERLIN's own
+// readers; ranges that are read also go through the filters and the triangulation. Each input has
+// to end with a valid mesh, a valid cloud, or one sentence that names the file. Built with the
+// sanitizers.
 //
-// The files are synthetic, and small; each gets one to four changes: bytes, digits, pieces that
-// are cut out or doubled, numbers that are too large.
+// The files are synthetic and small. Each gets one to four changes: bytes or digits are changed,
+// pieces cut out or doubled, numbers made too large.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -52,7 +53,8 @@ std::string pcdPoints() {
   return bytes;
 }
 
-// As literal runs, field by field would be the same bytes in another order.
+// Compresses to literal runs only. A file that is ordered by fields would have the same bytes in
+// another order.
 std::string packed(const std::string& bytes) {
   std::string runs;
   for (std::size_t at = 0; at < bytes.size(); at += 32) {
@@ -93,7 +95,7 @@ std::string gridPoints() {
   return bytes;
 }
 
-// What merlin-import writes.
+// A file in the format that merlin-import writes.
 std::string importedGrid() {
   std::string bytes =
       "MERLIN grid 1\nsize: 3 2\nformat: FITS\ngeometry: elevation\ncell: 0.5 0.25\nprojection: "
@@ -142,7 +144,7 @@ void change(std::string& bytes, Random& random) {
   }
 }
 
-// A file without a place on a disk.
+// A file in memory, without a place on a disk.
 class MemoryFile {
  public:
   MemoryFile() : fd_(::memfd_create("range", MFD_CLOEXEC)) {
@@ -285,12 +287,12 @@ bool fuzz(std::uint64_t seed, std::uint64_t inputs, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Damaged range files and point clouds through our own readers");
+  CLI::App app("Gives damaged range files and point clouds to MERLIN's own readers");
   std::uint64_t inputs = 10'000'000, seed = 1;
   bool json = false;
   app.add_option("--inputs", inputs, "Number of files");
-  app.add_option("--seed", seed, "Seed of the first one");
-  app.add_flag("--json", json, "One JSON object");
+  app.add_option("--seed", seed, "Seed of the first file; each further one has the next seed");
+  app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("fuzz-ranges", json, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(seed, inputs, report);

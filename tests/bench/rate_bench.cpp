@@ -1,10 +1,11 @@
-// ./dev bench rates: what the wall draws in a second, beside the table of 1998 ([GOURLEY98] 2.5),
-// and which share of it is drawing: a loop that only drew and read back could not be faster by more
-// than that; and what a second context on a second core is worth.
+// ./dev bench rates: triangles that the wall draws in a second, compared with the table of 1998
+// ([GOURLEY98] 2.5). Also the share of the time that is drawing (a loop that only drew and read
+// back would be faster by no more than the rest), and the gain from a second context on a second
+// core.
 //
-// There: textured triangles at full resolution, before reduction; the operator's view is a fourth
-// one, as there. Each is the whole model, two copies of the demo's scan side by side in a made-up
-// picture of 1024 x 1024, reduced to that many triangles and drawn whole.
+// As in 1998, the triangles are textured and at full resolution, before reduction, and the
+// operator's view is a fourth one. Each model is complete: two copies of the demo's scan side by
+// side with a made-up texture of 1024 x 1024, reduced to that many triangles and drawn whole.
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -46,7 +47,7 @@ render::mesh::Mesh twice(const render::mesh::Mesh& mesh) {
   return both;
 }
 
-// Round its long axis; a chequered picture with noise.
+// Adds texture coordinates around the mesh's long axis, and a chequered texture with noise.
 Result<Ok> dress(render::mesh::Mesh& mesh) {
   constexpr int kSide = 1024;
   std::vector<std::uint8_t> rgba;
@@ -76,7 +77,7 @@ Result<Ok> dress(render::mesh::Mesh& mesh) {
   return Ok{};
 }
 
-// In front of the viewer, turned a little further each time.
+// The model in front of the viewer, turned a little further at each step.
 Eigen::Isometry3f pose(int k) {
   Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
   view.translate(Eigen::Vector3f(0, 0, -2.05F));
@@ -90,7 +91,8 @@ struct Times {
   double frame_s = 0, drawing_s = 0;
 };
 
-// Drawing are the steps that draw and read back: cut, upload and all between are not.
+// Only the steps that draw and read back count as drawing, but not the cut, the upload and the time
+// between.
 Times timeOf(render::frame::FrameRenderer& renderer, const Eigen::Isometry3f& T_eye_model,
              std::size_t level, const Clock& clock) {
   const Timestamp began = clock.now();
@@ -114,7 +116,7 @@ class Rate {
     const Measured frame_s = medianOf(frame_s_, "frames");
     return Measured::of(1 / frame_s, frame_s.count(), "frames");
   }
-  // Nothing that was drawn is no rate.
+  // Throws if nothing was drawn.
   Measured drawingShare() const {
     const Measured share = medianOf(share_, "frames");
     if (share <= 0)
@@ -126,7 +128,8 @@ class Rate {
   std::vector<double> frame_s_, share_;
 };
 
-// In turns, pose by pose. Returns whether each rate of 1998 is reached with one context.
+// Draws with one and with two contexts in turns, pose by pose. Returns whether one context reaches
+// each rate of 1998.
 bool bench(const render::lod::Dendrogram& model, render::frame::FrameRenderer& one,
            render::frame::FrameRenderer& two, Report& report) {
   const SystemClock clock;
@@ -163,7 +166,7 @@ struct Options {
   bool textured = true;
 };
 
-// The value; else the benchmark ends.
+// Returns the value, or ends the benchmark.
 template <typename T>
 T expect(Result<T> result, const char* subject) {
   if (!result) didNotRun(subject, result.error().what, "see --scan");
@@ -181,11 +184,11 @@ render::lod::Dendrogram makeModel(const Options& options) {
 bool run(const Options& options, Report& report) {
   render::gl::prepareSoftwareGl(options.raster_threads);
   const render::lod::Dendrogram model = makeModel(options);
-  // Not fewer: else the rate would be of another model.
+  // With fewer triangles, the rate would be that of another model.
   if (model.triangleCount() < kRows1998[std::size(kRows1998) - 1].triangles) {
     didNotRun("the scan",
               fmt::format("twice {} has {} triangles", options.scan, model.triangleCount()),
-              "it takes 51,000 in the scan");
+              "the scan needs at least 51,000 triangles");
   }
   const auto plan = render::tiles::planTiles({});
   const SystemClock clock;
@@ -208,9 +211,10 @@ bool run(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Rates at full resolution, beside those of 1998.");
+  CLI::App app("Rates at full resolution, compared with those of 1998.");
   app.add_option("--scan", options.scan, "A scan with colours")->capture_default_str();
-  app.add_option("--raster-threads", options.raster_threads, "Of Mesa's software renderer")
+  app.add_option("--raster-threads", options.raster_threads,
+                 "Number of threads of Mesa's software renderer")
       ->check(CLI::Range(0, 16));
   app.add_flag("!--coloured", options.textured, "Colours at the vertices instead of a texture");
   app.add_flag("--json", json, "The figures as one JSON object");

@@ -1,6 +1,6 @@
 // ./dev bench reload: thousands of reloads, good and bad ones in turn, while the emulated hand
-// moves and the demo's wall is drawn: late frames beside the same wall without reloads,
-// descriptors, threads, memory, and what became of the samples.
+// moves and the demo's wall is drawn. Measures late frames compared with the same wall without
+// reloads, descriptors, threads and memory, and whether samples were lost.
 #include <algorithm>
 #include <filesystem>
 #include <thread>
@@ -25,7 +25,7 @@ struct Options : DemoOptions {
   double seconds = 20, pause = 0;
 };
 
-// What a process holds.
+// The resources that a process holds.
 struct Held {
   std::size_t descriptors, threads;
   double memory_mb;  // resident
@@ -48,7 +48,8 @@ Measured lateShare(const shm::WallStats& from, const shm::WallStats& to) {
                  "deadlines of the wall, which did not move,");
 }
 
-// The configurations in turn: bindings, postures, a device's line, the wall's; every fourth is bad.
+// The configurations in turn: changes of bindings, of postures, of a device's line, of the wall;
+// every fourth is bad.
 json variantOf(const json& demo, int i) {
   json config = demo;
   switch (i % 8) {
@@ -69,7 +70,7 @@ json variantOf(const json& demo, int i) {
   return config;
 }
 
-// Writes the file, has it read, and waits for the answer; returns the outcome.
+// Writes the file, requests a reload, and waits for the answer; returns the outcome.
 std::string reload(const DemoDaemon& daemon, const std::string& path, const json& config) {
   test::writeText(path, config.dump());
   const auto ask = [&](const std::string& argument) {
@@ -100,7 +101,7 @@ bool bench(const Options& options, Report& report) {
   const shm::WallStats first = daemon.wall();
   std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds));
   const shm::WallStats before = daemon.wall();
-  for (int i = 0; i < 16; ++i) reload(daemon, path, variantOf(demo, i));  // memory settles
+  for (int i = 0; i < 16; ++i) reload(daemon, path, variantOf(demo, i));  // until memory is steady
   const Held held = heldBy(daemon.pid());
   const shm::Channel<TrackerSample>& station = *daemon.devices().tracker()->stations[0];
   const std::uint64_t tracked = station.count();
@@ -118,7 +119,7 @@ bool bench(const Options& options, Report& report) {
     daemon.expectRunning();
     std::this_thread::sleep_for(std::chrono::duration<double>(options.pause));
   }
-  std::this_thread::sleep_for(std::chrono::seconds(2));  // the statistics follow
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // until the statistics are up to date
   const shm::WallStats end = daemon.wall();
   const Held after = heldBy(daemon.pid());
   const auto samples = station.count() - tracked;
@@ -161,13 +162,13 @@ int main(int argc, char** argv) {
   CLI::App app("Late frames, descriptors, threads and memory during thousands of reloads.");
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The wall's configuration")->required();
-  app.add_option("--reloads", options.reloads)
+  app.add_option("--reloads", options.reloads, "Number of reloads")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "Of the run without reloads")
+  app.add_option("--seconds", options.seconds, "Length of the run without reloads, in seconds")
       ->check(CLI::Range(1, 86'400))
       ->capture_default_str();
-  app.add_option("--pause", options.pause, "Between two reloads, in seconds")
+  app.add_option("--pause", options.pause, "Pause between two reloads, in seconds")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");

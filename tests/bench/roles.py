@@ -1,6 +1,5 @@
-"""merlind's roles as processes of their own, beside emulated devices that outlive them, as real devices
-do; and what their shared memory says. Python's own library alone.
-"""
+"""merlind's roles as processes of their own, beside emulated devices that outlive them, as real devices do; and
+access to their shared memory. Uses Python's standard library alone."""
 import json
 import os
 import signal
@@ -19,11 +18,11 @@ import read_merlin  # noqa: E402
 
 WAY_OUT = "./dev builds merlind and merlin"
 DRIVERS = {"glove": "cyberglove", "tracker": "fastrak", "ball": "spaceball"}
-READY_S = 60  # a loaded machine, a cold cache of shaders
+READY_S = 60  # enough for a loaded machine with a cold cache of shaders
 
 
 def wait_until(condition, seconds, subject, found, step=0.02):
-    """Ends the benchmark unless `condition` is true within so many seconds."""
+    """Ends the benchmark unless `condition` becomes true within `seconds`."""
     deadline = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > deadline:
@@ -38,7 +37,7 @@ def free_port():
 
 
 class Program:
-    """A process whose output goes into a file, which outlives it and its successors."""
+    """A process whose output goes into a file. The file outlives the process and is used by its successors."""
 
     def __init__(self, command, log, environment=None, stdin=subprocess.DEVNULL):
         self.command, self.log = [str(word) for word in command], log
@@ -56,7 +55,7 @@ class Program:
         return self.process.pid
 
     def said(self):
-        """What it said since its last start."""
+        """The output since the last start."""
         with open(self.log, encoding="utf8", errors="replace") as file:
             file.seek(self.begin)
             return file.read()
@@ -73,7 +72,7 @@ class Program:
         self.process.wait()
 
     def stop(self):
-        """Returns its exit status; -9 where it did not obey within 20 s."""
+        """Ends the process; returns its exit status, -9 if it had not ended after 20 s."""
         if self.process is None:
             return 0
         if self.process.poll() is None:
@@ -86,7 +85,7 @@ class Program:
 
 
 class Emulator(Program):
-    """A device on a pseudo-terminal. With `step`, each phase of its person lasts until next()."""
+    """A device on a pseudo-terminal. With `step`, each phase of its person lasts until next() is called."""
 
     def __init__(self, place, name, script, seed, step=False):
         self.name, self.link = name, os.path.join(place.folder, f"{name}.pty")
@@ -108,7 +107,7 @@ class Emulator(Program):
 
 
 class Place:
-    """A folder with an instance of its own: configuration, model, logs. Ends with the block."""
+    """A folder for one instance: configuration, model, logs. It is removed at the block's end."""
 
     def __init__(self, options, name):
         self.bin, self.instance = options.bin, f"merlin-{name}-{os.getpid()}"
@@ -127,7 +126,8 @@ class Place:
         figures.run([f"{self.bin}/merlin", "mesh", "reduce", scan, "-o", self.model], "the model", WAY_OUT)
 
     def configure(self, also):
-        """The demo's wall with devices on our pseudo-terminals, and `also` merged over its objects."""
+        """Writes the demo's configuration with devices on our pseudo-terminals, and `also` merged over its
+        objects."""
         with open(os.path.join(SOURCE, "config/demo.json"), encoding="utf8") as file:
             config = json.load(file)
         for key in ("$schema", "script"):
@@ -152,13 +152,13 @@ class Place:
 
     def close(self):
         self.temporary.cleanup()
-        for name in os.listdir("/dev/shm"):  # of a role that was killed
+        for name in os.listdir("/dev/shm"):  # those of a role that was killed
             if name.startswith(self.instance):
                 os.unlink(f"/dev/shm/{name}")
 
 
 def merged(base, patch):
-    """A copy of a JSON object with another one's members over its own, objects by key."""
+    """A copy of a JSON object over which another one is merged; objects are merged key by key."""
     result = dict(base)
     for key, value in patch.items():
         both = isinstance(value, dict) and isinstance(base.get(key), dict)
@@ -167,21 +167,21 @@ def merged(base, patch):
 
 
 class Segment:
-    """Shared memory as it is now. `reopen()` after the role was started anew."""
+    """The present shared memory of a role. Call `reopen()` after the role was restarted."""
 
     def __init__(self, place, role):
         self.name = f"{place.instance}-{role}"
         self.memory, self.table, self.made = None, {}, None
 
     def reopen(self):
-        """Whether it is there and whole; opens it where it is another one than before."""
+        """Whether the segment exists and is complete; opens it if it is another one than before."""
         try:
             made = os.stat(f"/dev/shm/{self.name}")
             if self.made == (made.st_ino, made.st_ctime_ns) and self.memory:
                 return True
             self.memory, self.table = read_merlin.open_segment(self.name)
         except (OSError, ValueError, SystemExit, read_merlin.struct.error):
-            self.memory = None  # it is being made
+            self.memory = None  # the role is just making it
             return False
         self.made = (made.st_ino, made.st_ctime_ns)
         return True

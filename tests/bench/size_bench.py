@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""./dev bench size: how merlin mesh reduce goes on from 10^4 to 10^8 triangles.
+"""./dev bench size: how the cost of merlin mesh reduce grows from 10^4 to 10^8 triangles.
 
-One scan is laid out in tiles (tile_scan): real surface, synthetic in its tiling. Each size runs the
-whole command with --memory; what is compared is collapses a second of processor time, since other
-programs on the machine cost wall time, and both are printed. Python's own library alone.
+Copies of one scan are laid out as tiles (tile_scan): the surface is real, its repetition synthetic. Each size
+runs the whole command with --memory. Compared are the collapses in a second of processor time, since other
+programs on the machine cost wall time; both are printed. Uses Python's standard library alone.
 """
 import argparse
 import json
@@ -18,7 +18,7 @@ WAY_OUT = "'./dev bench size' builds merlin and tile_scan"
 
 
 def run(command):
-    """The command's output, and the processor seconds of it alone."""
+    """The command's output, and the processor seconds of the command alone."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     output = figures.run(command, os.path.basename(command[0]), WAY_OUT)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -32,7 +32,7 @@ def measure(options, triangles, folder):
     if options.memory:
         command += ["--memory", options.memory]
     best = None
-    # A short run is noise: the best of some, of about as much work.
+    # Single short runs are noisy, so the best of several counts; all sizes do about the same work in total.
     for _ in range(max(1, min(5, 2_000_000 // triangles))):
         output, seconds = run(command)
         report = json.loads(output[output.index("{"):])
@@ -69,10 +69,10 @@ def main():
     parser.add_argument("--merlin", required=True)
     parser.add_argument("--tile-scan", required=True)
     parser.add_argument("--scan", required=True)
-    parser.add_argument("--memory", default="16G", help="of the command; 0: what is free")
+    parser.add_argument("--memory", default="16G", help="memory that the command may use; 0: the free memory")
     parser.add_argument("--most", type=float, default=1e7,
                         help="the largest mesh; 1e8 takes 7 GB of disk and 11 GB of memory")
-    parser.add_argument("--folder", help="for the meshes; without: a temporary one")
+    parser.add_argument("--folder", help="folder for the meshes; the default is a temporary one")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     if not options.most >= SIZES[0]:

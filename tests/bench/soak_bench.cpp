@@ -1,6 +1,6 @@
 // ./dev bench soak: a day of the wall on a virtual clock, with scripted people, faults and reloads,
-// in minutes: memory, descriptors, late frames, and whether every event is explained. The same seed
-// is the same day. In real time, on the real programs: ./dev soak.
+// in minutes. Measures memory, descriptors and late frames, and whether every event is explained.
+// The same seed gives the same day. In real time, on the real programs: ./dev soak.
 #include <filesystem>
 #include <sstream>
 #include <thread>
@@ -50,8 +50,7 @@ json configurationOf(const test::TempDir& dir) {
 Settings settingsOf(const json& configuration, const std::string& folder) {
   LoadedSettings loaded = loadSettings(configuration.dump(), folder);
   if (loaded.verdict() != LoadedSettings::Verdict::kValid)
-    didNotRun("the configuration", toText("soak.json", loaded.findings.at(0)),
-              "mend the benchmark");
+    didNotRun("the configuration", toText("soak.json", loaded.findings.at(0)), "fix the benchmark");
   return loaded.settings;
 }
 
@@ -88,7 +87,7 @@ double memoryNow_mb() {
   return static_cast<double>(resident) * 4096 / (1 << 20);
 }
 
-// One simulated lab, from its start to its end.
+// One simulated lab, from start to end.
 class Lab {
  public:
   Lab(const Options& options, const test::TempDir& dir)
@@ -134,7 +133,7 @@ class Lab {
   std::uint64_t measured() const { return measured_; }
 
  private:
-  // A minute in which the renderer was slow on purpose is counted apart.
+  // A minute in which the renderer was slow on purpose is counted separately.
   void sample(double at_h) {
     const shm::WallStats now = wall_.stats();
     const std::uint64_t deadlines = now.deadlines - last_.deadlines, late = now.late - last_.late;
@@ -203,7 +202,7 @@ void reportEvents(const DayCounts& counts, Report& report) {
   report.figure("digest", fmt::format("{:016x}", counts.digest), all);
 }
 
-// Whether memory and descriptors stayed as they were.
+// Whether memory and descriptors have not grown.
 bool reportHeld(const Options& options, const std::vector<Sample>& samples, Report& report) {
   std::vector<std::pair<double, double>> memory;
   std::vector<double> descriptors;
@@ -230,7 +229,7 @@ bool reportHeld(const Options& options, const std::vector<Sample>& samples, Repo
 }
 
 bool bench(const Options& options, Report& report) {
-  // Samples are compared in one heap that the one thread uses.
+  // With a single heap for the one thread, memory of samples can be compared.
   ::mallopt(M_ARENA_MAX, 1);
   const test::TempDir dir;
   Lab lab(options, dir);
@@ -255,7 +254,7 @@ bool bench(const Options& options, Report& report) {
   reportEvents(counts, report);
   std::vector<std::string> wrong = counts.wrong;
   for (const std::string& missing : lab.day().untold())
-    wrong.push_back("nobody was told of it: " + missing);
+    wrong.push_back("a fault was not reported: " + missing);
   for (const std::string& what : wrong) {
     report.text("WRONG: {}\n", what);
     note("soak: " + what);
@@ -271,12 +270,13 @@ int main(int argc, char** argv) {
   bool json = false;
   double warm_up_h = -1;
   CLI::App app("A day of the wall on a virtual clock, with people, faults and reloads.");
-  app.add_option("--hours", options.hours, "Of virtual time")
+  app.add_option("--hours", options.hours, "Hours of virtual time")
       ->check(CLI::Range(0.2, 10'000.0))
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of people, faults and devices")->capture_default_str();
+  app.add_option("--seed", options.seed, "Seed of people, faults and devices")
+      ->capture_default_str();
   app.add_option("--warm-up", warm_up_h,
-                 "Hours whose memory does not count; default: a quarter, at "
+                 "Hours at the beginning whose memory does not count; the default is a quarter, at "
                  "most two")
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--json", json, "The figures as one JSON object");

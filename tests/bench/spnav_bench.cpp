@@ -1,10 +1,10 @@
-// ./dev bench spnav: from the last byte of a ball's record on its line to a client of the
-// space-mouse socket, for merlind and for spacenavd on the same emulated Spaceball, in turns.
-// Beside them a bare loop, which reads the line and tells the client: the least that one process
-// between the two can take.
+// ./dev bench spnav: time from the last byte of a ball's record on its line to a client of the
+// space-mouse socket, for merlind and for spacenavd on the same emulated Spaceball, in turns. They
+// are compared with a bare loop, which reads the line and writes to the client: the minimum for one
+// process between the two.
 //
-// The client speaks the socket's protocol itself, so that one process can have several connections;
-// libspnav adds the same to all three.
+// The client implements the socket's protocol itself, so that one process can have several
+// connections; libspnav adds the same time to all three.
 #include <array>
 #include <atomic>
 #include <filesystem>
@@ -49,7 +49,7 @@ std::int64_t now() { return toNanoseconds(SystemClock().now()); }
 // Version 0 of the protocol: type, six axes or a button, time in ms.
 using Event = std::array<std::int32_t, 8>;
 
-// The socket of a server, connected as soon as there is one.
+// Connects to the socket of a server as soon as it exists.
 UniqueFd connectTo(const std::string& path, const std::function<bool()>& ended) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
@@ -63,7 +63,7 @@ UniqueFd connectTo(const std::string& path, const std::function<bool()>& ended) 
   return fd;
 }
 
-// A client of the socket, on a thread of its own: when each motion came, and its first axis.
+// A client of the socket on a thread of its own; stores the time of each motion and its first axis.
 class Client {
  public:
   explicit Client(UniqueFd socket) : socket_(std::move(socket)) {
@@ -100,8 +100,8 @@ class Client {
   std::thread thread_;
 };
 
-// The bare loop in a process of its own: whole records are counted, and each is told as a motion
-// with the first axis that it has.
+// The bare loop, in a process of its own: it counts whole records and sends a motion with the first
+// axis of each.
 class BareServer {
  public:
   BareServer(const std::string& line, const std::string& path) {
@@ -153,7 +153,7 @@ io::PtyMaster openLine() {
   return *std::move(line);
 }
 
-// A server on a line of its own.
+// A server that reads a line of its own.
 class Subject {
  public:
   Subject(Server server, const Options& options, const test::TempDir& dir)
@@ -165,7 +165,7 @@ class Subject {
       bare_.emplace(line_.slavePath(), socket_);
     } else if (server == kSpacenavd) {
       test::writeText(folder + "/rc", "serial = " + line_.slavePath() + "\nled = off\n");
-      // Debian's binds run/spnav.sock relative to its working directory (/ as a service).
+      // Debian's spacenavd binds run/spnav.sock relative to its working directory (/ as a service).
       process_.emplace(
           std::vector<std::string>{"sh", "-c", "cd '" + folder + "' && exec spacenavd -d -c rc"});
     } else {
@@ -207,7 +207,7 @@ class Subject {
     const std::uint32_t first = client.count();
     std::vector<std::int64_t> sent_ns(options.samples);
     std::thread device([&] {
-      askForRealTime();  // it stands for the hardware, so nothing may delay it
+      askForRealTime();  // this thread plays the hardware, so nothing may delay it
       atIrregularTimes(options.samples, options.rate_hz, [&](std::uint32_t n) {
         sent_ns[n] = now();
         send(n);
@@ -233,7 +233,8 @@ class Subject {
 
 std::vector<double> Subject::measure(const Options& options) {
   std::atomic<bool> streams{server_ == kBare};
-  // Answers from the start, since spacenavd gives up on a ball that does not, without a socket.
+  // The emulator answers from the start: spacenavd gives up on a ball that does not answer, and
+  // then has no socket.
   std::thread ball([&] {
     const auto emulator = emulate::findEmulator("spaceball")
                               ->make({}, *emulate::findMotionScript("still"), SystemClock().now());
@@ -242,7 +243,7 @@ std::vector<double> Subject::measure(const Options& options) {
   UniqueFd socket = connectTo(socket_, [&] { return process_ && process_->ended(); });
   std::optional<Client> client;
   if (socket.valid()) client.emplace(std::move(socket));
-  // Records that differ, since spacenavd tells only of a change.
+  // The records differ, since spacenavd reports changes only.
   for (std::uint32_t n = 0; client && !streams && n < 1500; ++n) {
     send(n);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -251,7 +252,8 @@ std::vector<double> Subject::measure(const Options& options) {
   const bool told = streams.exchange(true);
   ball.join();
   if (!told) fail("it told nothing of the emulated ball");
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // what is on its way has come
+  // Until then, everything that is on its way has arrived.
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
   return exchange(options, *client);
 }
 
@@ -277,7 +279,7 @@ bool bench(const Options& options, Report& report) {
   }
   const auto ratio =
       ratioOf(medianOf(all[kMerlind], "records"), medianOf(all[kSpacenavd], "records"), "records");
-  report.text("merlind by spacenavd, medians: {:.2f} (asked at most 1): {}\n", ratio.value(),
+  report.text("merlind by spacenavd, medians: {:.2f} (limit 1): {}\n", ratio.value(),
               ratio <= 1 ? "yes" : "NO");
   report.figure("merlind_by_spacenavd", ratio, "1");
   return true;
@@ -291,10 +293,12 @@ int main(int argc, char** argv) {
   bool json = false;
   CLI::App app("Latency from a ball's byte to a client of the space-mouse socket.");
   app.add_option("--bin", options.bin, "Folder of merlind")->required();
-  app.add_option("--samples", options.samples, "Records a round")
+  app.add_option("--samples", options.samples, "Number of records in a round")
       ->check(CLI::Range(10U, 60'000U))
       ->capture_default_str();
-  app.add_option("--rounds", options.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--rounds", options.rounds, "Number of rounds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("spnav", json, [&](merlin::bench::Report& report) {

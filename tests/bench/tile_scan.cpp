@@ -1,8 +1,8 @@
 // Meshes of any size for ./dev bench size: copies of one scan, laid out as a square of tiles.
 //
-// The tiles are no copies of one another bit by bit: each is raised and lowered by waves that run
-// over the whole square, so that no two have equal costs. Every tile is a component of its own, as
-// it is in the scan; what one tile more than enough has is cut off along its x axis.
+// The copies are not identical: waves that run over the whole square raise and lower them, so that
+// no two have equal costs. Every tile is a component of its own, as the scan is. The last tile is
+// cut along its x axis, so that the number of triangles is exact.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -17,8 +17,8 @@
 namespace merlin {
 namespace {
 
-constexpr float kGap = 0.02F;  // between tiles, of the scan's extent
-constexpr float kWave = 0.1F;  // of the height
+constexpr float kGap = 0.02F;  // gap between tiles, as a share of the scan's extent
+constexpr float kWave = 0.1F;  // height of the waves, as a share of the scan's height
 
 class Tiling {
  public:
@@ -48,7 +48,7 @@ class Tiling {
   }
 
  private:
-  // The first triangles along x, and the vertices that they use.
+  // Keeps the first triangles along x, and the vertices that they use.
   void cutLast() {
     std::vector<std::uint32_t> order(tile_.triangleCount());
     std::iota(order.begin(), order.end(), 0U);
@@ -111,7 +111,7 @@ class Tiling {
   const render::mesh::Mesh& tile_;
   render::mesh::Box box_;
   std::size_t triangles_, across_ = 1, whole_ = 0;
-  std::vector<std::uint32_t> used_, place_, last_;  // of the tile that is cut
+  std::vector<std::uint32_t> used_, place_, last_;  // of the last tile, which is cut
 };
 
 int run(const std::string& scan, double triangles, const std::string& output) {
@@ -131,14 +131,14 @@ int run(const std::string& scan, double triangles, const std::string& output) {
 }  // namespace merlin
 
 int main(int argc, char** argv) {
-  CLI::App app("A scan in tiles, as a binary PLY of so many triangles");
+  CLI::App app("Writes copies of a scan in tiles as a binary PLY with a given number of triangles");
   std::string scan, output;
   double triangles = 1e6;
-  app.add_option("scan", scan, "The tile (.ply, .obj)")->required();
-  app.add_option("triangles", triangles, "1e8 is read as well")
+  app.add_option("scan", scan, "The scan that each tile is a copy of (.ply, .obj)")->required();
+  app.add_option("triangles", triangles, "Number of triangles; it may be written as 1e8")
       ->required()
       ->check(CLI::Range(1.0, 1e9));
-  app.add_option("output", output, "The mesh (.ply)")->required();
+  app.add_option("output", output, "The mesh to be written (.ply)")->required();
   CLI11_PARSE(app, argc, argv);
   return merlin::run(scan, triangles, output);
 }

@@ -1,8 +1,9 @@
-// ./dev bench torn: torn reads of the shared memory, and what a killed writer leaves behind.
+// ./dev bench torn: torn reads of the shared memory, and the state in which a killed writer leaves
+// it.
 //
-// One process writes samples with a checksum as fast as it can, others read them: none may be a
-// mix of two. Then writers are killed with -9, most of them in the middle of a write: a reader must
-// neither hang nor believe what it finds. Exits 1 where one of the two happened.
+// One process writes samples with a checksum as fast as it can, others read them; no sample may be
+// a mix of two. Then writers are killed with -9, most of them in the middle of a write: a reader
+// must neither hang nor accept an incomplete value. Exits with 1 if either happened.
 #include <atomic>
 #include <cstring>
 #include <vector>
@@ -37,7 +38,7 @@ struct Options {
   int readers = 1;
 };
 
-// Every byte of sample n follows from n.
+// Every byte of sample n is computed from n.
 GloveSample sampleOf(std::uint32_t n) {
   GloveSample s{};
   s.received_ns = static_cast<std::int64_t>(n) * 7919;
@@ -50,7 +51,7 @@ GloveSample sampleOf(std::uint32_t n) {
   return s;
 }
 
-// The same for the largest value of the segment, in whose middle a writer is most of its time.
+// The same for the largest value of the segment; a writer spends most of its time writing it.
 DeviceHealth healthOf(std::uint64_t n) {
   DeviceHealth h{};
   h.samples = n;
@@ -100,7 +101,8 @@ void readUntil(const std::string& name, std::uint64_t reads, Shared& shared) {
   if (!reader) return;
   std::uint64_t torn = 0, empty = 0, done = 0;
   for (; done < reads; ++done) {
-    // Three of four look at the newest, one at the ring where it is about to be overwritten.
+    // Three of four reads are of the newest sample; one is of that in the ring which is overwritten
+    // next.
     const std::uint64_t count = (*reader)->glove[0].samples.count();
     const bool oldest = (done & 3) == 3 && count > shm::kHistory;
     const auto s = oldest ? (*reader)->glove[0].samples.at(count - shm::kHistory + 1)
@@ -116,7 +118,7 @@ void readUntil(const std::string& name, std::uint64_t reads, Shared& shared) {
   shared.empty += empty;
 }
 
-// That there is a segment, and that it is writable: the subject.
+// Ends the benchmark if the segment, which is its subject, was not made.
 const Writer& expectMade(const Result<Writer>& segment) {
   if (!segment) didNotRun("the shared memory", segment.error().what, "see /dev/shm");
   return *segment;
@@ -154,12 +156,12 @@ bool benchTorn(const Options& options, Report& report) {
 }
 
 struct Wreck {
-  int middle = 0;             // writers that died in the middle of a value
-  std::uint64_t rubbish = 0;  // values that read as whole and are wrong
+  int middle = 0;             // number of writers that died in the middle of a value
+  std::uint64_t rubbish = 0;  // number of values that read as complete and are wrong
   double slowest_s = 0;
 };
 
-// Looks at every slot that a dead writer left.
+// Reads every slot that a dead writer left.
 void inspect(const DevicesSegment& segment, const Clock& clock, Wreck& wreck) {
   const Timestamp start = clock.now();
   const std::uint64_t count = segment.glove[0].samples.count();
@@ -175,7 +177,7 @@ void inspect(const DevicesSegment& segment, const Clock& clock, Wreck& wreck) {
   wreck.slowest_s = std::max(wreck.slowest_s, toSeconds(clock.now() - start));
 }
 
-// A daemon's life: makes the segment, as merlind does, and writes until it is killed.
+// The life of a daemon: makes the segment, as merlind does, and writes until it is killed.
 void liveAndWrite(const std::string& name, std::uint64_t generation, int ready) {
   const SystemClock clock;
   const auto segment = Writer::make(name, shm::devicesFields({{{"glove", SampleKind::kGlove}}, {}}),
@@ -219,7 +221,7 @@ bool benchKills(const Options& options, Report& report) {
       inspect(**reader, clock, wreck);
     }
   }
-  (void)SharedMemory::create(name, 4096);  // takes the last wreck away
+  (void)SharedMemory::create(name, 4096);  // removes the segment of the last writer
   const auto middle = static_cast<std::uint64_t>(wreck.middle);
   if (wreck.middle < options.kills) {
     throw DidNotRun(fmt::format("of {} killed writers {} were in the middle of a value, not {}",
@@ -244,14 +246,14 @@ int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
   CLI::App app("Torn reads of the shared memory; killed writers.");
-  app.add_option("--reads", options.reads, "In all")
+  app.add_option("--reads", options.reads, "Number of reads, of all processes together")
       ->check(CLI::Range(1.0, 1e15))
       ->capture_default_str();
   app.add_option("--kills", options.kills,
-                 "Writers that are killed with -9 in the middle of a value")
+                 "Number of writers that are killed with -9 in the middle of a value")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app.add_option("--readers", options.readers, "Processes that read")
+  app.add_option("--readers", options.readers, "Number of processes that read")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");

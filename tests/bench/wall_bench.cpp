@@ -1,9 +1,9 @@
-// ./dev bench wall: late frames of the demo's wall, beside a bare loop that does the same median
-// work at the same rate with the same devices running, in turns; and what a dead device does to the
-// others.
+// ./dev bench wall: late frames of the demo's wall, compared with a bare loop that does the same
+// median work at the same rate while the same devices run, in turns; and the effect of a dead
+// device on the others.
 //
-// Absolute times differ from machine to machine and from second to second; what counts is the last
-// column: how much later than the bare loop.
+// Absolute times differ from machine to machine and from second to second. What counts is the last
+// column: how much later the wall is than the bare loop.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -36,7 +36,7 @@ void sleepSeconds(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
-// The same amount of arithmetic each time it runs.
+// The same amount of arithmetic each time that it runs.
 class FixedWork {
  public:
   void run() {
@@ -52,7 +52,7 @@ struct BareRun {
   Measured late, work_s;
 };
 
-// A loop that does nothing but that work, on the same grid.
+// A loop that does this work and nothing else, on the same grid.
 BareRun bareLoop(FixedWork& fixed, double rate_hz, double seconds) {
   SystemClock clock;
   const Duration period = fromSeconds(1 / rate_hz);
@@ -66,7 +66,7 @@ BareRun bareLoop(FixedWork& fixed, double rate_hz, double seconds) {
     work.push_back(toSeconds(clock.now() - began));
     const std::int64_t reached = (clock.now() - start) / period;
     late += std::max<std::int64_t>(reached - k, 0);
-    deadlines += std::max<std::int64_t>(reached - k, 1);  // its own, where it met that
+    deadlines += std::max<std::int64_t>(reached - k, 1);  // at least the turn's own deadline
     k = std::max(k + 1, reached);
   }
   constexpr const char* kWhat = "turns of the bare loop";
@@ -74,7 +74,7 @@ BareRun bareLoop(FixedWork& fixed, double rate_hz, double seconds) {
           medianOf(work, kWhat)};
 }
 
-// Chooses the amount of work so that its median, in such a loop, is `work_s`.
+// Chooses the amount of work with which the median turn of such a loop takes `work_s`.
 FixedWork workThatTakes(double work_s, double rate_hz) {
   FixedWork fixed;
   for (int i = 0; i < 6; ++i) {
@@ -116,7 +116,7 @@ WallRun runWall(const Options& options, const test::TempDir& dir, const std::str
           renderer};
 }
 
-// The bare loop has the same devices beside it: read by a merlind without a wall.
+// The bare loop runs beside the same devices, which a merlind without a wall reads.
 BareRun runBare(const Options& options, const test::TempDir& dir, const std::string& script,
                 double work_s, double rate_hz) {
   DemoDaemon devices(options, dir, "devices", withScript(script));
@@ -192,15 +192,14 @@ void benchLate(const Options& options, const test::TempDir& dir, Report& report)
     }
     const auto wall = Measured::of(meanOf(all.wall, "rounds"), all.wall_deadlines, "deadlines");
     const auto bare = Measured::of(meanOf(all.bare, "rounds"), all.bare_deadlines, "deadlines");
-    report.text(
-        "{:8}  mean: late {:.2f} %, bare loop {:.2f} % (asked: at most 2 %, or bare loop + 1 %)\n",
-        script, 100 * wall, 100 * bare);
+    report.text("{:8}  mean: late {:.2f} %, bare loop {:.2f} % (limit: 2 %, or bare loop + 1 %)\n",
+                script, 100 * wall, 100 * bare);
     report.figure(std::string(script) + ".wall_late", wall, "1");
     report.figure(std::string(script) + ".bare_late", bare, "1");
   }
 }
 
-// Intervals between the samples of a device that is not the one that was killed.
+// The intervals between the samples of a device that was not killed.
 struct Intervals {
   Measured median_ms;
   std::uint64_t missing;
@@ -240,7 +239,7 @@ void killEmulator(const DemoDaemon& wall, const std::string& driver) {
     didNotRun("the fault of " + driver, "merlind has no emulator of it to kill", "see --emulate");
 }
 
-// How long merlind took to read an emulator in the place of the killed one.
+// Time until merlind reads the emulator that replaces the killed one.
 Measured secondsUntilBack(const DemoDaemon& wall, const Victim& victim, Process& emulator) {
   if (!emulator.saysEventually(" on pty:"))
     didNotRun(fmt::format("merlin emulate {}", victim.driver), emulator.output(), "see --bin");
@@ -255,7 +254,7 @@ Measured secondsUntilBack(const DemoDaemon& wall, const Victim& victim, Process&
   return Measured::of(toSeconds(clock.now() - answered), 1, "reconnections");
 }
 
-// Samples of glove and tracker since the last look, without the device that is killed.
+// Samples of glove and tracker since the last call, except for those of the device that is killed.
 class Others {
  public:
   Others(const shm::DeviceSlots& devices, std::string victim)
@@ -285,8 +284,8 @@ class Others {
 
 using Emulators = std::vector<std::unique_ptr<Process>>;
 
-// Kills the emulator of one device for a second; says what the other two lost by it, and whether
-// the wall ran on.
+// Kills the emulator of one device for a second; reports the effect on the other two, and whether
+// the wall went on.
 bool killOne(const Victim& victim, const std::function<Process&()>& restart, DemoDaemon& wall,
              Report& report) {
   const std::string driver = victim.driver;
@@ -321,7 +320,7 @@ bool killOne(const Victim& victim, const std::function<Process&()>& restart, Dem
 
 bool benchFaults(const Options& options, const test::TempDir& dir, Report& report) {
   DemoDaemon wall(options, dir, "all", withScript("visit"));
-  Emulators emulators;  // restarted ones live to the end
+  Emulators emulators;  // the restarted emulators run until the end
   bool ran_on = true;
   sleepSeconds(3);
   report.text("\na device killed and restarted (its emulator, kill -9)\n");
@@ -346,13 +345,15 @@ bool benchFaults(const Options& options, const test::TempDir& dir, Report& repor
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Late frames of the wall beside a bare loop.");
+  CLI::App app("Late frames of the wall compared with those of a bare loop.");
   app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
   app.add_option("--config", options.config, "The wall's configuration")->required();
-  app.add_option("--seconds", options.seconds, "Of a run")
+  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
       ->check(CLI::Range(1, 86'400))
       ->capture_default_str();
-  app.add_option("--rounds", options.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--rounds", options.rounds, "Number of rounds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_flag("--json", json, "The figures as one JSON object");
   CLI11_PARSE(app, argc, argv);
   return merlin::bench::runBench("wall", json, [&](merlin::bench::Report& report) {

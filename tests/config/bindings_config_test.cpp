@@ -1,4 +1,4 @@
-// Bindings and projectors of a configuration: what could have no effect is refused.
+// Bindings and projectors of a configuration: the loader refuses those that could have no effect.
 #include <algorithm>
 #include <string>
 #include <vector>

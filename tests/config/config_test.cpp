@@ -154,7 +154,7 @@ TEST(Config, DeepNestingIsRefused) {
       std::string::npos);
 }
 
-// The number of findings kept is limited; the verdict takes all of them into account.
+// The number of findings that are kept is limited, but the verdict takes all of them into account.
 TEST(Config, ManyFindingsAreCounted) {
   std::string keys;
   for (int i = 0; i < 50'000; ++i) keys += fmt::format("\"key{}\": 1,\n", i);
@@ -215,7 +215,7 @@ TEST(Config, TheSchemaDescribesTheItemsOfEveryList) {
   EXPECT_EQ(schema.find("\"properties\": {}"), std::string::npos);
 }
 
-// A room excludes them, and a file need not have a room.
+// A room and these settings exclude each other, but a file need not have a room.
 TEST(Config, TheSchemaDescribesTilesWithoutARoom) {
   const std::string schema = settingsSchema();
   for (const char* key : {"\"frame_width\"", "\"frame_height\"", "\"frustum_deg\""})

@@ -1,4 +1,4 @@
-// Devices and hands of a configuration: what is read, and what is refused.
+// Devices and hands of a configuration: which settings the loader reads and which it refuses.
 #include <string>
 
 #include <fmt/format.h>
@@ -179,7 +179,7 @@ TEST(DevicesConfig, APortIsTheSameHoweverItIsSpelt) {
   EXPECT_EQ(both("sample", "replay:a", "replay:a"), "");
 }
 
-// A VRPN server has several devices, and gives each reader a connection of its own.
+// A VRPN server has several devices, and accepts a connection of its own for each reader.
 TEST(DevicesConfig, DevicesOfOneServerShareItsPort) {
   const auto with = [](const std::string& second, const char* port = "tcp://lab:3883") {
     return devicesAre(fmt::format(R"({{"name": "a", "driver": "vrpn", "port": "{0}"}},
@@ -214,7 +214,8 @@ TEST(DevicesConfig, AHandsGloveAndTrackerAreThere) {
             "no glove: add one\n");
 }
 
-// The names are those of the other machine's configuration.
+// The names of devices belong to the other machine's configuration, so they are not looked up in
+// this one.
 TEST(DevicesConfig, NamesOfAnotherMachinesDevicesAreNotLookedFor) {
   const std::string far = R"(, "wall": {"input": {"endpoint": "tcp://far:7401", "keys": "k",
       "server_key": ")" + std::string(40, 'k') +
@@ -389,7 +390,8 @@ TEST(DevicesConfig, TheSchemaAndTheManualDescribeEveryDriver) {
   EXPECT_EQ(schema.substr(driver, port - driver).find("\"default\""), std::string::npos);
 }
 
-// Whatever the list's length is, each setting of a device has a default to be compared with.
+// The default configuration's list may have fewer devices; a further device's settings are compared
+// with the defaults of its driver.
 TEST(DevicesConfig, SettingsOfAFurtherDeviceHaveTheirDriversDefaults) {
   const auto loaded = loadSettings(R"({"devices": [{"driver": "cyberglove"},
       {"name": "pad", "driver": "evdev", "evdev": {"curve": 3}}]})",

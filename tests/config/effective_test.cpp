@@ -1,5 +1,5 @@
-// The settings in effect: what differs from the defaults and between two configurations, and what
-// is left out for strangers.
+// The settings in effect: which of them differ from the defaults or between two configurations, and
+// which are hidden from strangers.
 #include "config/effective.h"
 
 #include <algorithm>

@@ -84,8 +84,8 @@ TEST(WallConfig, WhatIsWrongWithARoomIsSaidOnce) {
             "\"flat\", \"three_160\", \"three_120\", \"six\", \"hexagon\"\n");
 }
 
-// Three projectors on a hinged screen. The measured figures are rounded, so they are symmetric only
-// within that.
+// Three projectors on a hinged screen. The measured figures are rounded, so left and right are
+// symmetric only up to the rounding.
 TEST(WallConfig, TheShippedRoomIsThreePanelsAroundTheViewer) {
   const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-three-160.json");
   ASSERT_EQ(loaded.verdict(), Verdict::kValid) << findingsOf(loaded);
@@ -98,7 +98,7 @@ TEST(WallConfig, TheShippedRoomIsThreePanelsAroundTheViewer) {
   EXPECT_NEAR(left[3], tiles[1].screen_m[0], 1e-12) << "hinged";
 }
 
-// 0.3 m of 1.6 m, which 1024 pixels show.
+// The overlap is 0.3 m of a picture that is 1.6 m and 1024 pixels wide.
 TEST(WallConfig, TheShippedFlatWallIsBlendedByWhatTheRoomSays) {
   const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-flat-overlap.json");
   ASSERT_EQ(loaded.verdict(), Verdict::kValid) << findingsOf(loaded);
@@ -203,7 +203,8 @@ TEST(WallConfig, StereoIsCheckedWithTheRestOfTheWall) {
             "/hands/0 too; the head needs its own station\n");
 }
 
-// The nearest value in the range has another meaning: no stereo, and the distance of the wall.
+// The nearest allowed value would mean something else (0: no stereo, or the distance of the wall),
+// so the value is refused instead of adjusted.
 TEST(WallConfig, StereoDistancesOutOfRangeAreRefused) {
   EXPECT_EQ(wallIs(R"("stereo": {"mode": "anaglyph", "eye_separation_m": -0.063})"),
             "f.json:1: /wall/stereo/eye_separation_m is -0.063; allowed is 0 to 10; it is in "
@@ -252,7 +253,8 @@ TEST(WallConfig, APanelNeedsAnOperatorsTileWithRoom) {
             "/wall/operator/panel is off\n");
 }
 
-// The pair of "left" is two placed tiles; the finding is at the one of the file.
+// In stereo, the one entry "left" stands for two placed tiles; the finding has to name the entry in
+// the file.
 TEST(WallConfig, AFaultOfAnOutputInStereoIsWhereTheFileHasIt) {
   EXPECT_EQ(
       wallIs(R"("stereo": {"mode": "side_by_side"}, "outputs": [

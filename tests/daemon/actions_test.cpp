@@ -25,7 +25,7 @@ constexpr std::size_t kGrab = actionIndex("grab"), kNextMode = actionIndex("next
 
 class ActionsTest : public testing::Test {
  protected:
-  // `source`: index in the segment.
+  // `source`: index of the device in the segment.
   ActionWriter writer(const std::vector<Binding>& bindings, std::size_t source,
                       std::uint64_t generation = 1) {
     const auto devices = test::defaultSlotNames().devices;
@@ -197,8 +197,8 @@ TEST_F(ActionsTest, WhatStaysBoundGoesOnAndWhatIsNoMoreEnds) {
   EXPECT_TRUE(pressed.all.held[kGrab]);
 }
 
-// An input that is pressed at that moment triggers nothing, neither when it is seen nor when it
-// ends.
+// An input that is pressed while its binding changes triggers nothing, neither when the press is
+// seen nor when it ends.
 TEST_F(ActionsTest, ANewBindingWaitsForTheNextPress) {
   ActionWriter w = writer({{"ball.button.1", "next_mode"}}, test::kBall);
   w.update(ball(1));
@@ -219,7 +219,7 @@ TEST_F(ActionsTest, ANewBindingWaitsForTheNextPress) {
   EXPECT_EQ(read().all.begun[kNextMode], 1u) << "the panel's button is released between presses";
 }
 
-// A ball at rest sends no samples, but its health.
+// A ball at rest sends no samples, but its health is still reported.
 TEST_F(ActionsTest, ADeviceThatSendsNothingIsReboundByItsHealth) {
   test::RecordingSink samples;
   test::RecordingHealth healths;
@@ -356,7 +356,8 @@ TEST_F(ActionsTest, WhatRepeatsDoesSoWhileItsInputIsHeld) {
   EXPECT_EQ(read().all.begun[kNextMode], 0u);
 }
 
-// A gamepad sends nothing while a button is held.
+// A gamepad sends nothing while a button is held, so time-outs and repetitions must not depend on
+// samples.
 TEST_F(ActionsTest, WhatRepeatsOrWaitsIsInTimeWithADeviceThatIsSilent) {
   Binding next{"ball.button.1", "next_mode"};
   next.repeat_s = 0.1;
@@ -462,7 +463,7 @@ TEST_F(ActionsTest, AGestureIsThatOfItsHandOrOfAny) {
   EXPECT_EQ(state(test::kGlove).changed_ns, 6);
 }
 
-// The numbers that a kernel might have for these.
+// Codes that the kernel might have for these names.
 std::optional<std::uint16_t> keyCode(std::string_view name) {
   if (name == "key_space") return 57;
   if (name == "key_tab") return 15;
@@ -542,7 +543,8 @@ TEST_F(ActionsTest, ADeviceThatLacksABoundKeySaysSoOnceItWorks) {
   EXPECT_EQ(reason(HealthState::kOk), "") << "key.tab may be that of another device";
 }
 
-// Two fingers at the same height, this far apart; the surface is twice as wide as high.
+// A sample of two fingers at the same height and this far apart, on a surface twice as wide as
+// high.
 TouchSample fingers(float apart, std::uint32_t second = 2) {
   TouchSample sample{};
   sample.fingers = 2;

@@ -1,4 +1,4 @@
-// Alarms: for which events a program is started, and how often; a program with a limited time.
+// Alarms: which events start a program and how often, and a program whose time is limited.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(AlarmQueue, IsNeverForWhatIsRoutine) {
 }
 
 TEST(AlarmQueue, TellsFaultsFirstAndKeepsTheLastStartForOne) {
-  AlarmQueue queue(settings(12));  // six at once
+  AlarmQueue queue(settings(12));  // at most six starts at once
   for (int i = 0; i < 8; ++i) queue.add(event("news", "device", Severity::kNews));
   for (int i = 0; i < 5; ++i) EXPECT_EQ(queue.next(at(0))->event.what, "news") << i;
   EXPECT_FALSE(queue.next(at(0)));
@@ -139,7 +139,7 @@ TEST(AlarmQueue, SaysHowManyEventsWereLeftOut) {
   for (std::size_t i = 0; i < AlarmQueue::kMost + 5; ++i) queue.add(event(std::to_string(i)));
   EXPECT_FALSE(queue.next(at(1)));
   queue.add(event("later"));
-  const auto next = queue.next(at(3605));  // those that waited are too old by now
+  const auto next = queue.next(at(3605));  // the events that waited are too old by now
   ASSERT_TRUE(next);
   EXPECT_EQ(next->event.what, "later");
   EXPECT_EQ(next->left_out, AlarmQueue::kMost + 5);
@@ -163,7 +163,7 @@ TEST(AlarmSettings, ProgramsAreAbsolutePathsAndKindsAreThoseOfEvents) {
   EXPECT_EQ(pointers, (std::vector<std::string>{"/0/run", "/1/run/0", "/2/kinds/1"}));
 }
 
-// Waits, on the system's clock, until the program has ended.
+// Waits, on the system's clock, until the program has ended; returns how it ended.
 std::string outcome(ChildProgram& program, double pretend_s = 0) {
   const SystemClock clock;
   std::optional<std::string> ended;
@@ -196,7 +196,8 @@ TEST(ChildProgram, SaysHowItFailed) {
   EXPECT_EQ(missing.error().code, Errc::kNotFound);
 }
 
-// In a child, whose limit is its own: there are descriptors for none to three of five files.
+// Runs in a child, so that the limit on descriptors affects the child alone: of the five files that
+// are needed, none to three can be opened.
 TEST(ChildProgram, IsNamedWhereDescriptorsRanOut) {
   const auto child = startChild();
   ASSERT_TRUE(child);
@@ -234,7 +235,7 @@ TEST(ChildProgram, OfWhatItWritesTheBeginningIsKept) {
   EXPECT_EQ(lines.back(), "... and 2997952 bytes more, left out");
 }
 
-// The check reports the same reason as the start.
+// The check has to report the same reason as the start.
 TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
   const TempDir dir;
   const std::string script = dir / "script";
@@ -261,7 +262,7 @@ TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
     EXPECT_EQ(whatOf(text), "started") << text;
 }
 
-// If a program is not a script, only the kernel can say whether it can be executed.
+// Only the kernel can say whether a program that is not a script can be executed.
 TEST(ChildProgram, IsNotJudgedByBytesThatAreNoScript) {
   const TempDir dir;
   test::writeText(dir / "program", std::string("MZ\0\1", 4));
@@ -280,7 +281,8 @@ TEST(ChildProgram, IsEndedWithAllThatItStartedWhenItsTimeIsOver) {
   EXPECT_FALSE(program->ended(SystemClock().now()));
   EXPECT_EQ(outcome(*program, 7200), "took longer than its time limit, and was ended");
   const pid_t sleeper = std::stoi(test::readText(dir / "pid"));
-  EXPECT_TRUE(test::eventually([&] {  // gone, or a zombie that init has not collected yet
+  // The process is gone, or is a zombie that init has not collected yet.
+  EXPECT_TRUE(test::eventually([&] {
     const std::string stat = test::readText("/proc/" + std::to_string(sleeper) + "/stat");
     return stat.empty() || stat.find(") Z") != std::string::npos;
   }));

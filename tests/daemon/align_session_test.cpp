@@ -1,4 +1,4 @@
-// merlin wall align with keys: what the keys are, what they ask the wall for, what the screen
+// merlin wall align with keys: what each key means, what it asks the wall for, and what the screen
 // shows.
 #include "daemon/cli/wall/align_session.h"
 
@@ -65,7 +65,7 @@ class SessionTest : public testing::Test {
   bool open_ = true;
 };
 
-// A projector that hangs upside down, and one that throws from behind.
+// One projector hangs upside down, the other one throws from behind the screen.
 TEST_F(SessionTest, KeysMoveWhatIsSeenWhereTheSignalIsTurned) {
   answer_.outputs[0].axes = {{-1, 0}, {0, -1}};
   answer_.outputs[0].corners[3].moved = {4, 7};
@@ -84,7 +84,7 @@ TEST_F(SessionTest, KeysMoveWhatIsSeenWhereTheSignalIsTurned) {
 }
 
 TEST(SeenAxes, AQuarterTurnGoesThereAndBack) {
-  // Clockwise: what is to the right on the wall is below in the signal.
+  // Turned clockwise: what is to the right on the wall is below in the signal.
   const state::SeenAxes axes{{0, 1}, {-1, 0}};
   EXPECT_EQ(axes.onSignal({3, 5}), (state::Offset{-5, 3}));
   EXPECT_EQ(axes.seen({-5, 3}), (state::Offset{3, 5}));

@@ -1,4 +1,4 @@
-// merlin wall align --list: the answer of a wall as lines for people.
+// merlin wall align --list: the wall's answer as lines for people.
 #include "daemon/cli/wall/aligned_wall.h"
 
 #include <string>

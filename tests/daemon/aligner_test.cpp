@@ -1,4 +1,4 @@
-// Aligner: which corrections are built, what is refused, what is there after a restart.
+// Aligner: which corrections it builds, what it refuses, and what is still there after a restart.
 #include "daemon/wall/aligner.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// Says by which settings it was built.
+// A correction whose result shows the settings by which it was built.
 struct FakeCorrection final : render::frame::Correction {
   explicit FakeCorrection(const render::correct::CorrectionSettings& s) : settings(s) {}
   render::out::Signal apply(const render::out::Signal&) override {
@@ -26,7 +26,7 @@ class AlignerTest : public testing::Test {
     base_.corners = {4, 8, 0, 0, 0, 0, 0, 0};
     start();
   }
-  // Restarts the aligner with what is kept of the last one.
+  // Restarts the aligner with the state that the last one kept.
   void start() {
     aligner_.reset();
     std::vector<AlignedOutput> outputs;
@@ -64,7 +64,7 @@ class AlignerTest : public testing::Test {
   json moved(const std::string& corner, std::size_t output = 0) {
     return ask("list")["outputs"][output]["corners"][corner]["moved"];
   }
-  // Where the first corner of the left output is now.
+  // The present place of the first corner of the left output.
   std::pair<int, int> shown() {
     EXPECT_TRUE(test::eventually([&] { return ask("list")["outputs"][0]["pending"] == false; }));
     const render::out::Signal signal = left_->apply({});
@@ -165,10 +165,10 @@ TEST_F(AlignerTest, WhatCannotBeShownIsRefusedAndNothingChanges) {
 
 TEST_F(AlignerTest, BoundInputsMoveWhatIsChosen) {
   AlignInput input;
-  input.actions = {3, 3, 5};  // right twice, down
+  input.actions = {3, 3, 5};  // right twice, then down
   aligner_->ask(input);
   EXPECT_TRUE(test::eventually([&] { return moved("top_left") == json({2, 1}); }));
-  input.actions = {0, 1, 1, 1, 2};  // next output, three corners on, left
+  input.actions = {0, 1, 1, 1, 2};  // next output, three corners further, then left
   aligner_->ask(input);
   EXPECT_TRUE(test::eventually([&] { return moved("bottom_right", 1) == json({-1, 0}); }));
   EXPECT_EQ(aligner_->selection(), (Aligner::Selection{"right", state::cornerAt(3)}));
@@ -185,13 +185,14 @@ TEST_F(AlignerTest, BoundInputsMoveWhatIsChosen) {
 
 TEST_F(AlignerTest, BoundInputsAreExecutedInTheirOrder) {
   AlignInput input;
-  input.actions = {3, 3, 1, 5, 5, 6};  // right twice, the next corner, down twice, undo
+  input.actions = {3, 3, 1, 5, 5, 6};  // right twice, next corner, down twice, undo
   aligner_->ask(input);
   EXPECT_TRUE(test::eventually([&] { return moved("top_right") == json({0, 1}); }));
   EXPECT_EQ(moved("top_left"), json({2, 0}));
 }
 
-// The aligned corners are written into the configuration: they are not to be moved once more.
+// The aligned corners were written into the configuration, so the moves must not be added to them
+// again.
 TEST_F(AlignerTest, CornersThatTheConfigurationChangesAreTakenWithoutWhatWasMoved) {
   ask("move top_left 3 2 left");
   start();
@@ -222,12 +223,12 @@ TEST_F(AlignerTest, AnOutputWithBothEyesPicturesIsNotMoved) {
   EXPECT_EQ(moved("top_left"), json({3, 2}));
 }
 
-// A projector that hangs upside down: the left of who stands before the wall is its right.
+// The projector hangs upside down: what is left to a person before the wall is right in its signal.
 TEST_F(AlignerTest, BoundInputsMoveCornersAsTheyAreSeen) {
   axes_ = {{-1, 0}, {0, -1}};
   start();
   AlignInput input;
-  input.actions = {3, 3, 5};  // right twice, down
+  input.actions = {3, 3, 5};  // right twice, then down
   aligner_->ask(input);
   EXPECT_TRUE(test::eventually([&] { return moved("top_left") == json({-2, -1}); }));
   input.actions = {};
@@ -248,7 +249,7 @@ TEST_F(AlignerTest, AnotherConfigurationIsShownAndKeepsWhatWasMoved) {
     return built_.back().blend.right == 80;
   }));
   EXPECT_EQ(shown(), std::pair(7, 9));
-  other.corners[0] = 5;  // the alignment was for others
+  other.corners[0] = 5;  // the alignment was made for other configured corners
   aligner_->configure("left", other);
   EXPECT_EQ(moved("top_left"), json({0, 0}));
   EXPECT_EQ(shown(), std::pair(5, 8));
@@ -296,7 +297,7 @@ TEST_F(AlignerTest, AnAlignmentComesBackWithItsStepsWhenTheOutputHasItsSizeAgain
   ask("move top_left 1 0 left");
   ask("undo");
   keeper_.takeNotices();
-  width_ = 64;  // a wrong figure in the configuration
+  width_ = 64;  // a wrong number in the configuration
   start();
   EXPECT_EQ(shown(), std::pair(4, 8));
   EXPECT_EQ(ask("list")["undo"], 0);
@@ -337,7 +338,7 @@ TEST_F(AlignerTest, AReloadThatTakesTheCornersBackBringsTheAlignmentBack) {
   EXPECT_EQ(keeper_.state().alignment.offset("left", state::cornerAt(0)), (state::Offset{3, 1}));
 }
 
-// All outputs together have a limit; once somebody makes room, the next fit uses it.
+// The outputs' alignments have a common limit. When one is reset, the next that fits uses the room.
 TEST_F(AlignerTest, AnAlignmentThatComesBackToAnotherOutputThanTheConfiguredOneIsShown) {
   base_.mesh.columns = base_.mesh.rows = 64;
   for (int i = 0; i < 64 * 64; ++i) base_.mesh.points.push_back({i % 64 / 63.0, i / 64 / 63.0});

@@ -1,4 +1,4 @@
-// Which alignments are set aside when an output changes, and which come back.
+// Which alignments are set aside when an output changes, and which of them return.
 #include "daemon/wall/alignment_fit.h"
 
 #include <string>
@@ -28,7 +28,7 @@ class AlignmentFit : public testing::Test {
   render::out::PictureSize size_;
 };
 
-// What a reload says before it is done.
+// The announcement of a reload before it is carried out.
 TEST_F(AlignmentFit, NamesTheOutputsWhoseAlignmentsDoNotFitOrFitAgain) {
   state::Alignment alignment, earlier;
   alignment.move(form("left", size_.width), state::cornerAt(0), {1, 1});

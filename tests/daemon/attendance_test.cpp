@@ -1,4 +1,4 @@
-// What counts as a touch, and what touches undo.
+// What counts as a touch by a visitor, and which states of the wall a touch ends.
 #include "daemon/wall/attendance.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@ using Shown = Attendance::Shown;
 
 class AttendanceTest : public testing::Test {
  protected:
-  // A frame 20 ms after the last one, with `input_`, of which what happens once is removed then.
+  // Simulates a frame 20 ms after the last one with `input_`, whose one-time events are removed
+  // afterwards.
   Shown frame() {
     now_ += milliseconds(20);
     WallInput input = input_;
@@ -38,7 +39,7 @@ class AttendanceTest : public testing::Test {
     input_.scene.hand.emplace();
     input_.scene.hand->position_m[0] = x_m;
   }
-  // Black, and nobody has touched anything for some time.
+  // Makes the wall black; nobody has touched anything for some time.
   void black() {
     input_ = {};
     attendance_.touch();
@@ -96,8 +97,8 @@ TEST_F(AttendanceTest, NothingElseDoes) {
   EXPECT_EQ(frame(), Shown::kBlank);
 }
 
-// A forgotten glass, or a marked object that stands there for good, whose place the surface reports
-// with some noise.
+// A forgotten glass, or a marked object that stands on the surface permanently. The surface reports
+// its position with some noise.
 TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesOrMoves) {
   black();
   input_.scene.touch.fingers = 1;
@@ -108,7 +109,7 @@ TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesOrMoves) {
     input_.scene.touch.right = i % 2 == 0 ? 0.002F : -0.002F;
     ASSERT_EQ(frame(), Shown::kBlank) << i;
   }
-  input_.scene.touch.right = 0.0006F;  // slowly, three hundredths of the height in a second
+  input_.scene.touch.right = 0.0006F;  // slowly: 3 % of the surface's height in a second
   EXPECT_EQ(pass(milliseconds(200)), Shown::kPicture);
   input_.scene.touch.right = 0;
   pass(milliseconds(600));
@@ -120,8 +121,8 @@ TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesOrMoves) {
   EXPECT_EQ(frame(), Shown::kPicture) << "it comes again";
 }
 
-// A pinch is bound to blank or freeze: the fingers are lifted long after, not at once, and move as
-// they are.
+// A pinch is bound to blank or freeze. The fingers are lifted long afterwards, one after the other,
+// and move meanwhile.
 TEST_F(AttendanceTest, TheFingersThatMakeItBlackOrFrozenDoNotUndoItWhenTheyAreLifted) {
   for (const auto& [action, shown] : {std::pair(&WallInput::blank, Shown::kBlank),
                                       std::pair(&WallInput::freeze, Shown::kFrozen)}) {
@@ -152,7 +153,7 @@ TEST_F(AttendanceTest, TheFingersThatMakeItBlackOrFrozenDoNotUndoItWhenTheyAreLi
   }
 }
 
-// A marked object may stand on the surface for good.
+// A marked object may stand on the surface permanently.
 TEST_F(AttendanceTest, AFingerThatComesBesideThoseOfTheGestureUndoesIt) {
   input_.scene.touch.fingers = 3;
   pass(milliseconds(600));
@@ -165,7 +166,7 @@ TEST_F(AttendanceTest, AFingerThatComesBesideThoseOfTheGestureUndoesIt) {
   EXPECT_EQ(frame(), Shown::kPicture);
 }
 
-// The fingers that touch when a button makes the wall black are not of its gesture.
+// Fingers that touch the surface while a button makes the wall black do not belong to that action.
 TEST_F(AttendanceTest, WhatStandsOnTheSurfaceWhenAButtonMakesItBlackUndoesItWhenItMoves) {
   input_.scene.touch.fingers = 1;
   pass(milliseconds(600));
@@ -176,7 +177,7 @@ TEST_F(AttendanceTest, WhatStandsOnTheSurfaceWhenAButtonMakesItBlackUndoesItWhen
   EXPECT_EQ(frame(), Shown::kPicture);
 }
 
-// The first finger shows the picture; the gesture is complete a second later.
+// The first finger ends the black state; the gesture is complete a second later.
 TEST_F(AttendanceTest, TheGestureThatMadeItBlackMakesItLight) {
   const auto gesture = [&] {
     input_.scene.touch.fingers = 3;
@@ -205,7 +206,7 @@ TEST_F(AttendanceTest, TheLongPressThatMadeItBlackMakesItLight) {
     input_.scene.ball->buttons = 1;
     return pass(milliseconds(1000));
   };
-  input_.scene.ball.emplace().buttons = 1;  // it is stuck
+  input_.scene.ball.emplace().buttons = 1;  // a button that is stuck
   EXPECT_EQ(press(), Shown::kBlank);
   EXPECT_EQ(press(), Shown::kPicture);
   EXPECT_EQ(press(), Shown::kBlank);
@@ -271,7 +272,8 @@ TEST_F(AttendanceTest, BlackIsAboveFrozen) {
   EXPECT_FALSE(attendance_.isFrozen());
 }
 
-// Whoever turns the ball when the operator makes the wall black does not undo it by going on.
+// A visitor who turns the ball while the operator makes the wall black does not end that by turning
+// on.
 TEST_F(AttendanceTest, AMotionThatGoesOnIsNoNewTouch) {
   push(1);
   pass(milliseconds(100));
@@ -287,7 +289,7 @@ TEST_F(AttendanceTest, AMotionThatGoesOnIsNoNewTouch) {
   EXPECT_EQ(frame(), Shown::kPicture);
 }
 
-// The button arrives with its action, the ball trembles, and the button is released.
+// The button arrives together with its action, the ball trembles, and the button is released.
 TEST_F(AttendanceTest, TheButtonThatMakesItBlackDoesNotUndoIt) {
   for (const Shown expected : {Shown::kBlank, Shown::kPicture}) {
     pass(milliseconds(600));
@@ -301,7 +303,7 @@ TEST_F(AttendanceTest, TheButtonThatMakesItBlackDoesNotUndoIt) {
   }
 }
 
-// A long press: the hand that lets go of the button shakes the ball, however late.
+// A long press: the hand that releases the button shakes the ball, however late that is.
 TEST_F(AttendanceTest, TheReleaseOfTheButtonThatMakesItBlackDoesNotUndoIt) {
   input_.scene.ball.emplace().buttons = 1;
   pass(milliseconds(1500));
@@ -347,7 +349,7 @@ TEST_F(AttendanceTest, AHandThatHoldsAnActionTouchesWhileItMoves) {
   pass(milliseconds(1000));
   attendance_.toggleFreeze();
   frame();
-  input_.scene.hand->position_m[0] = 1.015F;  // trembles
+  input_.scene.hand->position_m[0] = 1.015F;  // a tremor of the hand
   EXPECT_EQ(pass(milliseconds(1000)), Shown::kFrozen);
   input_.scene.hand->position_m[0] = 1.03F;
   EXPECT_EQ(frame(), Shown::kPicture);

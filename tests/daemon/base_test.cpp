@@ -63,7 +63,7 @@ TEST(FileCopy, IsTheFilesBytesAndStaysThemWhateverBecomesOfTheFile) {
   const auto copy = FileCopy::read(dir / "f");
   ASSERT_TRUE(copy);
   EXPECT_EQ(copy->stamp(), fileStamp(dir / "f"));
-  test::writeText(dir / "f", std::string(10'000, 'b'));  // overwritten in place
+  test::writeText(dir / "f", std::string(10'000, 'b'));  // overwrites the file in place
   EXPECT_NE(copy->stamp(), fileStamp(dir / "f"));
   ASSERT_EQ(::truncate((dir / "f").c_str(), 0), 0);
   EXPECT_EQ(copy->text(), std::string(10'000, 'a'));
@@ -139,7 +139,7 @@ TEST(WriteFile, AFileAppearsWholeOrTheOldOneStays) {
       << "no temporary file is left";
 }
 
-// Simulates a full disk by a limit of 1 kB on the size of a file.
+// Simulates a full disk by limiting the size of a file to 1 kB.
 TEST(WriteFile, OnAFullDiskTheOldOneStays) {
   const test::TempDir dir;
   ASSERT_TRUE(writeFile(dir / "f", "old"));

@@ -1,4 +1,4 @@
-// Pipes to children, their start and the wait for their end.
+// Pipes to child processes, their start, and the wait for their end.
 #include "daemon/base/child_process.h"
 
 #include <csignal>
@@ -35,22 +35,23 @@ TEST(ChildProcess, NeitherEndOfAPipeReachesAnotherProgram) {
     EXPECT_TRUE(::fcntl(end->get(), F_GETFD) & FD_CLOEXEC);
 }
 
-int signalled = -1;  // the handler tells the child here that a signal arrived
+int signalled = -1;  // write end of a pipe: the handler tells the child that a signal has arrived
 
-// The child sends a signal each time the last one has arrived, then ends.
+// The child sends one signal after another, each when the last one has arrived, and then ends.
 TEST(ChildProcess, ASignalDoesNotEndTheWait) {
   auto pipe = makePipe();
   ASSERT_TRUE(pipe);
   signalled = pipe->to.get();
   struct sigaction tell {};
-  tell.sa_handler = [](int) { (void)!::write(signalled, "", 1); };  // without SA_RESTART
+  // Without SA_RESTART the signal interrupts a wait.
+  tell.sa_handler = [](int) { (void)!::write(signalled, "", 1); };
   struct sigaction before {};
   ASSERT_EQ(::sigaction(SIGUSR1, &tell, &before), 0);
   const pid_t parent = ::getpid();
   const auto child = startChild();
   ASSERT_TRUE(child);
   if (*child == 0) {
-    pipe->to.reset();  // so that it does not outlive the test
+    pipe->to.reset();  // so that the child ends when the test does
     char byte = 0;
     for (int i = 0; i < 1000; ++i) {
       if (::kill(parent, SIGUSR1) != 0 || ::read(pipe->from.get(), &byte, 1) != 1) ::_exit(1);
@@ -62,7 +63,7 @@ TEST(ChildProcess, ASignalDoesNotEndTheWait) {
   ::sigaction(SIGUSR1, &before, nullptr);
 }
 
-// In a child, whose limit is its own.
+// Runs in a child, so that the limit on descriptors affects the child alone.
 TEST(ChildProcess, WithoutDescriptorsThePipeIsSaidToBeMissing) {
   auto pipe = makePipe();
   ASSERT_TRUE(pipe);

@@ -1,4 +1,4 @@
-// The images of `merlin mesh compare`: the parts that need no OpenGL.
+// The images of `merlin mesh compare`, as far as they need no OpenGL.
 #include "daemon/cli/mesh/compare_pictures.h"
 
 #include <gtest/gtest.h>

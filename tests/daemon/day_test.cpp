@@ -1,5 +1,5 @@
-// A day of a wall on a virtual clock, over the classes that merlind runs: visitors and an operator,
-// the playlist, the projectors' schedule and PJLink, and two restarts. The table says what happened
+// A day of a wall on a virtual clock, with the classes that merlind runs: visitors and an operator,
+// the playlist, the projectors' schedule, PJLink, and two restarts. The table lists what happened
 // when.
 #include <map>
 #include <optional>
@@ -25,8 +25,8 @@ constexpr pjlink::LocalMinute kMonday = 20605 * 24 * 60;  // 2026-06-01 00:00
 
 constexpr int at(int hour, int minute) { return 60 * (60 * hour + minute); }
 
-// A clock that runs the acts of each second, whoever lets the time pass. So a projector that
-// answers slowly delays nothing else, as in merlind, where it has a thread of its own.
+// A clock that performs the acts of each second, whoever advances it. So a projector that answers
+// slowly delays nothing else, as in merlind, where each projector has a thread.
 class DayClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return now_; }
@@ -42,7 +42,7 @@ class DayClock final : public Clock {
     }
     now_ = end;
   }
-  // Seconds of the day.
+  // Seconds since the day's midnight.
   int second() const {
     return static_cast<int>(std::chrono::duration_cast<seconds>(now_ - kMidnight).count());
   }
@@ -55,7 +55,7 @@ class DayClock final : public Clock {
 
 using Connection = test::EmulatedConnection<DayClock>;
 
-// How a projector is connected.
+// The connection of one projector.
 struct Link {
   EmulatedProjector device;
   Duration answer_time{};
@@ -64,7 +64,7 @@ struct Link {
 
 class Day : public testing::Test {
  protected:
-  // Adds what is done at a second of the day, and the row of the report that says so.
+  // Adds an act at a second of the day, and its row in the report.
   void when(int second, const std::string& row, std::function<void()> act) {
     acts_.insert({second, {row, std::move(act)}});
   }
@@ -126,7 +126,7 @@ class Day : public testing::Test {
       kept_.projectors = {person.on, person.at};
     });
   }
-  // What people changed comes back from the text of the state's file.
+  // The settings that people changed are restored from the text of the state file.
   void restart() {
     say("merlind is restarted");
     const auto read = state::parseState(state::stateText(kept_), "state");

@@ -22,7 +22,7 @@ constexpr Duration kStaleAfter = milliseconds(500);
 class DeviceFeedTest : public testing::Test {
  protected:
   void SetUp() override { start(test::defaultSlotNames(), 1); }
-  // Starts a devices' process with these devices, which all work.
+  // Starts a devices' process with these devices, all of which work.
   void start(const shm::SlotNames& names, std::uint64_t generation) {
     segment_.reset();
     auto made = shm::SegmentWriter<shm::DevicesSegment>::make(name_, shm::devicesFields(names),
@@ -87,7 +87,7 @@ TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   EXPECT_EQ(feed.read(now_).scene.hand->position_m[0], 0.5F);
 }
 
-// The wheel of a mouse counts from zero in each run of the devices' process.
+// The wheel of a mouse counts from zero after each start of the devices' process.
 TEST_F(DeviceFeedTest, ARestartOfTheDevicesTurnsNoWheel) {
   const shm::SlotNames names{{{"mouse", SampleKind::kTouch}}, {}};
   const auto wheel = [&](std::uint16_t notches) {
@@ -101,7 +101,7 @@ TEST_F(DeviceFeedTest, ARestartOfTheDevicesTurnsNoWheel) {
   start(names, 1);
   EXPECT_EQ(wheel(40), 0) << "where it stands at first moves nothing";
   EXPECT_GT(wheel(41), 0);
-  now_ += seconds(2);  // the old segment counts as alive for one
+  now_ += seconds(2);  // the heartbeat of the old segment is too old by now
   start(names, 2);
   EXPECT_EQ(wheel(0), 0);
   EXPECT_LT(wheel(65535), 0);
@@ -273,7 +273,7 @@ TEST_F(DeviceFeedTest, HeldMovesOfTwoDirectionsCancel) {
 TEST_F(DeviceFeedTest, WithoutADaemonThereIsNothing) {
   push();
   EXPECT_TRUE(read().scene.ball);
-  now_ += seconds(2);  // two seconds without a heartbeat
+  now_ += seconds(2);  // two seconds pass without a heartbeat
   EXPECT_FALSE(feed_.read(now_).scene.ball);
 }
 
@@ -301,7 +301,8 @@ TEST_F(DeviceFeedTest, ThePushOfTheBallIsTheCornersWhileThatIsHeld) {
   EXPECT_NEAR(input.align.push.y, -60 * 0.1 * 0.125, 1e-9) << "up, gently, and no jump";
 }
 
-// As after an update of one of two processes: the reason is logged once, not at each attempt.
+// As after an update of only one of the two processes. The reason is logged once, not at each
+// attempt.
 TEST_F(DeviceFeedTest, ASegmentWhoseSlotsAreNotOursIsNoDeviceAndIsReportedOnce) {
   initLog(LogLevel::kWarning);
   push();
@@ -337,7 +338,7 @@ TEST_F(DeviceFeedTest, AlignActionsArriveInTheirOrder) {
   for (std::size_t i = 0; i < kAlignActionCount; ++i) EXPECT_EQ(input.align.actions[i], i);
 }
 
-// The ball works the operator's panel: what its buttons are bound to does not happen meanwhile.
+// While the ball works the operator's panel, the actions bound to its buttons are not carried out.
 TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
   const auto begin = [&](std::size_t source, std::uint32_t times) {
     shm::ActionState state{};
@@ -363,7 +364,7 @@ TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
   EXPECT_FALSE(input.scene.fly);
 }
 
-// The gestures of a hand are those of its person, whoever's the tracker is.
+// The gestures of a hand belong to the hand's person, whoever has the tracker.
 TEST_F(DeviceFeedTest, AGesturesActionIsItsPersons) {
   FeedSettings two = settings();
   two.hands = {{"hand", "ben", "", {"", 2}}};

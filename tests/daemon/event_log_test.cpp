@@ -1,4 +1,4 @@
-// The page's list of events: numbers, bounds, memory.
+// The page's list of events: their numbers, its limits, its memory.
 #include "daemon/page/event_log.h"
 
 #include <cstdint>

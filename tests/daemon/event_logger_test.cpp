@@ -1,4 +1,4 @@
-// Tests which events are logged, and how.
+// Which events are logged, and with which words.
 #include "daemon/base/event_logger.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ class EventLoggerTest : public testing::Test {
   void log(const std::string& what, bool is_fault = true, const EventKind& kind = kDeviceEvent) {
     logger_.log(kind, is_fault ? faultEvent(what) : newsEvent(what), now_);
   }
-  // For so many seconds, ten times a second, as merlind does.
+  // Lets `for_s` seconds pass; calls the logger ten times a second, as merlind does.
   void wait(int for_s) {
     for (int i = 0; i < 10 * for_s; ++i) {
       now_ += std::chrono::milliseconds(100);

@@ -1,4 +1,4 @@
-// The flight recorder keeps the last bytes of a device and the beginning of its connection.
+// The flight recorder keeps a device's last bytes and the beginning of its connection.
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -41,7 +41,7 @@ TEST(FlightRing, KeepsWhatWentBothWaysWithItsTimes) {
   ring.said(clock.now(), asBytes("S"));
   clock.advance(milliseconds(10));
   ring.heard(clock.now(), asBytes("one"));
-  ring.heard(clock.now(), asBytes("two"));  // at the same time, so it is appended to the same chunk
+  ring.heard(clock.now(), asBytes("two"));  // at the same time: the same chunk
   clock.advance(milliseconds(10));
   ring.heard(clock.now(), asBytes(std::string(100, 'x')));
   Duration left_out{};
@@ -117,7 +117,8 @@ TEST(FlightRing, MayBeTakenWhileItIsWritten) {
   }
 }
 
-// A dump of an emulated glove, replayed through the driver, gives the samples that the daemon got.
+// A dump of an emulated glove, replayed through the driver, gives the samples that the daemon
+// received.
 TEST(FlightRecorder, WhatItDumpsReplays) {
   const test::TempDir dir;
   const auto segment = std::make_unique<shm::DevicesSegment>();
@@ -165,7 +166,7 @@ TEST(FlightRecorder, AFaultThatRecursIsDumpedOnce) {
   FlightRecorder recorder(*segment, dir / "flight", "lab");
   (void)recorder.ringOf(test::kBall, "ball", "spaceball", 9600);
   std::int64_t now_ns = 1'000'000'000'000;
-  // The number of dumps of a device that works for this time and fails.
+  // The number of dumps after a device has worked for `works` and then failed.
   const auto dumpsOf = [&](Duration works, const char* reason) {
     DeviceHealth health{};
     health.state = HealthState::kOk;
@@ -200,10 +201,10 @@ TEST(FlightRecorder, KeepsEightDumpsOfADevice) {
   EXPECT_EQ(files, 8u);
 }
 
-// A process with a recorder, and then another of the same name.
+// A process with a recorder, followed by another one of the same name.
 class FlightOfACrash : public testing::Test {
  protected:
-  // In a process of its own, which ends without order unless `in_order`.
+  // Records in a process of its own, which ends without closing the recorder unless `in_order`.
   void record(bool in_order) {
     const pid_t child = ::fork();
     if (child == 0) {
@@ -258,7 +259,8 @@ TEST_F(FlightOfACrash, ARunThatEndsInOrderLeavesNothing) {
   EXPECT_TRUE(nextRun().empty());
 }
 
-// Cut, of another form, with a name that leads elsewhere.
+// Damaged files: one that is cut, one of another format, one with a name that leads to another
+// folder.
 TEST_F(FlightOfACrash, WhatIsDamagedIsLeftOut) {
   const auto damaged = [&](std::size_t at, const std::string& bytes, std::uintmax_t size) {
     record(false);
@@ -273,7 +275,7 @@ TEST_F(FlightOfACrash, WhatIsDamagedIsLeftOut) {
   EXPECT_TRUE(damaged(8, std::string(1, '\x04'), 0).empty()) << "more devices than there is room";
   EXPECT_TRUE(damaged(0, "", 4096).empty());
   EXPECT_TRUE(damaged(0, "", 10).empty());
-  // The names begin behind form and number; the second device is the ball.
+  // The names begin after the format and the number of devices; the second device is the ball.
   EXPECT_TRUE(damaged(12 + 68, "../all", 0).empty());
 }
 

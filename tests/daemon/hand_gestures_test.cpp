@@ -32,7 +32,7 @@ class HandGesturesTest : public testing::Test {
                                   {"hand", std::nullopt, true}, 1, actions_),
             state_};
   }
-  // The hand of a synthetic person who makes each gesture once, and what was meant.
+  // The poses of a synthetic person who makes each gesture once, with the intended gestures.
   static hand::Performance performance() {
     return hand::makeGestures(hand::MovingPerson(7003), 1, 11);
   }
@@ -94,7 +94,7 @@ TEST_F(HandGesturesTest, WhileThePersonHoldsTheModelThereAreNone) {
   EXPECT_EQ(state().counter, 10u) << "which moves a corner, not the model";
 }
 
-// Let go before the gesture has ended: it began as a movement of the model.
+// The model is released before the gesture ends, but the motion began as a movement of the model.
 TEST_F(HandGesturesTest, AMotionThatBeganWhileTheModelWasHeldIsNone) {
   HandGestures gestures = make(shipped());
   const hand::Performance made = performance();
@@ -137,7 +137,7 @@ TEST_F(HandGesturesTest, WithoutAModelNoneIsPublished) {
   EXPECT_EQ(begun().sequence, 2u) << "nothing is bound any more";
 }
 
-// A tracker that hangs upside down: right is left and up is down.
+// The tracker hangs upside down, so right is left and up is down.
 TEST_F(HandGesturesTest, TheTrackersAxesSayWhichWayIsWhich) {
   HandGestures gestures = make(std::nullopt);
   gestures.reload(shipped(), {*nn::WallAxes::of({2, 3, 1}), {}});

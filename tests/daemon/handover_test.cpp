@@ -21,7 +21,7 @@ TEST(Handover, TheNewestOfferIsTakenOnce) {
   EXPECT_FALSE(handover.take(mine));
 }
 
-// The offering thread frees values that were given back, and loses none: the leak sanitizer checks.
+// The offering thread frees the values that were returned. The leak sanitizer detects a lost one.
 TEST(Handover, BetweenThreadsNothingIsTornOrLost) {
   constexpr int kOffers = 20'000;
   Handover<std::vector<int>> handover;

@@ -1,4 +1,5 @@
-// Tests of daemon/kept_by_systemd: what is said to systemd's socket, and the files that come back.
+// Tests daemon/kept_by_systemd: the messages to systemd's socket, and the files that systemd
+// returns.
 #include "daemon/kept_by_systemd.h"
 
 #include <cstdlib>
@@ -19,7 +20,7 @@
 namespace merlin {
 namespace {
 
-// systemd's end of NOTIFY_SOCKET.
+// Plays systemd: the receiving end of NOTIFY_SOCKET.
 class Systemd {
  public:
   Systemd() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -34,7 +35,7 @@ class Systemd {
   Systemd(const Systemd&) = delete;
   Systemd& operator=(const Systemd&) = delete;
 
-  // The next message, and the file that came with it; empty if there is none.
+  // The next message and the file that came with it; empty if there is no message.
   std::pair<std::string, UniqueFd> heard() const {
     char text[512] = {};
     alignas(cmsghdr) char control[CMSG_SPACE(8 * sizeof(int))] = {};
@@ -90,7 +91,7 @@ TEST(KeptBySystemd, WithoutSystemdNothingIsKept) {
   EXPECT_FALSE(kept.take("card0").valid());
 }
 
-// In a child, where the files can have the numbers that systemd gives them.
+// Runs in a child, in which the files can have the numbers that systemd gives them.
 TEST(KeptBySystemd, TakesOverWhatTheProcessBeforeItKeptAndForgetsTheRest) {
   const Systemd systemd;
   const test::TempDir dir;
@@ -101,7 +102,7 @@ TEST(KeptBySystemd, TakesOverWhatTheProcessBeforeItKeptAndForgetsTheRest) {
     const int used = ::open((dir / "used").c_str(), O_RDONLY);
     const int unused = ::open((dir / "unused").c_str(), O_RDONLY);
     const ino_t inode = inodeOf(used);
-    // From high numbers, so that none of the two is overwritten before it is copied.
+    // Copied from high numbers, so that neither file is overwritten before it is copied.
     const int high = ::fcntl(used, F_DUPFD, 100), higher = ::fcntl(unused, F_DUPFD, 100);
     ::dup2(high, 3);
     ::dup2(higher, 4);

@@ -26,7 +26,7 @@ TEST(LiveSamples, KnowsAStateThatIsBeingWrittenFromBefore) {
   health.state = HealthState::kOk;
   slot.publish(health);
   EXPECT_EQ(samples->complaint(), "");
-  // An odd sequence number: the writer was preempted in the middle of a write.
+  // An odd sequence number: the writer was interrupted in the middle of a write.
   const std::uint64_t odd = 3;
   std::memcpy(static_cast<void*>(&slot), &odd, sizeof odd);
   ASSERT_FALSE(slot.read());

@@ -1,4 +1,4 @@
-// Lines of the log: fields for the journal where standard error is the journal, text elsewhere.
+// Lines of the log: with fields if standard error is the journal, as text otherwise.
 #include "daemon/base/log.h"
 
 #include <array>
@@ -43,8 +43,8 @@ TEST(Journal, ADatagramHasALineAField) {
   EXPECT_EQ(journalDatagram(lines), std::string("MESSAGE\n\x04\0\0\0\0\0\0\0", 16) + "a\nbc\n");
 }
 
-// A process that logs: its standard error is a pipe, which may be named as the journal's stream,
-// and the journal is a socket of the test.
+// A process that logs. Its standard error is a pipe, which JOURNAL_STREAM may declare to be the
+// journal's; the journal itself is a socket of the test.
 class LogTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -60,7 +60,7 @@ class LogTest : public testing::Test {
     ::close(error_[0]);
   }
 
-  // Logs an event and a line without fields; `stream`: JOURNAL_STREAM, null: it is not set.
+  // Logs an event and a line without fields. `stream`: the value of JOURNAL_STREAM; null: not set.
   void logInAProcess(const char* stream, const std::string& journal) {
     const pid_t child = ::fork();
     if (child == 0) {

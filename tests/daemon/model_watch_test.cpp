@@ -1,4 +1,4 @@
-// When the wall reads a model file that is replaced while it runs.
+// When the wall reads a model file again that is replaced while it runs.
 #include "daemon/wall/model_watch.h"
 
 #include <filesystem>
@@ -81,7 +81,8 @@ TEST(ModelWatch, OffersTheNewestOfAPlaceAndSaysWhyOneIsRefused) {
   EXPECT_NE(events.front().find("is there again"), std::string::npos) << events.front();
 }
 
-// A folder is read for each slide; what is not shown of it is said once for as long as it is so.
+// The folder is read for each slide. A file in it that cannot be shown is reported once for as long
+// as that lasts.
 TEST(ModelWatch, SaysOnceWhatAFolderOfSlidesHasThatIsNotShown) {
   ThreadWatch watch;
   const SystemClock clock;
@@ -107,7 +108,7 @@ TEST(ModelWatch, SaysOnceWhatAFolderOfSlidesHasThatIsNotShown) {
   EXPECT_EQ(offer("/talk/b.tif", "z.jpg is no pyramid").size(), 1U) << "it is there again";
 }
 
-// A damaged slide is passed over each time that its folder comes round.
+// A damaged slide is skipped each time that it is its turn.
 TEST(ModelWatch, SaysOnceAnHourThatASlideIsLeftOut) {
   ThreadWatch watch;
   test::FakeClock clock;
@@ -136,7 +137,8 @@ TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {
   const SystemClock clock;
   int tries = 0;
   const auto make = [&](std::size_t place, const std::string& path) -> Result<ReadyModel> {
-    // As while a file is being written: the folder's time stamp no longer changes.
+    // As while a file is being written, after the folder's time stamp has changed for the last
+    // time.
     if (path == folder && ++tries == 1) return Error{Errc::kMalformed, "is cut"};
     if (path == folder) return ReadyModel{place, folder + "/first", nullptr, nullptr};
     if (test::readText(path) == "good") {

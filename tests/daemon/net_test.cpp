@@ -1,4 +1,4 @@
-// The limits of a server's connections: places, time, bytes and turns, tested with a protocol of
+// The limits of a server's connections (places, time, bytes, turns), tested with a protocol of
 // lines.
 #include <fstream>
 #include <vector>
@@ -110,8 +110,8 @@ TEST_F(Admission, AUserWithManyBusyProcessesGivesAPlaceToAnother) {
 
 // ---- the server
 
-// A line protocol that answers each line. The line "bad" is a protocol error. The first line
-// establishes the connection.
+// A protocol that answers each line. The line "bad" is a protocol error; the first line establishes
+// the connection.
 class Lines final : public Session {
  public:
   Result<Taken> receive(std::string_view input, std::size_t most, std::string& output) override {
@@ -370,7 +370,7 @@ TEST_F(Listening, WhoConnectsAllTheTimeIsAcceptedAtARate) {
   EXPECT_EQ(came(), 50U) << "a burst again";
 }
 
-// In a child, whose limit is its own.
+// Runs in a child, so that the limit on descriptors affects the child alone.
 TEST_F(Listening, WithoutDescriptorsNobodyIsNamedAsRefused) {
   const std::string path = dir_ / "s";
   const SystemClock clock;

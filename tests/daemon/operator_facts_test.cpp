@@ -1,4 +1,4 @@
-// Tests what the operator's tile shows: facts of the wall's slots, and of the message board.
+// The facts that the operator's tile shows, as read from the wall's slots and the message board.
 #include <cstring>
 #include <memory>
 
@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// A wall's segment without a daemon; there are no devices.
+// Uses a wall's segment without a daemon; there are no devices.
 class OperatorFactsTest : public testing::Test {
  protected:
   render::text::OperatorFacts read() { return reader_.read(clock_.now()); }
@@ -69,7 +69,7 @@ TEST_F(OperatorFactsTest, RateDetailContentModeAndPostureComeFromTheSlots) {
   EXPECT_EQ(facts.slide, "03.tif");
 }
 
-// The governor's budget is that of the machine, not of the picture.
+// The governor's budget is what the machine can draw, which may be more than the picture has.
 TEST_F(OperatorFactsTest, OfASmallPictureTheBudgetIsAllOfItAndTheBallMovesThePicture) {
   shm::WallStats stats{};
   stats.cost = stats.full_cost = 2'400, stats.budget = 933'359;
@@ -85,7 +85,7 @@ TEST_F(OperatorFactsTest, OfASmallPictureTheBudgetIsAllOfItAndTheBallMovesThePic
   EXPECT_EQ(read().mode, "turns the view");
 }
 
-// The devices' role may not run; a wall that has no devices misses none.
+// The devices' role may not be running; a wall without devices does not miss them.
 TEST_F(OperatorFactsTest, DevicesAreMissingOnlyWhereThereAreToBeSome) {
   EXPECT_FALSE(read().devices_missing);
   OperatorFactsReader expecting(*wall_, "/merlin-test-no-such-devices", true, board_);
@@ -109,7 +109,7 @@ TEST_F(OperatorFactsTest, TheChartHasMovingFramesAndMarksTheLateOne) {
   EXPECT_NEAR(late, 2, 1);
 }
 
-// 256 periods are kept; what was overwritten in between is left out.
+// 256 periods are kept; those that were overwritten before they were read are left out.
 TEST_F(OperatorFactsTest, FramesThatWereOverwrittenAreLeftOut) {
   shm::WallStats stats{};
   stats.rate_now_hz = 30;
@@ -141,7 +141,7 @@ TEST_F(OperatorFactsTest, TheBoardKeepsTheLastFourTheNewestFirst) {
 TEST_F(OperatorFactsTest, TextsWithoutAnEndAreCut) {
   shm::WallContent content{};
   std::memset(content.name, 'x', sizeof content.name);
-  content.name[sizeof content.name - 1] = '\xC3';  // half of a character
+  content.name[sizeof content.name - 1] = '\xC3';  // half of a UTF-8 character
   wall_->content.publish(content);
   EXPECT_EQ(read().content, std::string(63, 'x'));
 }

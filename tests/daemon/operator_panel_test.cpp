@@ -1,4 +1,5 @@
-// The operator's panel in merlind: what pointer and ball do to the wall, and what is asked for.
+// The operator's panel in merlind: what pointer and ball do to the wall, and which actions they
+// request.
 #include "daemon/wall/operator_panel.h"
 
 #include <algorithm>
@@ -25,8 +26,8 @@ PanelOptions options() {
 
 PanelPlace place() { return {{640, 480, 640, 480}, *layOutPanel(640, 480, 13, options())}; }
 
-// A panel at the lower right of a frame, of a wall's segment without a daemon; there are no
-// devices.
+// A panel at the lower right of a frame; it uses a wall's segment without a daemon, and there are
+// no devices.
 class OperatorPanelTest : public testing::Test {
  protected:
   OperatorPanelTest() {
@@ -40,7 +41,7 @@ class OperatorPanelTest : public testing::Test {
     std::strcpy(content.kind, "model");
     wall_->content.publish(content);
   }
-  // A frame, 20 ms after the last one: what is left of the input for the scene.
+  // Simulates a frame 20 ms after the last one; returns the part of the input that the scene gets.
   WallInput frame() {
     clock_.advance(milliseconds(20));
     WallInput input = input_;
@@ -144,7 +145,7 @@ TEST_F(OperatorPanelTest, AClickMovesNothingAndAHeldArrowTurnsTheModel) {
   EXPECT_TRUE(frame().scene.step.way_m.isZero(0)) << "nobody was heard of";
 }
 
-// The first click makes a black wall bright, and does not do what nobody can see.
+// On a black wall nobody sees the panel, so the first click only makes the wall bright.
 TEST_F(OperatorPanelTest, APressOnABlackPanelOnlyMakesItBright) {
   frame();
   attendance_.toggleBlank();

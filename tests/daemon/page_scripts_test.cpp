@@ -1,4 +1,4 @@
-// What the page's scripts compute, run by node.js; skipped where that is not installed.
+// The computations of the page's scripts, run by node.js; skipped where node.js is not installed.
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -11,7 +11,8 @@
 namespace merlin::page {
 namespace {
 
-// What a function of the page returns, run by node.js; nothing where that is not installed.
+// The result of a function of the page, computed by node.js; nothing where node.js is not
+// installed.
 std::optional<std::string> runScript(const char* file, const std::string& expression) {
   const test::TempDir dir;
   const std::string script = dir / "script.mjs", result = dir / "result";
@@ -44,7 +45,7 @@ TEST(PageScripts, SayEachServiceThatHasFailedOnce) {
   EXPECT_NE(page.find("of failedServices(roles)) banners.push("), std::string_view::npos);
 }
 
-// A swipe of a thumb over the low strip that a phone shows of a wide wall turned a model by 127
+// On a phone, a wide wall is a low strip. A thumb's swipe over it once turned a model by 127
 // degrees.
 TEST(PageScripts, ADragTurnsAModelSanelyOnAPhoneAndMovesAPictureWithTheFinger) {
   const auto said = saidBy("/motion.js", R"(
@@ -100,7 +101,7 @@ TEST(PageScripts, SayWhatADragDoesToTheContent) {
                    R"("Unlock to move the picture."])");
 }
 
-// As PanelPointer of daemon/base does.
+// The same rules as in PanelPointer of daemon/base.
 TEST(PageScripts, WhatIsPressedOnTheOperatorsPanelIsToldInPixelsOfTheFrame) {
   const auto said = saidBy("/panel.js", R"(
     const panel = new PanelPointer(), all_told = now => {

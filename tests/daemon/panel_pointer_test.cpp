@@ -1,4 +1,4 @@
-// Which events of a pointer belong to the operator's panel, and what merlind is told of them.
+// Which pointer events belong to the operator's panel, and what merlind learns of them.
 #include "daemon/base/panel_pointer.h"
 
 #include <string>

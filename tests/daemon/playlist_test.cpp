@@ -1,4 +1,4 @@
-// A day of a wall, in seconds of a virtual clock: who touches it when, and what it shows then.
+// A day of a wall, in seconds of a virtual clock: when people touch it, and what it shows.
 #include "daemon/wall/playlist.h"
 
 #include <array>
@@ -18,7 +18,8 @@ using std::chrono::seconds;
 
 constexpr float kSixDegrees = 0.104720F;
 
-// Begins after 5 minutes, shows each content for 2 hours, and is dimmed after 4 hours.
+// The playlist begins after 5 minutes, shows each content for 2 hours, and dims the wall after 4
+// hours.
 PlaylistSettings settings() {
   PlaylistSettings s;
   s.after_s = 300;
@@ -32,13 +33,14 @@ constexpr int at(int hour, int minute) { return 60 * (60 * hour + minute); }
 
 class Day : public testing::Test {
  protected:
-  // Whether somebody pushes the ball in a second of the day, and which commands are sent in it.
+  // Commands by the second of the day in which they are sent; `pushed`: whether somebody pushes the
+  // ball in that second.
   using Act = std::function<void(Attendance&)>;
   std::map<int, Act> commands;
   std::function<bool(int)> pushed = [](int) { return false; };
   std::function<std::uint32_t(int)> fingers = [](int) { return 0U; };  // on a touch surface
 
-  // What happened, second by second: "HH:MM:SS WHAT".
+  // Runs the day; returns each change as "HH:MM:SS CHANGE".
   std::vector<std::string> run(const PlaylistSettings& playlist, int until = at(24, 0)) {
     Attendance attendance(playlist);
     std::vector<std::string> table;
@@ -101,23 +103,23 @@ TEST_F(Day, WithVisitorsAnOperatorAndNights) {
       "00:05:00 begins",       // nobody came
       "00:05:00 turns",        //
       "02:05:00 next",         //
-      "04:00:03 light 0.25",   // three seconds after it began to fall
+      "04:00:03 light 0.25",   // three seconds after the light began to fall
       "04:05:00 next",         //
       "06:05:00 next",         //
       "08:05:00 next",         //
       "09:00:00 ends",         // a visitor, for 20 minutes
       "09:00:00 stands",       //
       "09:00:00 light 1",      //
-      "09:24:59 begins",       // it comes back 5 minutes after the last touch
+      "09:24:59 begins",       // the playlist returns 5 minutes after the last touch
       "09:24:59 turns",        //
       "11:24:59 next",         //
       "12:00:00 black",        // the operator
       "12:00:00 stands",       //
       "12:00:00 light 0",      //
-      "13:00:00 the picture",  // the operator again: it goes on
+      "13:00:00 the picture",  // the operator again: the picture goes on
       "13:00:00 turns",        //
       "13:00:00 light 1",      //
-      "14:20:02 light 0.25",   // 4 hours after the last touch, without the black one
+      "14:20:02 light 0.25",   // 4 hours after the last touch, not counting the black time
       "14:24:59 next",         // likewise
       "15:00:00 frozen",       //
       "15:00:00 stands",       //
@@ -126,12 +128,12 @@ TEST_F(Day, WithVisitorsAnOperatorAndNights) {
       "15:30:00 light 1",      //
       "15:35:00 begins",       //
       "15:35:00 turns",        //
-      "16:00:00 ends",         // switched off: it does not come back
+      "16:00:00 ends",         // switched off: the playlist does not return
       "16:00:00 stands",       //
       "20:00:00 begins",       // at once
       "20:00:00 turns",        //
       "22:00:00 next",         //
-      "23:00:00 next",         // asked for
+      "23:00:00 next",         // requested by command
   };
   EXPECT_EQ(run(settings()), expected);
 }

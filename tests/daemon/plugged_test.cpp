@@ -1,4 +1,4 @@
-// What `merlin devices` finds plugged in, in a made-up /dev and /sys, and its table of live values.
+// The devices that `merlin devices` finds in a made-up /dev and /sys, and its table of live values.
 #include "daemon/cli/devices/plugged.h"
 
 #include <filesystem>
@@ -60,7 +60,7 @@ TEST_F(PluggedTest, SerialAdaptersAreNamedByIdWhereTheyHaveOne) {
   fs::create_directories(root() + "/dev/serial/by-id");
   fs::create_directories(root() + "/sys/class/tty/ttyUSB0");
   fs::create_directories(root() + "/sys/class/tty/ttyUSB1");
-  fs::create_directories(root() + "/sys/class/tty/ttyS0");  // is there without a device, too
+  fs::create_directories(root() + "/sys/class/tty/ttyS0");  // exists even if no device is connected
   for (const char* name : {"ttyUSB0", "ttyUSB1", "ttyS0"})
     test::writeText(root() + "/dev/" + name, "");
   const std::string by_id = root() + "/dev/serial/by-id/usb-FTDI_A1-if00-port0";

@@ -98,7 +98,7 @@ TEST_F(PostureSinkTest, WithoutANetworkNoPostureIsSeen) {
   EXPECT_EQ(next_.glove.size(), 4u);
 }
 
-// The newest of three stations, and the line's own counters.
+// The newest sample of three stations, and the counters of the line itself.
 TEST(ContinuedCounts, PassOnWhatIsDue) {
   test::RecordingSink samples;
   test::RecordingHealth healths;
@@ -157,8 +157,8 @@ class DriftingGlove {
  public:
   explicit DriftingGlove(const nn::TrainedPostures& postures) : ranges_(postures.network.ranges) {}
 
-  // Shows every shape once, drifted by `drift`, a share of each sensor's range; returns how many of
-  // the eight were recognised at their last hand.
+  // Shows every shape once with its sensors drifted by `drift`, a share of each sensor's range;
+  // returns how many of the eight shapes were recognised at their last sample.
   int show(PostureSink& sink, const shm::Channel<PostureSample>& seen, float drift) {
     int right = 0;
     for (const hand::Shape& shape : hand::shapes()) {
@@ -176,7 +176,7 @@ class DriftingGlove {
     }
     return right;
   }
-  // Nothing is heard of the glove, as when its plug is pulled.
+  // No sample comes from the glove, as when it is unplugged.
   void pause() { counter_ += 200; }
 
  private:
@@ -186,7 +186,7 @@ class DriftingGlove {
 
 constexpr float kDrifted = 0.27F;
 
-// Right postures, of eight, at the end of a slow drift.
+// Number of postures, of eight, that are recognised at the end of a slow drift.
 int rightAfterDrift(PostureSink& sink, const shm::Channel<PostureSample>& seen,
                     DriftingGlove& glove) {
   constexpr int kRounds = 100;

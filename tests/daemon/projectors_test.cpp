@@ -1,5 +1,5 @@
 // All projectors together: a day on a virtual clock with the schedule, a person's commands,
-// cool-down and a projector that is gone for a while; and what commands and status say.
+// cool-down, and a projector that is missing for a while; and the texts of commands and status.
 #include "daemon/devices/projectors.h"
 
 #include <vector>
@@ -68,7 +68,7 @@ struct Wall {
       text += fmt::format(" {}", pjlink::powerName(s.power));
     return text;
   }
-  // Until the time of the day: each second everything that is due, and a row for each change.
+  // Runs until the time of day: does each second what is due, and adds a row for each change.
   void until(int hour, int minute_of_hour, int second = 0) {
     const auto end = begin + seconds(hour * 3600 + minute_of_hour * 60 + second) -
                      std::chrono::minutes(first_min - kMonday);
@@ -102,8 +102,8 @@ struct Wall {
   std::string last, table = "\n";
 };
 
-// Columns after the time: the panel's projectors (30 s to warm up, 90 s to cool down), left and
-// right (the same, by themselves).
+// Columns after the time: the panel's projectors (30 s to warm up, 90 s to cool down), then left
+// and right, which have the same times.
 TEST(Projectors, ADayOnAVirtualClock) {
   Wall w(8 * 60);
   w.until(8, 30);
@@ -173,7 +173,7 @@ TEST(Projectors, WhatThePanelRefusesTheScheduleIsDoneLater) {
   w.command(true);
   w.command(true);
   w.until(8, 59, 56);
-  w.command(false);  // they cool down for 90 s when the schedule wants them
+  w.command(false);  // the projectors are cooling down for 90 s when the schedule switches them on
   w.until(9, 10);
   EXPECT_EQ(w.powers(), "on on on");
 }
@@ -229,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Restart{14 * 60, false, 15 * 60, kOff},      // switched off in the afternoon
                     Restart{8 * 60, true, 8 * 60 + 30, kOn},     // on before the opening time
                     Restart{14 * 60, false, 17 * 60 + 1, kOff},  //
-                    Restart{14 * 60, true, 17 * 60 + 1, kOff},   // the schedule's point has passed
+                    Restart{14 * 60, true, 17 * 60 + 1, kOff},   // the switching time has passed
                     Restart{14 * 60, false, 33 * 60 + 5, kOn},   // two of them have
                     Restart{18 * 60, true, 27 * 60, kOn},        // a late visitor stays till three
                     Restart{20 * 60, false, 27 * 60, kOff}));

@@ -1,4 +1,4 @@
-// Which settings a running merlind takes: the table, a plan, and that what a plan swaps is taken.
+// Which settings a running merlind takes over: the table, a plan, and the effect of a plan.
 #include <set>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace merlin::reload {
 namespace {
 
-// Gives the setting of one pointer another value.
+// Changes the value of the setting at one JSON pointer.
 class Changer final : public SettingsVisitor {
  public:
   explicit Changer(std::string pointer) : pointer_(std::move(pointer)) {}
@@ -113,13 +113,13 @@ TEST(ReloadTable, ASettingThatItDoesNotKnowNeedsARestart) {
   EXPECT_EQ(takerOf("").part, Part::kRestart);
 }
 
-// Each setting on its own: what the plan swaps is in effect then, and nothing else.
+// Changes one setting at a time: after the plan, exactly what the plan swaps is in effect.
 TEST(ReloadPlan, WhatIsSwappedIsTaken) {
   int swapped = 0;
   for (const SettingValue& setting : valuesOf({})) {
     const Settings fresh = changed(setting.pointer);
     const auto changes = changesBetween({}, fresh);
-    if (setting.pointer.ends_with("/driver")) continue;  // another one has other settings
+    if (setting.pointer.ends_with("/driver")) continue;  // another driver has other settings
     const Plan plan = planFor(changes, kDevices | kWall);
     Settings running;
     adopt(plan, fresh, false, running);

@@ -1,4 +1,5 @@
-// What merlin report packs: without secrets, within its size, whatever happens to a part of it.
+// The content of merlin report: free of secrets, limited in size, and complete even if a part
+// fails.
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -31,7 +32,8 @@ using Texts = std::vector<std::string>;
 TEST(KnownSecrets, AreReplacedTheLongestFirst) {
   const KnownSecrets secrets(Texts{"pass", "password-9", "abc"});
   EXPECT_EQ(secrets.without("a password-9, a pass; abc"),
-            "a (left out), a (left out); abc")  // three letters stand everywhere
+            // Secrets of three letters are not replaced, since such texts occur everywhere.
+            "a (left out), a (left out); abc")
       << "the shorter one is part of the longer one";
   EXPECT_TRUE(secrets.isIn("xpassx"));
   EXPECT_FALSE(secrets.isIn("abc"));
@@ -51,7 +53,8 @@ TEST(KnownSecrets, ComeFromTheFilesThatTheSettingsName) {
   Settings settings;
   settings.devices.projectors.resize(2);
   settings.devices.projectors[0].password_file = dir / "left.password";
-  settings.devices.projectors[1].password_file = dir / "typed-in-place";  // there is no such file
+  // This is a password in the place of a file's name: there is no such file.
+  settings.devices.projectors[1].password_file = dir / "typed-in-place";
   settings.serve.samples_keys = dir / "wall.keys";
   const KnownSecrets secrets(settings, {dir / "page.token", dir / "no-such-file"});
   EXPECT_EQ(secrets.without("hunter-22 PUBLICKEY SECRETKEY hunter-22-TOKEN typed-in-place"),
@@ -116,7 +119,7 @@ TEST(ReportContents, FindingsDoNotQuoteTheFile) {
       << "a number is no secret";
 }
 
-// Runs a part with little time and few bytes.
+// Runs a part of the report with little time and few bytes.
 class RunPart : public testing::Test {
  protected:
   Result<PartResult> run(const std::function<void(PartFolder&)>& collect,
@@ -130,7 +133,7 @@ class RunPart : public testing::Test {
   ~RunPart() override { ::sigprocmask(SIG_SETMASK, &mask_, nullptr); }
   RunPart(const RunPart&) = delete;
   RunPart& operator=(const RunPart&) = delete;
-  // The files in the report about the configuration merlin.json of the folder.
+  // The report's files about the configuration merlin.json of the folder.
   std::vector<PackedFile> configurationFiles(const TempDir& dir) {
     const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
                                 "merlin-report-none", dir.path()};
@@ -138,7 +141,7 @@ class RunPart : public testing::Test {
     EXPECT_TRUE(result);
     return result ? std::move(result->files) : std::vector<PackedFile>();
   }
-  // Runs a part that never ends until it has written its file, however busy the machine is.
+  // Runs a part that never ends, until it has written its file, however busy the machine is.
   PartResult runEnded(const std::function<void(PartFolder&)>& collect) {
     for (Duration limit = milliseconds(100); limit < seconds(100); limit *= 2) {
       auto result = run(collect, limit);
@@ -187,11 +190,13 @@ TEST_F(RunPart, WhatItHasStartedIsEndedToo) {
   const std::string stat = fmt::format("/proc/{}/stat", std::stoi(result.files[0].content));
   EXPECT_TRUE(test::eventually([&] {
     const std::string text = test::readText(stat);
-    return text.empty() || text.find(") Z") != std::string::npos;  // nobody may have waited for it
+    // A zombie counts as ended too, since perhaps nobody has waited for it.
+    return text.empty() || text.find(") Z") != std::string::npos;
   }));
 }
 
-// By what settings mean, before known secrets are looked for.
+// Names of secret files are removed because of the settings' meaning, before known secrets are
+// replaced.
 TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
   const TempDir dir;
   writeText(dir / "merlin.json",
@@ -208,7 +213,7 @@ TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
       << files[2].name;
 }
 
-// The arguments of an alarm's program may be tokens, also where they stand in the program's place.
+// An alarm's arguments may be tokens, even if they are given in the program's place.
 TEST_F(RunPart, TheConfigurationLacksArgumentsOfAlarms) {
   const TempDir dir;
   writeText(dir / "merlin.json",
@@ -266,7 +271,7 @@ TEST_F(RunPart, AProgramThatIsNotInstalledIsNamed) {
 }
 
 TEST_F(RunPart, EndsAtCtrlC) {
-  ::kill(::getpid(), SIGINT);  // blocked: it waits in the descriptor
+  ::kill(::getpid(), SIGINT);  // SIGINT is blocked, so it waits in the signal descriptor
   const auto result = run([](PartFolder&) {
     for (;;) ::pause();
   });

@@ -1,4 +1,5 @@
-// merlin-rfb without its library: what of a frame is shown, what input means, the settings.
+// merlin-rfb without its library: which part of a frame it shows, what input means, and the
+// settings.
 #include <algorithm>
 #include <vector>
 
@@ -35,8 +36,8 @@ TileRectangle tile(const std::string& name, unsigned kind, const Rectangle& r, i
   return made;
 }
 
-// Two wall tiles, which the frame has in the other order than the wall, above the operator's view.
-// A pixel's red is its x in the frame, its green its y.
+// Two wall tiles above the operator's view; in the frame they are in the opposite order. A pixel's
+// red is its x in the frame, its green its y.
 CapturedFrame frameOfThree() {
   CapturedFrame frame;
   frame.width = 160;
@@ -57,7 +58,7 @@ CapturedFrame frameOfThree() {
 struct Shown {
   int width, height;
   std::vector<std::uint8_t> pixels;
-  // Red and green: where in the frame the pixel is from.
+  // The frame position from which the pixel at (x, y) was copied, read from its red and green.
   std::pair<int, int> from(int x, int y) const {
     const auto at = static_cast<std::size_t>(4 * (y * width + x));
     return {pixels[at], pixels[at + 1]};
@@ -135,9 +136,11 @@ TEST(RfbView, ReportsTheBlocksThatChangedAndNoOthers) {
   std::vector<std::uint8_t> canvas(static_cast<std::size_t>(4 * 160 * 70));
   EXPECT_EQ(copyChanged(frame, *layout, canvas).size(), 8U);
   EXPECT_TRUE(copyChanged(frame, *layout, canvas).empty());
-  // Frame (5, 66) is in the tile right, at wall (85, 66): in the block below the first.
+  // Frame position (5, 66) belongs to the tile right, at (85, 66) of the wall: in the block below
+  // the first.
   frame.pixels[static_cast<std::size_t>(4 * (66 * frame.width + 5))] = 200;
-  frame.pixels[static_cast<std::size_t>(4 * (120 * frame.width + 5))] = 200;  // operator: not shown
+  // This pixel is in the operator's view, which is not shown.
+  frame.pixels[static_cast<std::size_t>(4 * (120 * frame.width + 5))] = 200;
   EXPECT_EQ(copyChanged(frame, *layout, canvas), (std::vector<Rectangle>{{80, 64, 64, 6}}));
   EXPECT_EQ(canvas[static_cast<std::size_t>(4 * (66 * 160 + 85))], 200);
 }
@@ -203,7 +206,7 @@ TEST(RfbInput, KeysAreCommandsAndDoNotRepeatWhileHeld) {
     map.key(key, true);
     EXPECT_EQ(map.take(), (Request{"previous_content"}));
   }
-  for (int i = 0; i < 3; ++i) map.key(kArrowRight, true);  // arrows do
+  for (int i = 0; i < 3; ++i) map.key(kArrowRight, true);  // arrow keys add up
   map.key('+', true);
   EXPECT_EQ(map.take(), (Request{"move", "0.0000 0.0000 0.1000 0.000 15.000 0.000"}));
 }
@@ -274,7 +277,7 @@ TEST(RfbSettings, ThePasswordsFileIsForItsOwnerOnly) {
   EXPECT_EQ(readPassword(dir / "none").error().code, Errc::kNotFound);
   EXPECT_NE(readPassword(dir.path()).error().what.find("not a regular file"), std::string::npos);
   ASSERT_EQ(::mkfifo((dir / "pipe").c_str(), 0600), 0);
-  EXPECT_FALSE(readPassword(dir / "pipe"));  // and does not wait for a writer
+  EXPECT_FALSE(readPassword(dir / "pipe"));  // the call does not wait for a writer
 }
 
 TEST(RfbInput, WhatIsOnTheOperatorsPanelDoesNotTurnTheModel) {

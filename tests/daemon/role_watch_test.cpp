@@ -1,4 +1,4 @@
-// Tests of daemon/page/role_watch: what the page tells of a role that comes, goes and comes again.
+// Tests daemon/page/role_watch: what the page reports of a role that starts, ends and starts again.
 #include "daemon/page/role_watch.h"
 
 #include <optional>
@@ -23,7 +23,7 @@ class RoleWatchTest : public testing::Test {
     ASSERT_TRUE(made) << made.error().what;
     wall_.emplace(std::move(*made));
   }
-  // The sentences that came, after the watch has looked for a second.
+  // The sentences that the watch reports within a second.
   std::vector<std::string> told() {
     for (int i = 0; i < 10; ++i) {
       clock_.advance(std::chrono::milliseconds(100));

@@ -1,5 +1,5 @@
-// The devices of another machine: one end's samples document reaches the other end's shared memory
-// over a real, encrypted socket.
+// The devices of another machine: the samples document of one end reaches the other end's shared
+// memory over a real, encrypted socket.
 #include "daemon/status/sample_link.h"
 
 #include <vector>
@@ -187,7 +187,7 @@ TEST(Keys, AreWrittenForTheirOwnerAloneAndReadBack) {
   EXPECT_EQ(readKeyPair(dir / "clients").error().code, Errc::kMalformed);
 }
 
-// A devices daemon with a network socket for samples.
+// A daemon that offers its devices' samples at a network socket.
 struct Devices {
   Devices(const test::TempDir& dir, int port, const KeyPair& keys, std::vector<std::string> clients)
       : segment(filled(toNanoseconds(clock.now()), 1)) {
@@ -280,7 +280,7 @@ TEST(SampleLink, AKeyThatIsListedLaterIsHeardAfterTheOthersRestart) {
   auto devices = std::make_unique<Devices>(dir, port, server, std::vector{other.public_key});
   const auto link = SampleLink::start(settings, test::defaultSlotNames(), *here, threads, clock);
   ASSERT_TRUE(link) << link.error().what;
-  // The daemon accepts the TCP connection and then refuses our key, at least once.
+  // At first the daemon accepts the TCP connection, but refuses our key at least once.
   ASSERT_TRUE(test::eventually([&] { return devices->samples->report().accepted > 0; }));
   devices->stop();
   devices = std::make_unique<Devices>(dir, port, server, std::vector{ours.public_key});

@@ -1,4 +1,4 @@
-// The sandbox of merlin-import, in a child process: what it still can do, and what it cannot.
+// The sandbox of merlin-import in a child process: what is still allowed, and what is not.
 #include "daemon/import/sandbox.h"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ bool opens(const std::string& path, int flags) {
   return fd >= 0;
 }
 
-// Closes the sandbox in a child and returns the number of the first of these checks that fails
-// there, counted from 1; 0: none does.
+// Enters the sandbox in a child; returns the number, counted from 1, of the first check that fails
+// there, or 0.
 int firstFailure(const std::string& input, const std::string& folder, const Limits& limits,
                  const std::vector<std::function<bool()>>& checks) {
   const pid_t child = ::fork();

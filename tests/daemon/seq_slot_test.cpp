@@ -94,7 +94,7 @@ TEST(Channel, WakesAWaiterAtOnce) {
     woken = true;
   });
   channel.publish(1);
-  waiter.join();  // would take a minute for each wait if publish() did not wake the waiter
+  waiter.join();  // join() would take a minute for each wait if publish() did not wake the waiter
   EXPECT_TRUE(woken);
 }
 

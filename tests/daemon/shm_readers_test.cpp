@@ -1,5 +1,5 @@
-// Readers that know only the table of fields: the C and the Python reader that are shipped, run as
-// programs against a live writer.
+// The shipped C and Python readers, which know only the table of fields, run as programs beside a
+// live writer.
 #include <sstream>
 #include <thread>
 

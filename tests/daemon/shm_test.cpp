@@ -82,7 +82,8 @@ TEST(Fields, DescribeEachValueOnceAndInsideTheSegment) {
   }
 }
 
-// Marks the bytes of a segment that the table describes: values, their slots' sequences, and rings.
+// Marks the bytes of a segment that the table describes: values, the sequence counters of their
+// slots, and rings.
 std::vector<bool> described(const std::vector<Field>& fields, std::size_t size) {
   std::vector<bool> bytes(size);
   const auto mark = [&](std::size_t from, std::size_t count) {
@@ -96,8 +97,8 @@ std::vector<bool> described(const std::vector<Field>& fields, std::size_t size) 
   return bytes;
 }
 
-// The runs of bytes before the table that no field describes, each as the name of the field before
-// it and its length.
+// The gaps between described bytes before the table, each as the name of the preceding field and
+// its length.
 std::vector<std::string> undescribed(const std::vector<Field>& fields, std::size_t size) {
   const std::vector<bool> bytes = described(fields, size);
   std::map<std::size_t, std::string> ends;
@@ -185,7 +186,7 @@ TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
                   "panel.by_ball 28", "notice.text 24"}));
 }
 
-// Reads sample 258 at its position in the ring, as a reader that knows only the table does.
+// Reads sample 258 at its position in the ring, as a reader does that knows only the table.
 TEST(Fields, SayWhereASampleLiesInItsRing) {
   auto segment = std::make_unique<DevicesSegment>();
   BallSample ball{};
@@ -278,7 +279,7 @@ TEST(Segment, OfADeadWriterIsReplaced) {
   EXPECT_EQ((*SegmentReader<WallSegment>::open(name))->header.generation, 2u);
 }
 
-// A reader can hold a read lock on an object that it may read. Such a lock must not count as the
+// A reader may hold a read lock on an object that it may read. That lock must not be taken for the
 // owner's.
 TEST(SharedMemory, AReadersLockDoesNotForbidTheRestart) {
   const std::string name = "/" + privateName("locked");
@@ -307,7 +308,7 @@ TEST(SharedMemory, TwoLivingOwnersCannotShareAName) {
   EXPECT_TRUE(SharedMemory::owned(name));
 }
 
-// Somebody else removed the object: an administrator, or logind when its user logs out.
+// Somebody else has removed the object: an administrator, or logind when its user logged out.
 TEST(SharedMemory, WhatWasRemovedIsMadeAgainWithTheSameBytes) {
   const std::string name = "/" + privateName("mended");
   auto memory = SharedMemory::create(name, 10'000);
@@ -344,7 +345,7 @@ TEST(SharedMemory, ANameThatAnotherTookMeanwhileStaysTheOthers) {
     second = SharedMemory::create(name, 4096);
     ASSERT_TRUE(second);
     EXPECT_EQ(first->mend().error().code, Errc::kBusy);
-    first->data()[0] = std::byte{1};  // still belongs to `first`
+    first->data()[0] = std::byte{1};  // `first` still owns these bytes
   }
   EXPECT_TRUE(SharedMemory::open(name)) << "the first's end removed the second's";
   EXPECT_EQ(second->data()[0], std::byte{0});
@@ -377,7 +378,7 @@ TEST(SharedMemory, AStrangersLockKeepsNobodyOut) {
   ::waitpid(child, nullptr, 0);
 }
 
-// Any user may create an object whose name is not in use yet.
+// Any user may create an object whose name is not in use.
 TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
   if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as another user";
   const std::string name = "/" + privateName("stranger");
@@ -408,7 +409,7 @@ TEST(SharedMemory, OfAnotherUserInOneOfOurGroupsIsAcceptedWhereThatIsWanted) {
   ASSERT_TRUE(made) << made.error().what;
   constexpr uid_t kOwner = 65533, kReader = 65534;
   ASSERT_EQ(::chown(("/dev/shm" + name).c_str(), kOwner, kOwner), 0);
-  // 'a': accepted, 'r': refused, of a reader who is in the owner's group, or is not
+  // 'a': accepted, 'r': refused; for a reader in the owner's group, and for one outside of it
   const auto seenBy = [&](gid_t group) {
     int out[2];
     EXPECT_EQ(::pipe(out), 0);

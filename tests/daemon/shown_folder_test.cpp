@@ -1,4 +1,5 @@
-// The content folder: what merlind opens there, what it removes, and what merlin show puts there.
+// The content folder: which files merlind opens and removes there, and which merlin show puts
+// there.
 #include "daemon/wall/shown_folder.h"
 
 #include <filesystem>
@@ -126,7 +127,8 @@ TEST_F(Folder, AFileIsAContentByItsNameAndItsEnding) {
   EXPECT_EQ(whyUnread(*slides), "");
 }
 
-// If two contents have one name, the newer one counts; files that are no contents have no name.
+// If two contents have the same name, the newer one counts. Files that are no contents have no
+// name.
 TEST_F(Folder, WhatCanBeShownAgainHasANameTheNewestFirst) {
   put("photo 1.tif", 30);
   put("scan.mrm", 20);
@@ -168,7 +170,7 @@ TEST_F(Folder, NoLinkIsFollowed) {
   EXPECT_NE(whyUnread(*talk).find("1.tif: is a link"), std::string::npos) << whyUnread(*talk);
 }
 
-// Somebody puts links in the place of what was looked at.
+// Somebody replaces a file by a link after merlind has examined it.
 TEST_F(Folder, NorOneThatComesBetweenLookingAndReading) {
   test::writeText(dir_ / "secret.tif", test::pyramidBytes());
   put("photo.tif");
@@ -290,7 +292,7 @@ TEST(FileKinds, AFitsImageIsRangesIfACardSaysHow) {
   EXPECT_TRUE(saysGeometry(header({"SIMPLE  = T", "CELLX   = 30", "END"})));
 }
 
-// A TIFF of no tags but these, in either byte order.
+// A TIFF with these tags only, in either byte order.
 std::string tiff(bool little, const std::vector<std::pair<int, int>>& tags) {
   std::string bytes = little ? std::string("II*\0", 4) : std::string("MM\0*", 4);
   const auto put = [&](int value, int size) {
@@ -352,7 +354,7 @@ TEST(Putting, WhoMayNotWriteIsToldTheGroupAndHowToJoinIt) {
   fs::permissions(dir.path(), fs::perms(0755));
   fs::create_directory(dir / "shown");
   fs::permissions(dir / "shown", fs::perms(0500));
-  // To root everything is allowed.
+  // Root may write everywhere, so the test continues as another user.
   const uid_t before = ::geteuid();
   if (before == 0) {
     ASSERT_EQ(::seteuid(65534), 0);

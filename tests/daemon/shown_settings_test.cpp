@@ -1,4 +1,4 @@
-// merlin config show: the settings in effect, and where each comes from.
+// merlin config show: the settings in effect, and the origin of each.
 #include "daemon/cli/config/shown_settings.h"
 
 #include <algorithm>

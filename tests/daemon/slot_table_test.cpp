@@ -1,5 +1,5 @@
-// Readers find the devices' slots by name: where another release, or a hostile writer, has put
-// them, they are found or refused with one error.
+// Readers find the devices' slots by name. Slots that another release or a hostile writer has moved
+// are found, or refused with one error.
 #include "daemon/shm/slot_table.h"
 
 #include <algorithm>
@@ -19,16 +19,16 @@
 namespace merlin::shm {
 namespace {
 
-// The devices' segment of a later release: it begins as ours does, with another header and a device
-// of a kind that we do not know before our slots, and its table is last.
+// The devices' segment of a later release: it begins as ours does, then has another header and a
+// device of an unknown kind before our slots; its table is last.
 struct LaterSegment {
   Header header;
   alignas(64) SeqSlot<DeviceHealth> touch_health;
-  alignas(64) DevicesSegment ours;  // its own header and table are not used
+  alignas(64) DevicesSegment ours;  // the header and table of this part are not used
   alignas(64) Field fields[kMostDevicesFields];
 };
 
-// The table of LaterSegment: ours, moved, and the new device's.
+// The table of LaterSegment: our fields at their new offsets, and those of the new device.
 std::vector<Field> laterFields() {
   std::vector<Field> fields;
   constexpr auto kMoved = static_cast<std::uint32_t>(offsetof(LaterSegment, ours));
@@ -136,7 +136,7 @@ TEST(DeviceSlots, TheMostDevicesFitIntoTheTable) {
   EXPECT_EQ(devices.slots().hands.size(), kMostHands);
 }
 
-// A segment of this release, whose table a test damages.
+// A segment of this release; the tests damage its table.
 class SlotTableTest : public testing::Test {
  protected:
   SlotTableTest() {
@@ -149,7 +149,7 @@ class SlotTableTest : public testing::Test {
     EXPECT_NE(found, std::end(segment_->fields)) << name;
     return *found;
   }
-  // The error of finding all slots; empty without one.
+  // The error when all slots are looked up; empty if there is none.
   std::string fault() const {
     const auto slots = DeviceSlots::find(*segment_);
     if (slots) return "";
@@ -200,7 +200,8 @@ TEST_F(SlotTableTest, AFieldOfAnotherTypeCountOrPlaceIsRefused) {
   EXPECT_EQ(fault(), "");
 }
 
-// Moves all fields of a slot, as a hostile writer may, so that they agree with each other.
+// Moves all fields of a slot by the same offset, as a hostile writer may, so that they agree with
+// each other.
 void move(DevicesSegment& segment, const std::string& slot, std::uint32_t by) {
   for (Field& f : segment.fields) {
     if (!std::string_view(f.name).starts_with(slot + ".")) continue;
@@ -245,7 +246,7 @@ TEST_F(SlotTableTest, NamesWithoutAnEndAndNamesTwiceAreSurvived) {
   std::memset(field("gpio.health.state").name, 'x', sizeof(Field::name));
   EXPECT_EQ(fault(), "") << "nobody asks for the panel";
   const Field ball = field("ball.count");
-  field("gpio.count") = ball;  // the first one counts
+  field("gpio.count") = ball;  // the first of two fields with the same name counts
   EXPECT_EQ(fault(), "");
 }
 

@@ -1,14 +1,7 @@
-// The daemon's state: steps and offsets, the file's text, and what happens to files that are
-// damaged, newer, or cannot be written.
-#include <cstdlib>
+// The daemon's state: alignments with their steps, those that are set aside, and the state's text.
+#include "daemon/state/state.h"
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include "daemon/state/state_folder.h"
-#include "daemon/state/state_keeper.h"
-#include "tests/support/temp_dir.h"
 
 namespace merlin::state {
 namespace {
@@ -132,7 +125,7 @@ TEST(Alignment, TheStepsOfBothAreLimitedWhereOneIsPutBack) {
   EXPECT_EQ(a.offset("right", kTopLeft), Offset{});
 }
 
-// Outputs get new names over the years.
+// Over the years outputs are renamed.
 TEST(Alignment, BeyondTheMostOutputsTheFirstOneIsForgottenAndOneThatIsNotMovedBefore) {
   const auto formOf = [](std::size_t i) { return OutputForm{std::to_string(i), 640, 480, 0, 0}; };
   State state;
@@ -180,7 +173,7 @@ TEST(SetAside, KeepsTheLastFormsOfEachOutput) {
   EXPECT_EQ(aside.alignments().size(), 4u) << "nothing is not kept";
 }
 
-// One of them fits the base mesh of one configuration, the other one that of another.
+// One alignment fits the base mesh of one configuration, the other that of another configuration.
 TEST(SetAside, KeepsTwoOfTheSameForm) {
   SetAside aside;
   aside.add(alignedAt(640));
@@ -264,7 +257,7 @@ TEST(StateText, OfNothingIsReadBack) {
   EXPECT_EQ(read->alignment.steps.size(), 0u);
 }
 
-// As merlind wrote it before the playlist and the projectors were kept.
+// The text of an older merlind, which did not yet store the playlist and the projectors.
 TEST(StateText, OfVersion1IsRead) {
   const auto read = parseState(R"({"merlin_state": 1,
 "rate_hz": 25.0,
@@ -282,7 +275,7 @@ TEST(StateText, OfVersion1IsRead) {
   EXPECT_FALSE(read->playlist_off || read->projectors);
 }
 
-// As merlind wrote it before alignments were set aside.
+// The text of an older merlind, which did not yet set alignments aside.
 TEST(StateText, OfVersion2IsRead) {
   const auto read = parseState(
       R"({"merlin_state": 2, "playlist": "off",
@@ -303,10 +296,10 @@ TEST(State, HasTheAlignmentThatFitsAnOutput) {
   EXPECT_FALSE(alignmentFor(state, {"left", 801, 480, 0, 0, std::array<double, 8>{}}));
 }
 
-// A file that was cut or of which one byte is another is an error, or a state within its limits.
+// A file that is cut or has one wrong byte gives an error, or a state within the limits.
 TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
   const std::string text = stateText(someState());
-  for (std::size_t size = 0; size + 1 < text.size(); ++size)  // the last byte is the line's end
+  for (std::size_t size = 0; size + 1 < text.size(); ++size)  // the last byte is the line end
     EXPECT_FALSE(parseState(text.substr(0, size), "f")) << size;
   for (std::size_t i = 0; i < text.size(); ++i) {
     for (const char c : {'\0', ' ', '9', '-', '"', '}', '\xff'}) {
@@ -319,7 +312,7 @@ TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
   }
 }
 
-// Numbers and names of the greatest length.
+// Numbers and names of maximum length.
 constexpr Offset kLong{-999999.999, -999999.999};
 OutputForm longForm(std::size_t i) {
   std::string name = std::to_string(i);
@@ -332,7 +325,7 @@ Place pointAt(std::size_t i) {
   return {Place::Of::kMesh, static_cast<int>(i % 64), static_cast<int>(i / 64)};
 }
 
-// One of this many steps, each of which has this many changes, and of this many moved places.
+// An alignment with this many steps of this many changes each, and this many moved places.
 Alignment longAlignment(std::size_t number, std::size_t moved, std::size_t steps,
                         std::size_t changes) {
   Alignment a;
@@ -345,7 +338,7 @@ Alignment longAlignment(std::size_t number, std::size_t moved, std::size_t steps
 }
 
 TEST(StateText, OfTheLargestStateIsReadBack) {
-  State few, many;  // of the alignments that are set aside
+  State few, many;  // the entries that are set aside
   for (State* state : {&few, &many}) {
     Alignment& a = state->alignment;
     a = longAlignment(0, kMostMoved, kMostSteps, kMostChanges / kMostSteps);
@@ -395,211 +388,6 @@ TEST(StateText, WrongFiguresAreNamedWithTheirPlace) {
   const auto newer = parseState(R"({"merlin_state": 4, "anything": [1]})", "f");
   ASSERT_FALSE(newer);
   EXPECT_EQ(newer.error().code, Errc::kUnsupported);
-}
-
-// Files in memory, whose disk can be full.
-class FakeFiles final : public StateFiles {
- public:
-  struct Disk {
-    std::optional<std::string> last, previous, damaged;
-    std::optional<Error> fault, unreadable;
-    int writes = 0;
-  };
-  explicit FakeFiles(Disk& disk) : d_(disk) {}
-  Result<std::string> read() override {
-    if (d_.unreadable) return *d_.unreadable;
-    return of(d_.last);
-  }
-  Result<std::string> readPrevious() override { return of(d_.previous); }
-  Result<Ok> write(const std::string& text) override {
-    ++d_.writes;
-    if (d_.fault) return *d_.fault;
-    d_.previous = d_.last;
-    d_.last = text;
-    return Ok{};
-  }
-  Result<Ok> putAside() override {
-    d_.damaged = std::exchange(d_.last, std::nullopt);
-    return Ok{};
-  }
-  const std::string& name() const override { return name_; }
-
- private:
-  static Result<std::string> of(const std::optional<std::string>& file) {
-    if (!file) return Error{Errc::kNotFound, "FILE: there is none"};
-    return *file;
-  }
-  Disk& d_;
-  std::string name_ = "FILE";
-};
-
-class StateKeeping : public testing::Test {
- protected:
-  // Runs a daemon's life: reads the state, makes a change if there is one, ends.
-  std::unique_ptr<StateKeeper> keeper() {
-    return std::make_unique<StateKeeper>(std::make_unique<FakeFiles>(disk_), watch_);
-  }
-  static void setRate(StateKeeper& keeper, double rate_hz) {
-    keeper.change([&](State& state) { state.rate_hz = rate_hz; });
-    keeper.settle();
-  }
-  std::optional<double> rateOf(const std::optional<std::string>& file) {
-    const auto read = file ? parseState(*file, "f") : Result<State>(State{});
-    return read ? read->rate_hz : std::nullopt;
-  }
-
-  FakeFiles::Disk disk_;
-  ThreadWatch watch_;
-};
-
-TEST_F(StateKeeping, AChangeIsSavedAtOnceAndIsThereAgain) {
-  {
-    const auto first = keeper();
-    EXPECT_EQ(disk_.writes, 0) << "what nobody changed is not written";
-    setRate(*first, 20);
-    EXPECT_EQ(rateOf(disk_.last), 20);
-    setRate(*first, 21);
-    EXPECT_EQ(rateOf(disk_.last), 21);
-    EXPECT_EQ(rateOf(disk_.previous), 20);
-    EXPECT_EQ(first->fault(), "");
-  }
-  const auto second = keeper();
-  EXPECT_EQ(second->state().rate_hz, 21);
-  EXPECT_TRUE(second->takeNotices().empty());
-}
-
-TEST_F(StateKeeping, OfADamagedFileThePreviousOneIsUsedAndKept) {
-  {
-    const auto first = keeper();
-    setRate(*first, 20);
-    setRate(*first, 21);
-  }
-  disk_.last->resize(disk_.last->size() / 2);
-  const auto second = keeper();
-  EXPECT_EQ(second->state().rate_hz, 20);
-  const auto notices = second->takeNotices();
-  ASSERT_EQ(notices.size(), 1u);
-  EXPECT_NE(notices[0].find("FILE: line"), std::string::npos) << notices[0];
-  EXPECT_NE(notices[0].find("the previous state is used; the damaged file is FILE.damaged now"),
-            std::string::npos)
-      << notices[0];
-  EXPECT_TRUE(disk_.damaged);
-  setRate(*second, 22);
-  EXPECT_EQ(rateOf(disk_.last), 22);
-}
-
-TEST_F(StateKeeping, OfADamagedFileWithoutAPreviousOneTheConfigurationHolds) {
-  disk_.last = "{";
-  EXPECT_NE(keeper()->takeNotices().at(0).find(
-                "there is no previous one: the configuration's values are used"),
-            std::string::npos);
-}
-
-TEST_F(StateKeeping, WhereBothAreDamagedTheConfigurationHolds) {
-  disk_.last = "{";
-  disk_.previous = "";
-  const auto only = keeper();
-  EXPECT_FALSE(only->state().rate_hz);
-  EXPECT_NE(only->takeNotices().at(0).find(
-                "the previous one is damaged too: the configuration's values are used"),
-            std::string::npos);
-  setRate(*only, 22);
-  EXPECT_EQ(rateOf(disk_.last), 22);
-}
-
-TEST_F(StateKeeping, ANewerStateIsNeitherReadNorReplaced) {
-  const std::string newer = R"({"merlin_state": 4})";
-  disk_.last = newer;
-  disk_.previous = stateText(someState());
-  const auto only = keeper();
-  EXPECT_FALSE(only->state().rate_hz);
-  EXPECT_NE(only->fault().find("a newer merlind wrote the file; the file is left alone"),
-            std::string::npos)
-      << only->fault();
-  setRate(*only, 22);
-  EXPECT_EQ(only->state().rate_hz, 22) << "until the daemon ends";
-  EXPECT_EQ(disk_.last, newer);
-  EXPECT_EQ(disk_.writes, 0);
-}
-
-TEST_F(StateKeeping, AFileThatCannotBeReadIsLeftAlone) {
-  disk_.unreadable = Error{Errc::kIo, "FILE: Permission denied"};
-  const auto only = keeper();
-  EXPECT_TRUE(only->fault().starts_with("FILE: Permission denied; the file is left alone"));
-  setRate(*only, 22);
-  EXPECT_EQ(disk_.writes, 0);
-}
-
-TEST_F(StateKeeping, AFullDiskIsSaidAndTheChangeIsNotLost) {
-  {
-    const auto only = keeper();
-    setRate(*only, 20);
-    disk_.fault = Error{Errc::kIo, "FILE: No space left on device"};
-    setRate(*only, 21);
-    EXPECT_EQ(only->fault(), "FILE: No space left on device; saving is tried again every 5 s");
-    EXPECT_EQ(only->state().rate_hz, 21);
-    EXPECT_EQ(rateOf(disk_.last), 20);
-    disk_.fault.reset();
-  }
-  EXPECT_EQ(rateOf(disk_.last), 21) << "tried again as the daemon ends";
-}
-
-TEST_F(StateKeeping, WithoutAFolderNothingIsSavedAndThatIsSaid) {
-  StateKeeper only(nullptr, watch_);
-  setRate(only, 20);
-  EXPECT_EQ(only.state().rate_hz, 20);
-  EXPECT_NE(only.fault().find("/state_file"), std::string::npos);
-}
-
-TEST(StateFolder, KeepsTheLastTwoAndPutsADamagedOneAside) {
-  const test::TempDir dir;
-  const std::string path = dir / "a/b/state.json";
-  StateFolder folder(path);
-  EXPECT_EQ(folder.read().error().code, Errc::kNotFound);
-  ASSERT_TRUE(folder.write("1"));
-  EXPECT_EQ(folder.readPrevious().error().code, Errc::kNotFound);
-  ASSERT_TRUE(folder.write("2"));
-  ASSERT_TRUE(folder.write("3"));
-  EXPECT_EQ(*folder.read(), "3");
-  EXPECT_EQ(*folder.readPrevious(), "2");
-  struct stat last {
-  }, previous{};
-  EXPECT_EQ(::stat(path.c_str(), &last), 0);
-  EXPECT_EQ(::stat((path + ".previous").c_str(), &previous), 0);
-  EXPECT_NE(last.st_ino, previous.st_ino) << "damage of one is not damage of the other";
-  ASSERT_TRUE(folder.putAside());
-  EXPECT_EQ(folder.read().error().code, Errc::kNotFound);
-  EXPECT_EQ(*folder.readPrevious(), "2");
-  EXPECT_EQ(test::readText(path + ".damaged"), "3");
-}
-
-TEST(StateFolder, SaysWhereItCannotWriteAndKeepsWhatIsThere) {
-  const test::TempDir dir;
-  test::writeText(dir / "file", "x");
-  StateFolder folder(dir / "file/state.json");
-  const auto written = folder.write("1");
-  ASSERT_FALSE(written);
-  EXPECT_NE(written.error().what.find(dir / "file"), std::string::npos);
-  StateFolder good(dir / "state.json");
-  ASSERT_TRUE(good.write("1"));
-  ASSERT_EQ(::mkdir((dir / "state.json.next").c_str(), 0700), 0);
-  EXPECT_FALSE(good.write("2"));
-  EXPECT_EQ(*good.read(), "1");
-}
-
-TEST(StateFolder, IsTheUsersUnlessOneIsNamed) {
-  EXPECT_EQ(stateFile("/x/y.json", "wall", true), "/x/y.json");
-  EXPECT_EQ(stateFile("/x/y.json", "wall", false), "/x/y.json.devices");
-  ::setenv("STATE_DIRECTORY", "/var/lib/merlin:/other", 1);
-  EXPECT_EQ(stateFile("", "wall", true), "/var/lib/merlin/wall.state.json");
-  EXPECT_EQ(stateFile("", "wall", false), "/var/lib/merlin/wall.state.json.devices");
-  ::unsetenv("STATE_DIRECTORY");
-  if (::geteuid() == 0) return;
-  ::setenv("XDG_STATE_HOME", "/home/x/state", 1);
-  EXPECT_EQ(stateFile("", "wall", true), "/home/x/state/merlin/wall.state.json");
-  ::unsetenv("XDG_STATE_HOME");
-  ::setenv("HOME", "/home/x", 1);
-  EXPECT_EQ(stateFile("", "wall", true), "/home/x/.local/state/merlin/wall.state.json");
 }
 
 }  // namespace

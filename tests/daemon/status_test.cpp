@@ -325,10 +325,10 @@ TEST_F(DocumentsTest, EventsAreToldOnce) {
   devices_->health[test::kBall].publish(complains);
   EXPECT_EQ(test::told(events.take(kNow)),
             test::Sentences{"fault: ball: stale (it lacks the key BTN_8)"});
-  lost.state = HealthState::kOpening;  // trying to open it again is no event
+  lost.state = HealthState::kOpening;  // another attempt to open it is no event
   devices_->health[test::kBall].publish(lost);
   EXPECT_TRUE(events.take(kNow).empty());
-  DeviceHealth starts{};  // nor is that a process which was started anew will open it
+  DeviceHealth starts{};  // nor is it an event that a restarted process has not opened it yet
   std::snprintf(starts.reason, sizeof starts.reason, "not opened yet");
   devices_->health[test::kBall].publish(starts);
   EXPECT_TRUE(events.take(kNow).empty());
@@ -424,7 +424,7 @@ TEST_F(ServerTest, AnswersCommands) {
   EXPECT_NE(failed.error().what.find("it is broken"), std::string::npos);
 }
 
-// The answer to the sender's last command, once it is there.
+// Waits for the answer to the sender's last command.
 Result<std::string> answerOf(CommandSender& sender, const Clock& clock) {
   std::optional<Result<std::string>> answer;
   EXPECT_TRUE(test::eventually([&] { return (answer = sender.answer(clock.now())).has_value(); }));
@@ -483,7 +483,7 @@ TEST_F(ServerTest, DeepNestingAndLongRequestsDoNotHurt) {
   zmq::socket_t socket(context, zmq::socket_type::req);
   socket.set(zmq::sockopt::linger, 0);
   socket.connect(command_);
-  // Too large: dropped together with its connection.
+  // This request is too large, so it is dropped and its connection closed.
   socket.send(zmq::buffer(std::string(1 << 20, 'x')));
   EXPECT_EQ(*ask(command_, "status", seconds(10)), R"({"n":1})");
 }
@@ -521,7 +521,7 @@ TEST_F(ServerTest, SocketsAreForUserAndGroupOnly) {
 
 // ---- hostile clients
 
-// A plain socket connection, without a library.
+// A connection over a plain socket, without ZeroMQ.
 UniqueFd rawConnection(const std::string& endpoint) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
@@ -538,7 +538,7 @@ void sendRaw(const UniqueFd& fd, const std::string& bytes) {
   (void)::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-// Whether the server closes the connection; anything it sends before is ignored.
+// Whether the server closes the connection; everything that it sends before is ignored.
 bool isClosed(const UniqueFd& fd) {
   char bytes[4096];
   for (;;) {
@@ -686,7 +686,7 @@ TEST(Watchdog, KnowsThreadsThatPauseEndStopAndStart) {
   EXPECT_FALSE(watchdog.ping(kNow + seconds(6), {a, {3, "c", 5, false, true, "gone"}}));
 }
 
-// When strangers hold all places, a daemon closes connections, and the requests on them are lost.
+// When strangers hold all places, a daemon closes connections, and requests on them are lost.
 TEST(Client, AsksForTheStatusAgainAndForNothingElse) {
   const test::TempDir dir;
   const std::string endpoint = "ipc://" + dir.path() + "/c";

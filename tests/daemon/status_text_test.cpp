@@ -1,4 +1,4 @@
-// merlin status and the lines of merlin watch: what becomes of the documents of both roles.
+// The text of merlin status and the lines of merlin watch, made from the documents of both roles.
 #include "daemon/cli/wall/status_text.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,8 @@ using Json = nlohmann::ordered_json;
 
 const char* const kFull = "state.json: No space left on device";
 
-// A status document of a role whose service "state" has that reason; empty: it works.
+// A status document of a role whose service "state" has failed for this reason; empty: the service
+// works.
 std::string document(const std::string& role, const std::string& reason) {
   const Json service = {{"health", reason.empty() ? "ok" : "failed"}, {"reason", reason}};
   Json status = {{"role", role}, {"pid", 7}, {"services", {{"state", service}}}};

@@ -1,4 +1,5 @@
-// merlin trace writes JSON for a trace viewer, with the steps that the design names for one frame.
+// merlin trace writes JSON for a trace viewer, with the steps that the documentation names for one
+// frame.
 #include <map>
 #include <set>
 

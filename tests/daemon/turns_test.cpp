@@ -1,4 +1,4 @@
-// Whose input counts when several people act on the wall, and which of several devices acts.
+// Whose input counts when several people act on the wall, and which of several devices is used.
 #include "daemon/wall/turns.h"
 
 #include <algorithm>
@@ -34,7 +34,8 @@ TEST(Turns, WhoActsFirstHasTheWallUntilIdle) {
   EXPECT_FALSE(turns.update(now, {})) << "idle: anybody may take it";
 }
 
-// Two gloves, two balls and a tracker: two hands of two people, and a ball of each.
+// Two gloves, two balls and a tracker, which give two hands and two balls; each of two people has
+// one hand and one ball.
 class SeveralDevicesTest : public testing::Test {
  protected:
   static shm::SlotNames names() {
@@ -156,7 +157,7 @@ TEST_F(SeveralDevicesTest, AHandThatGrabsMovesWhatAnotherPointsAt) {
 
 TEST_F(SeveralDevicesTest, AlignmentsComeInTheirOrder) {
   DeviceFeed feed(name_, settings(""));
-  hold(kDesk, false);  // what had begun before the first read is not read
+  hold(kDesk, false);  // actions that began before the first read are ignored
   read(feed);
   for (const char* name : {"align_left", "align_left", "align_corner_next", "align_undo"})
     begin(kDesk, name);

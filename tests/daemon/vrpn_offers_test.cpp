@@ -1,5 +1,5 @@
-// What `merlin devices` makes of the answers of VRPN servers, and how it asks servers of which one
-// lies and one never answers.
+// How `merlin devices` presents the answers of VRPN servers, and how it asks several servers of
+// which one lies and one never answers.
 #include "daemon/cli/devices/vrpn_offers.h"
 
 #include <chrono>
@@ -24,7 +24,7 @@ using test::vrpnType;
 
 constexpr const char* kLab = "tcp://lab:3883";
 
-// The numbers of types that these servers use.
+// The numbers that these servers give to message types.
 constexpr std::int32_t kPose = 4, kButton = 5, kChannels = 6;
 
 std::string allTypes() {
@@ -127,7 +127,7 @@ TEST(VrpnOffers, MerlindIsNotOfferedItsOwnServer) {
   EXPECT_FALSE(listingOf(answerOf(kWand, "tcp://lab:4000"), serves).own);
 }
 
-// The entry is what a configuration takes, whatever the device is called.
+// The entry has to be valid JSON for a configuration, whatever the device's name is.
 TEST(VrpnOffers, AnEntryIsJsonWhateverTheName) {
   const std::string name = R"(a "b"}, {"name": "evil" \)";
   const VrpnListing listing =
@@ -170,7 +170,7 @@ TEST(VrpnServers, HostsAreNamedWithAndWithoutAPort) {
     EXPECT_FALSE(vrpnPort(bad)) << bad;
 }
 
-// By the identity that its driver told.
+// The match is by the identity that the running driver has reported.
 TEST(VrpnServers, WhatARunningMerlindReadsIsKnown) {
   const auto tracker = vrpnDeviceOf("eyes", kLab, vrpn::trackerIdentity("Wand0", "07.38"));
   ASSERT_TRUE(tracker);
@@ -206,7 +206,7 @@ TEST(VrpnServers, OneThatNeverAnswersOrIsNotThereKeepsNoOtherWaiting) {
   const std::vector<std::string> ports = {at(net::portOf(silent->get())), at(none),
                                           at(wand.port())};
   std::vector<VrpnAnswer> answers;
-  // A busy machine may take longer than the time that servers have.
+  // The test tries again, since a busy machine may take longer than the servers' time limit.
   EXPECT_TRUE(test::eventually([&] {
     const auto began = std::chrono::steady_clock::now();
     answers = askServers(ports, std::chrono::milliseconds(300));

@@ -1,4 +1,4 @@
-// The VRPN protocol byte by byte, after VRPN's sources, and MERLIN's server over real sockets.
+// The VRPN protocol byte by byte, following VRPN's sources, and MERLIN's server over real sockets.
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -105,7 +105,7 @@ TEST(VrpnProtocol, EveryPrefixWaitsAndEveryBadLengthIsSaid) {
   for (std::size_t n = 0; n < 12; ++n) (void)readVrpnName(whole.substr(24, n));
 }
 
-// A client that starts as VRPN's own does: with a cookie, descriptions and a ping.
+// A client that begins as VRPN's own client does: with a cookie, descriptions and a ping.
 struct Client {
   explicit Client(int fd_) : fd(fd_) {
     timeval limit{10, 0};
@@ -320,7 +320,8 @@ TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
   ASSERT_TRUE(server) << server.error().what;
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sockaddr_in there = loopback((*server)->port());
-  std::vector<UniqueFd> listeners;  // the kernel accepts the connections, and nobody speaks on them
+  // The kernel accepts connections to these sockets, but nothing is ever sent on them.
+  std::vector<UniqueFd> listeners;
   for (int i = 0; i < 20; ++i) {
     listeners.push_back(*net::listenTcp("127.0.0.1", 0));
     const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listeners.back().get()));
@@ -365,7 +366,8 @@ TEST(VrpnServer, OnePortIsConnectedToOnceHoweverOftenItIsAskedFor) {
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sockaddr_in there = loopback((*server)->port());
   const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listener->get()));
-  // Asks for the same port until the server has closed the first connection because it was silent.
+  // Asks for a connection to the same port until the server has closed the first one because it was
+  // silent.
   EXPECT_TRUE(test::eventually([&] {
     ::sendto(udp.get(), ask.c_str(), ask.size() + 1, 0, reinterpret_cast<const sockaddr*>(&there),
              sizeof there);

@@ -1,4 +1,4 @@
-// A wall that is black, frozen, or left to its playlist, on a virtual clock.
+// A wall that is black, frozen, or under control of its playlist, on a virtual clock.
 #include <gtest/gtest.h>
 
 #include "tests/support/fake_wall.h"
@@ -27,7 +27,7 @@ class WallAttendanceTest : public FakeWall {
   }
   shm::WallInteraction interaction() const { return *interaction_->read(); }
   Eigen::Isometry3f pose() const { return scene_.view().T_eye_model; }
-  // Angle by which the content is turned about the vertical axis, from the initial view [degrees].
+  // Angle by which the content has turned about the vertical axis since the initial view [degrees].
   float turned() const {
     const Eigen::Matrix3f R = pose().linear();
     return std::atan2(R(0, 2), R(0, 0)) / kRadian;
@@ -65,7 +65,7 @@ TEST_F(WallAttendanceTest, BlankIsBlackWithinThePeriodAndASecondCallShowsThePict
 
 TEST_F(WallAttendanceTest, ATouchShowsThePictureAgainAndMovesItAsEver) {
   float before = 0;
-  std::vector<float> steps;  // of the first frames that are pushed
+  std::vector<float> steps;  // of the first frames in which the ball is pushed
   frames(6, [&](std::size_t frame) {
     if (frame == 60) attendance_->toggleBlank();
     feed_.pushed = frame >= 120 && frame < 124;
@@ -142,7 +142,8 @@ TEST_F(WallAttendanceTest, AModelThatIsReplacedWhileItIsFrozenIsShownAfterwards)
   EXPECT_GT(fresh.taken, before);
 }
 
-// After 2 seconds without a touch it turns by 30 degrees a second; each content for 3 seconds.
+// After 2 seconds without a touch the content turns by 30 degrees a second; each is shown for 3
+// seconds.
 TEST_F(WallAttendanceTest, ThePlaylistTurnsAtTheRateAndYieldsAtTheFirstTouch) {
   setPlaylist(2, 3, 30);
   float yielded = 0;
@@ -192,13 +193,13 @@ TEST_F(WallAttendanceTest, ThePlaylistBeginsWithTheInitialViewOfAContentOfItsLis
   }
 }
 
-// `merlin show FILE` on a wall of two contents: the file is behind them.
+// `merlin show FILE` on a wall with two contents: the file becomes the third one.
 TEST_F(WallAttendanceTest, WhatAPersonHasShownIsTheFirstOfThePlaylistForAsLongAsEach) {
   contents_.push_back({&detail_, &painter_});
   listed_ = 2;
   setPlaylist(2, 3, 0);
   frames(7, [&](std::size_t frame) {
-    if (frame == 30) loop_->show(2);  // it begins 2 seconds later, with frame 91
+    if (frame == 30) loop_->show(2);  // the playlist begins 2 seconds later, with frame 91
     if (frame == 89) {
       EXPECT_EQ(interaction().playlist, shm::WallInteraction::kPlaylistWaiting);
     }
@@ -236,7 +237,7 @@ TEST_F(WallAttendanceTest, AContentThatIsNotInThePlaylistIsShownFirstIfAPersonCh
   }
 }
 
-// A model that took long to read comes while the playlist runs already.
+// A model whose reading takes long arrives while the playlist is already running.
 TEST_F(WallAttendanceTest, WhatComesLateIsShownAsLongAsWhatComesAtOnce) {
   class Late final : public ContentSource {
    public:
@@ -255,7 +256,7 @@ TEST_F(WallAttendanceTest, WhatComesLateIsShownAsLongAsWhatComesAtOnce) {
   replacements_ = &late;
   setPlaylist(1, 2, 0);
   frames(7, [&](std::size_t frame) {
-    late.due = frame == 85;  // just before the next one's turn, after 3 seconds
+    late.due = frame == 85;  // just before the next content is due, after 3 seconds
     if (frame == 87 || frame == 172) {
       EXPECT_EQ(interaction().content, 2u) << frame;
     }

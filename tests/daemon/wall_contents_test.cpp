@@ -1,4 +1,5 @@
-// Several models on a wall, on a virtual clock: the next one is shown at once, and in time.
+// Several models on a wall, on a virtual clock: the wall changes to the next one at once, without
+// late frames.
 #include <map>
 #include <string>
 
@@ -11,14 +12,14 @@
 namespace merlin::wall {
 namespace {
 
-// A triangle of the second model costs four times one of the first.
+// A triangle of the second model costs four times as much as one of the first.
 class WallContentsTest : public FakeWall {
  protected:
   WallContentsTest() {
     contents_.push_back({&detail_, &dear_});
     calibrated_ = true;
   }
-  // The next content is asked for after 2 s, and again after 4.
+  // Requests the next content after 2 s and again after 4 s.
   void pressTwice(Timestamp) {
     const auto frame = static_cast<int>(feed_.begins.size());
     feed_.actions.next_content = frame == 60 || frame == 120 ? 1 : 0;
@@ -32,7 +33,7 @@ class WallContentsTest : public FakeWall {
 TEST_F(WallContentsTest, TheNextOneIsInTimeFromItsFirstFrame) {
   run(6, [&](Timestamp now) { pressTwice(now); });
   EXPECT_EQ(stats().late, 0u);
-  const std::size_t calibrating = 3;  // frames that were measured of the dear one
+  const std::size_t calibrating = 3;  // frames of the second model that were drawn for calibration
   EXPECT_NEAR(static_cast<double>(dear_.drawn.size() - calibrating), 60, 1);
   EXPECT_GT(painter_.drawn.back(), dear_.drawn.back()) << "after the last comes the first";
   const auto triangles = [](const FakePainter& p, std::size_t i) {
@@ -81,7 +82,7 @@ TEST_F(WallContentsTest, OneThatIsMissingIsPassedOver) {
   EXPECT_EQ(stats().late, 0u);
 }
 
-// Has one other content for one place, when it is told to.
+// Offers one other content for one place, once a test sets `due`.
 class OneReplacement final : public ContentSource {
  public:
   OneReplacement(std::size_t place, ShownContent content) : fresh_({place, content}) {}
@@ -107,7 +108,7 @@ TEST_F(WallContentsTest, WhereAllAreMissingTheFirstThatComesIsShown) {
   EXPECT_EQ(shown.back(), 1u);
 }
 
-// Two who ask at the same time: neither takes the other's answer for its own.
+// Two clients send requests at the same time: neither takes the other's answer for its own.
 TEST_F(WallContentsTest, WhatBecameOfEachRequestIsPublishedForAWhile) {
   std::map<std::uint32_t, std::string> seen;
   run(2, [&](Timestamp) {
@@ -145,7 +146,7 @@ TEST_F(WallContentsTest, ACommandDoesTheSame) {
   EXPECT_EQ(interaction().content, 1u);
 }
 
-// Behind the two contents of the list there is a file.
+// After the two contents of the list there is a third one that a person has shown.
 TEST_F(WallContentsTest, ThePreviousOneIsTheOneThatTheNextOneCameFrom) {
   contents_.push_back({&detail_, &dear_});
   contents_.push_back({&detail_, &dear_});
@@ -170,7 +171,7 @@ TEST_F(WallContentsTest, AReplacedOneIsDrawnFromTheNextFrameAndTheOldOneNeverAga
   run(4, [&](Timestamp) {
     if (feed_.begins.size() == 60) {
       fresh.due = true;
-      old_frames = painter_.drawn.size() + 1;  // that of this period
+      old_frames = painter_.drawn.size() + 1;  // with the frame of this period
     }
   });
   EXPECT_EQ(painter_.drawn.size(), old_frames);
@@ -201,7 +202,7 @@ TEST_F(WallContentsTest, AReplacedOneThatIsNotShownWaitsForItsTurn) {
   EXPECT_EQ(dear_.drawn.size(), 3u) << "measured before the first frame, and never again";
 }
 
-// A content of which parts are loaded while it is shown.
+// Parts of the content are still being loaded while it is shown.
 TEST_F(WallContentsTest, AStillWallWaitsForWhatIsBeingLoadedAndDrawsAgainWhenItHasCome) {
   using render::content::Pending;
   feed_.pushed = false;
@@ -221,7 +222,7 @@ TEST_F(WallContentsTest, AStillWallWaitsForWhatIsBeingLoadedAndDrawsAgainWhenItH
   EXPECT_TRUE(stats().full_detail);
 }
 
-// A tile that could not be read at first is there after all.
+// A tile that could not be read at first can be read later.
 TEST_F(WallContentsTest, WhatComesAfterFullDetailIsDrawnToo) {
   using render::content::Pending;
   feed_.pushed = false;
@@ -236,7 +237,7 @@ TEST_F(WallContentsTest, WhatComesAfterFullDetailIsDrawnToo) {
   EXPECT_TRUE(stats().full_detail);
 }
 
-// The second content has two parts; the next one comes when it is told to.
+// The second content has two slides; the next one comes when it is requested.
 class Slides final : public ContentSource {
  public:
   explicit Slides(ShownContent content) : content_(content) {}
@@ -318,7 +319,7 @@ TEST_F(WallContentsTest, WhereNoFurtherSlideCanBeShownTheNextContentFollows) {
     }
     if (frame == 65) {
       EXPECT_EQ(interaction().content, 0u) << "the folder is gone";
-      slides.gone = true;  // one that comes late changes nothing
+      slides.gone = true;  // a slide that arrives late changes nothing
     }
     if (frame == 110) {
       EXPECT_EQ(interaction().content, 0u);
@@ -328,14 +329,14 @@ TEST_F(WallContentsTest, WhereNoFurtherSlideCanBeShownTheNextContentFollows) {
   EXPECT_EQ(slides.parts, 99);
 }
 
-// `merlin show FILE`: behind the contents of the list there is a place for what is not in it.
+// `merlin show FILE`: one place after the contents of the list is for files that are not in it.
 TEST_F(WallContentsTest, AContentThatIsAskedForIsShownAndTheListGoesOnAfterIt) {
   contents_.push_back({&detail_, &dear_});
   listed_ = 2;
   run(4, [&](Timestamp) {
     const auto frame = feed_.begins.size();
     if (frame == 30) loop_->show(2);
-    if (frame == 31) loop_->show(99);  // there is none
+    if (frame == 31) loop_->show(99);  // no such content
     feed_.actions.next_content = frame == 60 ? 1 : 0;
     if (frame == 50) {
       EXPECT_EQ(interaction().content, 2u);

@@ -1,4 +1,4 @@
-// What the control panel's lamp warns of.
+// The faults that light the lamp of the control panel.
 #include "daemon/devices/wall_fault.h"
 
 #include <cstring>
@@ -34,7 +34,7 @@ TEST(WallFault, IsAnOutputThatFailsOrShowsSomethingElse) {
   EXPECT_EQ(faultAmong(all), "output left: nothing is plugged in");
   all.count = 0;
   EXPECT_EQ(faultAmong(all), "");
-  all.count = 1000;  // of a segment that somebody spoiled
+  all.count = 1000;  // as in a segment that somebody has overwritten
   EXPECT_NE(faultAmong(all), "");
 }
 

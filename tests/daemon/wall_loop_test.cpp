@@ -1,5 +1,5 @@
-// The wall's frame clock on a virtual clock: a painter that costs what a model of the renderer
-// says.
+// The wall's frame clock on a virtual clock; the painter's frames take as long as a model of the
+// renderer says.
 #include "daemon/wall/wall_loop.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ TEST_F(WallLoopTest, HoldsTheRateWhileItMoves) {
   EXPECT_EQ(first_frames_, 1);
   EXPECT_NEAR(static_cast<double>(frames_.frames.size()), 300, 2);
   EXPECT_NEAR(stats().rate_held_hz, 30, 0.01);
-  EXPECT_LE(stats().late, 3u);  // the first frame asks for more than there is time for
+  EXPECT_LE(stats().late, 3u);  // the first frame tries to draw more than there is time for
   EXPECT_GT(stats().utilisation, 0.80F);
   EXPECT_EQ(stats().moving, 1u);
   EXPECT_FLOAT_EQ(stats().input_age_ms, 7);
@@ -62,7 +62,8 @@ TEST_F(WallLoopTest, ShowsFullDetailWithinHalfASecondOfStandstill) {
   EXPECT_NEAR(stats().rate_held_hz, 30, 0.01);
 }
 
-// Whenever motion resumes, refining or not, the frame that begins then meets its own deadline.
+// Whenever motion resumes, during refinement or not, the first frame that begins then meets its own
+// deadline.
 TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
   std::optional<Timestamp> resumed;
   for (int still_periods = 5; still_periods < 40; ++still_periods) {
@@ -86,14 +87,15 @@ TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
   }
 }
 
-// Twice as slow at first, since its data are in no cache; three frames later it has all detail.
+// The first frame is twice as slow, since its data are in no cache; three frames later the content
+// has full detail.
 TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentIsInTime) {
   contents_.push_back({&detail_, &painter_});
   calibrated_ = true;
   std::size_t at_change = 0;
   run(4, [&](Timestamp now) {
     if (at_change == 0 && now - feed_.begins.front() > std::chrono::seconds(3)) {
-      at_change = frames_.frames.size() + 1;  // it is asked for while a frame begins
+      at_change = frames_.frames.size() + 1;  // the content is requested while a frame begins
       loop_->show(1);
     }
     painter_.slow = at_change > 0 && frames_.frames.size() == at_change ? 2 : 1;
@@ -105,12 +107,12 @@ TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentIsInTime) {
   EXPECT_EQ(costOf(at_change + 3), costOf(at_change - 1));
 }
 
-// Otherwise the text over the frame (the operator's plates) would name the previous content.
+// Without this, the text over the frame (the operator's plates) would name the previous content.
 TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentFindsItsNamePublished) {
   contents_.push_back({&detail_, &painter_});
   contents_[0].name = "first";
   contents_[1].name = "second";
-  std::vector<std::string> published;  // when a frame was drawn
+  std::vector<std::string> published;  // the published name, at each time that a frame was drawn
   painter_.on_draw = [&] {
     const auto content = content_->read();
     published.emplace_back(content ? content->name : "");
@@ -118,7 +120,7 @@ TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentFindsItsNamePublished) {
   std::size_t at_change = 0;
   run(1, [&](Timestamp) {
     if (at_change > 0 || published.size() < 5) return;
-    at_change = published.size() + 1;  // it is asked for while a frame begins
+    at_change = published.size() + 1;  // the content is requested while a frame begins
     loop_->show(1);
   });
   ASSERT_GT(at_change, 0u);

@@ -1,5 +1,5 @@
-// What the wall gives for its rate, and what it says of it: calibration, feed-forward, the ladder,
-// by hand; on a virtual clock.
+// How the wall keeps its rate, and what it reports about that, on a virtual clock: calibration,
+// feed-forward, the degradation ladder, limits set by a person.
 #include <gtest/gtest.h>
 
 #include "tests/support/fake_wall.h"
@@ -10,7 +10,7 @@ namespace {
 class WallPaceTest : public FakeWall {
  protected:
   WallPaceTest() : FakeWall(microseconds(10), 40, {.min_triangles = 100}) {}
-  // The detail axis of pictures; the painter takes as long as for a fine model, at each step.
+  // The detail steps of a picture. At each step the painter takes as long as for a fine model.
   struct PictureSteps final : render::content::DetailAxis {
     std::size_t steps() const noexcept override { return 9; }
     std::size_t costOf(std::size_t step) const noexcept override { return 4096U >> step; }
@@ -27,7 +27,8 @@ class WallPaceTest : public FakeWall {
   Duration since() const { return clock_.now() - feed_.begins.front(); }
 };
 
-// Without it the first second has late frames: it begins with as much as fits, and in time.
+// Without calibration the first second has late frames. With it, the first frame has as many
+// triangles as fit, and is in time.
 TEST_F(WallPaceTest, IsCalibratedBeforeTheFirstFrame) {
   calibrated_ = true;
   const Timestamp from = clock_.now();
@@ -39,7 +40,8 @@ TEST_F(WallPaceTest, IsCalibratedBeforeTheFirstFrame) {
   EXPECT_NEAR(frames_.frames.front().cost, 2600, 80);  // (33.3 ms x 0.9 - 4 ms) / 10 us
 }
 
-// The view goes back to the start, where it costs a quarter: the next frame has four times as many.
+// The view returns to the start view, where a triangle costs a quarter, so the next frame has four
+// times as many.
 TEST_F(WallPaceTest, AJumpToAKnownViewIsFedForward) {
   calibrated_ = true;
   std::size_t at_reset = 0;
@@ -56,7 +58,8 @@ TEST_F(WallPaceTest, AJumpToAKnownViewIsFedForward) {
   EXPECT_LE(stats().longest_late, 4u);
 }
 
-// 100 triangles take 30 ms and the tiles 4 of theirs: 1 at half their size. Later 1 ms again.
+// 100 triangles take 30 ms, and the tiles add 4 ms, or 1 ms at half size. Later the triangles take
+// 1 ms again.
 TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
   std::uint32_t scale = 0;
   run(40, [&](Timestamp) {
@@ -74,7 +77,8 @@ TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
   EXPECT_EQ(stats().ladder_steps, 2u);
 }
 
-// The coarsest detail takes 31 ms of 33: with a quarter less time they do not fit, and are drawn.
+// The coarsest detail takes 31 of 33 ms. After a quarter of the period has passed it does not fit,
+// but is drawn nevertheless.
 TEST_F(WallPaceTest, MotionThatResumesNearTheLeastIsDrawn) {
   std::size_t resumed = 0, drawn = 0;
   run(8, [&](Timestamp) {
@@ -142,7 +146,7 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   EXPECT_GT(frames_.frames.back().cost, 2300u);
 }
 
-// The number that a person may set is the number that is used.
+// The smallest number that a person may set has to be the number that is then used.
 TEST_F(WallPaceTest, TheLimitsOfTrianglesByHandAreThoseOfTheContent) {
   contents_.push_back({&picture_, &painter_});
   std::vector<std::size_t> least;
@@ -156,7 +160,7 @@ TEST_F(WallPaceTest, TheLimitsOfTrianglesByHandAreThoseOfTheContent) {
   EXPECT_EQ(least, (std::vector<std::size_t>{100, 16})) << "of the model, and of the picture";
 }
 
-// 100 kilotexels, as many as the fewest triangles, would be two steps finer.
+// A step of 100 kilotexels (as many units as the minimum of triangles) would be two steps finer.
 TEST_F(WallPaceTest, APictureGetsAsCoarseAsItCan) {
   contents_.push_back({&picture_, &painter_});
   run(4, [&](Timestamp) {
@@ -183,7 +187,7 @@ TEST_F(WallPaceTest, DetailByHandEndsWithTheUnitThatItIsIn) {
       << "another model keeps it, a picture does not, and it does not come back";
 }
 
-// The same cost, two per cent up or down: not one triangle changes.
+// The cost per triangle varies by two per cent; the number of triangles must not change at all.
 TEST_F(WallPaceTest, NothingPopsForAFewPerCent) {
   calibrated_ = true;
   run(2);
@@ -219,7 +223,7 @@ const std::vector<shm::FrameTrace> all(const shm::Channel<shm::FrameTrace>& chan
   return frames;
 }
 
-// Input, scene, governor, cut, the tile, its pixels, present: in this order, inside the frame.
+// Input, scene, governor, cut, the tile, its pixels, present: in this order and within the frame.
 TEST_F(WallPaceTest, TellsEachStepOfEachFrame) {
   run(2, [&](Timestamp) { feed_.pushed = since() < std::chrono::seconds(1); });
   const auto frames = all(*trace_);
@@ -236,7 +240,7 @@ TEST_F(WallPaceTest, TellsEachStepOfEachFrame) {
     }
     EXPECT_LE(f.begin_ns + end, f.end_ns);
     EXPECT_EQ(f.late, f.moving && f.end_ns > f.deadline_ns ? 1u : 0u);
-    if (!f.moving || f.count <= 3) continue;  // or there was no time for a frame
+    if (!f.moving || f.count <= 3) continue;  // or there was no time to draw a frame
     ASSERT_EQ(f.count, 7u);
     for (int i = 0; i < 7; ++i) EXPECT_EQ(f.steps[i].kind, moving[i]);
   }
@@ -245,8 +249,8 @@ TEST_F(WallPaceTest, TellsEachStepOfEachFrame) {
   }));
 }
 
-// Frames that take several periods, and those after them for which there is no time: the charts
-// show as many late ones as the statistics count.
+// Some frames take several periods, and others are then left out for lack of time. The charts have
+// to show as many late frames as the statistics count.
 TEST_F(WallPaceTest, TellsEachDeadlineThatWasMissed) {
   calibrated_ = true;
   run(4, [&](Timestamp) {

@@ -1,4 +1,4 @@
-// The pointer's mark on a wall on a virtual clock: it moves while the picture stands.
+// The pointer's mark on a wall, on a virtual clock: it moves while the picture stands still.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST_F(WallPointerTest, EveryPlaceOfTheMarkIsShownWhileThePictureStands) {
       return;
     }
     feed_.actions.scene.point_at = true;
-    feed_.hand->position_m[0] += 0.01F;  // some pixels a frame
+    feed_.hand->position_m[0] += 0.01F;  // a few pixels a frame
   });
   ASSERT_GT(standing, 0u);
   EXPECT_NEAR(static_cast<double>(frames_.frames.size() - standing), 60, 2);
@@ -61,7 +61,7 @@ TEST_F(WallPointerTest, AMarkThatStandsIsShownOnceAndItsEndToo) {
   EXPECT_EQ(interaction_->read()->pixel[0], -1);
 }
 
-// Those of the panel and of the command are among the written ones.
+// The count includes the snapshots that the panel and the command requested.
 TEST_F(WallPointerTest, SnapshotsAreTakenAndThoseThatWereWrittenAreCounted) {
   bool asked = false;
   int taken = 0;

@@ -1,4 +1,4 @@
-// A wall whose content was carried out of sight, on a virtual clock.
+// A wall whose content has been moved out of sight, on a virtual clock.
 #include <gtest/gtest.h>
 
 #include "tests/support/fake_wall.h"
@@ -13,7 +13,8 @@ class WallReturnTest : public FakeWall {
     painter_.furthest_seen_m = 5;
     return_after_s_ = 60;
   }
-  // A hand that grabs after a second, is 3 m further away a moment later, and lets go there.
+  // The hand grabs the content after a second, is 3 m further away a moment later, and releases it
+  // there.
   void carryAway(Timestamp now) {
     const double s = toSeconds(now - feed_.begins.front());
     feed_.actions.scene.grab = s > 1 && s < 2;

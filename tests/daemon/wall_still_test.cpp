@@ -1,5 +1,5 @@
-// A model that takes seconds to draw whole, on a virtual clock: something finer soon after a
-// standstill, and motion in time whenever it comes.
+// A model whose full detail takes seconds to draw, on a virtual clock: soon after a standstill the
+// wall shows finer detail, and motion is in time whenever it resumes.
 #include <gtest/gtest.h>
 
 #include "render/frame/replaceable_correction.h"
@@ -8,8 +8,8 @@
 namespace merlin::wall {
 namespace {
 
-// As the 10-million model on a software renderer, by proportion: moving, one triangle in 20 fits a
-// frame; full detail takes 3,000 slices, 9 s.
+// Costs in proportion to those of the model of 10 million triangles on a software renderer: in
+// motion, one triangle in 20 fits into a frame; full detail takes 3,000 slices, which are 9 s.
 class BigModelTest : public FakeWall {
  protected:
   BigModelTest()
@@ -19,7 +19,7 @@ class BigModelTest : public FakeWall {
   Duration since() const { return clock_.now() - feed_.begins.front(); }
 };
 
-// Whenever within a period the ball is let go.
+// The ball may be released at any time within a period.
 TEST_F(BigModelTest, IsFinerWithinAQuarterOfASecondOfStandstill) {
   for (int phase_ms = 0; phase_ms < 34; phase_ms += 3) {
     feed_.begins.clear();
@@ -52,12 +52,13 @@ TEST_F(BigModelTest, GetsFinerInStepsAndThenWhole) {
   EXPECT_EQ(shown.back(), model().triangleCount());
   EXPECT_TRUE(frames_.frames.back().full_detail);
   EXPECT_FALSE((frames_.frames.rbegin() + 1)->full_detail);
-  EXPECT_NEAR(stats().still_to_full_s, 10, 0.5);  // 9 s of slices in what they may have of a period
+  // The slices take 9 s, and only a part of each period may be used for them.
+  EXPECT_NEAR(stats().still_to_full_s, 10, 0.5);
   EXPECT_LE(stats().late, 1u);
 }
 
-// Always, wherever refining is: the first frame that begins after the input meets its deadline; the
-// next one is as fine as the one that moved last.
+// At whatever point of the refinement motion resumes, the first frame that begins after the input
+// meets its deadline, and the next one is as fine as the last one in motion.
 TEST_F(BigModelTest, MotionAfterAStillPictureIsInTime) {
   for (int still_ms = 160; still_ms < 2000; still_ms += 37) {
     feed_.begins.clear();
@@ -86,7 +87,7 @@ TEST_F(BigModelTest, MotionAfterAStillPictureIsInTime) {
   }
 }
 
-// 40 slices of full detail.
+// Full detail takes 40 slices.
 class FadingTest : public FakeWall {
  protected:
   FadingTest() {
@@ -125,7 +126,7 @@ TEST_F(FadingTest, MotionEndsItAtOnce) {
 
 using WallStillTest = FakeWall;
 
-// Sends one pixel of this value.
+// A correction whose signal is one pixel of this value.
 struct OneValue final : render::frame::Correction {
   explicit OneValue(std::uint8_t value) : pixel{value, value, value, 255} {}
   render::out::Signal apply(const render::out::Signal&) override { return {1, 1, pixel}; }

@@ -1,4 +1,4 @@
-// Settings that a running wall takes, on a virtual clock.
+// Settings that a running wall takes over, on a virtual clock.
 #include <gtest/gtest.h>
 
 #include "tests/support/fake_wall.h"
@@ -11,7 +11,8 @@ class WallTuningTest : public FakeWall {
   // Tunes the loop once, after half a second.
   void runAndTune(double seconds, const WallTuning& tuning) {
     run(seconds, [&](Timestamp now) {
-      if (tuned_ && !before_) before_ = scene_.view();  // the tuned frame has not moved it yet
+      // In the frame in which the settings change, the view has not moved yet.
+      if (tuned_ && !before_) before_ = scene_.view();
       if (tuned_ || now - feed_.begins.front() < milliseconds(500)) return;
       tuned_ = true;
       loop_->tune(tuning);
@@ -49,7 +50,7 @@ TEST_F(WallTuningTest, TheLimitsOfTheTrianglesHoldAtOnce) {
   EXPECT_LE(frames_.frames.back().cost, 300u);
 }
 
-// The model stays where it is; the ball turns it at the new speed.
+// The model's place does not change; from now on the ball turns it at the new speed.
 TEST_F(WallTuningTest, TheViewStaysAndTheBallIsFaster) {
   WallTuning tuning;
   tuning.scene = render::scene::SceneSettings{};

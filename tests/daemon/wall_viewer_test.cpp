@@ -23,7 +23,8 @@ class WallViewerTest : public FakeWall {
                           [this](const Event& event) { said_.push_back(test::told({event})[0]); });
     viewer_ = &*viewer_place_;
   }
-  // The tracker's -y is the room's x: metres to the right of the place that the tiles are set for.
+  // The tracker's -y is the room's x. `right_m`: metres to the right of the place for which the
+  // tiles are configured.
   void standAt(double right_m) {
     feed_.actions.head.emplace();
     feed_.actions.head->position_m[1] = static_cast<float>(-right_m);

@@ -1,4 +1,4 @@
-// The table of merlin watch: what a status document becomes on a screen of some size.
+// The table of merlin watch: how a status document is laid out on a screen of a given size.
 #include "daemon/cli/watch/watch_view.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ std::vector<std::string> linesOf(const CellGrid& grid) {
   return lines;
 }
 
-// The style of the first cell of this text in the grid.
+// The style of the first cell of this text.
 CellStyle styleOf(const CellGrid& grid, const std::string& text) {
   for (int row = 0; row < grid.rows(); ++row) {
     const auto at = grid.line(row).find(text);
@@ -74,7 +74,7 @@ TEST(WatchView, ShowsWallDevicesOutputsChartAndEvents) {
       "           " + bars,
       "           " + bars};
   ASSERT_GE(lines.size(), expected.size());
-  // The title has its hint at the right edge.
+  // The title also has a hint at its right edge.
   for (std::size_t i = 1; i < expected.size(); ++i) EXPECT_EQ(lines[i], expected[i]) << i;
   EXPECT_TRUE(lines[0].starts_with("merlin watch: merlin  14:05:07 UTC  up 2 h 13 min"));
   EXPECT_TRUE(lines[0].ends_with(" q quits"));
@@ -141,7 +141,7 @@ TEST(WatchView, ATerminalThatIsTooSmallSaysSo) {
   EXPECT_EQ(layOut(state(), {-1, -1}, false).rows(), 0);
 }
 
-// The newest events stay where there is room for a few only.
+// If there is room for a few events only, the newest ones are shown.
 TEST(WatchView, ManyEventsLeaveTheChartItsPlace) {
   WatchedState s = state();
   for (int i = 0; i < 50; ++i) s.events.push_back({"2026-11-25T15:00:00Z", std::to_string(i)});
@@ -184,7 +184,8 @@ TEST(FrameChart, ABarIsAsHighAsItsTimeAndLateOnesAreBad) {
   times.add(40);
   CellGrid grid(4, 29);
   drawChart(grid, {0, 0, 4, 29}, times, 20, false);
-  // 20 columns of bars: the newest of three seconds at the right; 40 ms are four rows.
+  // There are 20 columns of bars. The newest of three seconds is at the right; a bar of 40 ms is
+  // four rows high.
   EXPECT_EQ(grid.line(0), "  40.0 ms" + std::string(19, ' ') + "#");
   EXPECT_EQ(grid.line(1), std::string(28, ' ') + "#");
   EXPECT_EQ(grid.line(2), "  20.0 ms" + std::string(19, '-') + "#");

@@ -9,7 +9,7 @@
 namespace merlin::status {
 namespace {
 
-// A key in binary, and as text.
+// The same key in binary form and as text.
 std::string binary(char fill) { return std::string(32, fill); }
 std::string text(char fill) {
   std::array<char, 41> z85{};
@@ -68,7 +68,7 @@ TEST_F(Zap, WhatIsMalformedIsRefused) {
     EXPECT_EQ(codeOf(request("commands", key)), "400") << key.size();
 }
 
-// A door without lists must not open for the empty text that stands for a malformed key.
+// Of a malformed key the text is empty. A door whose list is empty must not accept that text.
 TEST_F(Zap, AnEmptyListAdmitsNobody) {
   doors_["commands"] = {{""}, {""}};
   EXPECT_EQ(codeOf(request("commands", "")), "400");

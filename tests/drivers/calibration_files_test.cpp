@@ -83,7 +83,7 @@ std::string vess(const std::string& fourth) {
 TEST(Import, VessHasARangeForEachSensor) {
   const auto c = importCalibration(vess("60 40 200\n"));
   ASSERT_TRUE(c) << c.error().what;
-  // MCP joint: 90 degrees over 160 raw counts.
+  // Index MCP joint: 90 degrees are 160 raw counts.
   EXPECT_NEAR((220 - c->offset[4]) * c->gain[4], 1.5708F, 1e-4F);
 }
 
@@ -103,7 +103,7 @@ TEST(Import, WhatIsNoCalibrationIsSaid) {
     EXPECT_FALSE(importCalibration(kAsr.substr(0, n))) << n;
 }
 
-// The sample that a glove with these settings gives for these joint angles.
+// The sample of a glove with these settings whose wearer has these joint angles.
 GloveSample at(const std::array<float, 23>& angles, const CybergloveSettings& settings) {
   GloveSample s{};
   const auto raw = rawOf(angles, settings);

@@ -88,7 +88,7 @@ class Lines final : public SampleSink {
                         list(s.rotation, "{}{:.3f}"), list(s.raw, "{}{}"));
   }
   std::string text;
-  bool counts = true;  // false: 0 instead of what goes on when a line comes back
+  bool counts = true;  // false: counters are printed as 0, since a line that returns continues them
 
  private:
   template <typename T>
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Files, Corpus, testing::ValuesIn(corpus()), [](const au
   return name;
 });
 
-// The transcript of a line that is pulled after so many bytes of the device.
+// The transcript of a line that is unplugged after the device has sent `bytes` bytes.
 io::Transcript pulledAfter(std::size_t bytes, io::Transcript transcript) {
   std::vector<io::TranscriptChunk>& chunks = transcript.chunks;
   for (std::size_t i = 0; i < chunks.size(); ++i) {
@@ -183,7 +183,7 @@ std::size_t deviceBytes(const io::Transcript& transcript) {
   return bytes;
 }
 
-// Opens `device` on the transcript; returns as text what it reports until the transcript ends.
+// Opens `device` on the transcript; returns its reports as text until the transcript ends.
 std::string readBy(Device& device, const io::Transcript& transcript, FakeClock& clock,
                    Lines& lines) {
   lines.text.clear();
@@ -194,14 +194,15 @@ std::string readBy(Device& device, const io::Transcript& transcript, FakeClock& 
   return lines.text + (opened ? *opened : opened.error().what);
 }
 
-// Whether it is nothing, or one sample that ends what was held as the line was pulled.
+// Whether the text is empty, or is one sample that releases what was held when the line was
+// unplugged.
 bool isRelease(const std::string& text) {
   static const std::regex release(
       R"re(\{"touch":0,"fingers":\[\]\}\n|\{"ball":0,"buttons":0,"push":\[(0.000,?){3}\],"twist":\[(0.000,?){3}\],"raw":.*\n)re");
   return text.empty() || std::regex_match(text, release);
 }
 
-// In each state of its dialogue, and while it streams.
+// The line is unplugged in each state of the dialogue, and during streaming.
 TEST_P(Corpus, IsReadAnewAfterALineThatWasPulled) {
   const auto transcript = io::readTranscript(GetParam());
   ASSERT_TRUE(transcript) << transcript.error().what;
@@ -353,7 +354,7 @@ std::vector<NamedCase> allCases() {
   for (const Family& f : families) {
     for (const char* model : f.models) {
       for (std::size_t s = 0; s < f.settings.size(); ++s) {
-        // Only continues the numbering of the driver's first family.
+        // An entry without settings only takes part in the numbering of the cases.
         if (f.settings[s] == nullptr) continue;
         for (const char* fault : kFaults) {
           const char* script = f.scripts[seed % f.scripts.size()];
@@ -382,7 +383,7 @@ int synthesise() {
 class Generated : public testing::TestWithParam<NamedCase> {};
 
 // Whatever is damaged, the driver reads to the end of the recording, identifies the device, and
-// loses no records but those around the damage.
+// loses no records except those around the damage.
 TEST_P(Generated, LosesOnlyWhatIsDamaged) {
   Case whole = GetParam().what;
   whole.fault = "none";

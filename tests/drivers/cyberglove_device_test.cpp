@@ -222,8 +222,8 @@ TEST(CybergloveDevice, RefusesAnswersThatMakeNoGlove) {
   }
 }
 
-// Comes back to life with the first query: what it was sending and what it was asked before go
-// ahead of the answer.
+// Begins to answer with the first query. Before the answer it sends what it was sending earlier and
+// the answers to earlier queries.
 struct Returning final : emulate::Emulator {
   Returning(emulate::Emulator& box, std::string left_over)
       : box_(box), left(std::move(left_over)) {}

@@ -175,7 +175,7 @@ TEST(CybergloveRate, IsADivisorOf115200) {  // fact sheet, section 4.2 and examp
   EXPECT_EQ(encodeRate(1), "T\xE1\x00\x00\x02"s);
 }
 
-// One packet of each kind; the damage is applied to it.
+// The tests damage one packet of each kind.
 class CybergloveDamage : public testing::TestWithParam<test::NamedPacket> {};
 
 TEST_P(CybergloveDamage, EveryPrefixCostsAtMostItself) {
@@ -334,7 +334,7 @@ TEST(CybergloveCalibration, FillsSlot7ByItsRuleUnlessItIsMeasured) {
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kNeutral, kMask22), 0.28F);
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kDerived, kMask22), 0.3F);
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kSwitch, kMask22), 1);
-  // Measured by a 23rd sensor, at raw count 100.
+  // With a 23rd sensor, slot 7 is its measurement, here raw count 100.
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kSwitch, 0x7FFFFF), 0);
   record.status = 0x81;
   EXPECT_FLOAT_EQ(slot7(Slot7Rule::kSwitch, kMask22), 0);

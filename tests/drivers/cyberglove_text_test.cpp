@@ -68,7 +68,7 @@ TEST(CybergloveText, ARecordIsReadAndWrittenAlike) {
   EXPECT_EQ(encode(record, kThree), kRecord);
 }
 
-// The longest possible record fits the buffer, without an allocation.
+// The longest possible record fits into the buffer, so no allocation is needed.
 TEST(CybergloveText, TheLongestRecordFits) {
   Record record;
   record.values.fill(200);

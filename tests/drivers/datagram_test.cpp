@@ -1,4 +1,4 @@
-// The port udp: its address, its records, the socket; and the OSC messages of a datagram.
+// The port of kind udp: (its address, its records, its socket), and the OSC messages of a datagram.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -100,7 +100,7 @@ TEST(UdpPort, IsReadByDriversOfDatagramsAlone) {
       "drivers \"tuio\" and \"osc\" do");
 }
 
-// A port that is free: the system has just assigned it to a socket that was closed again.
+// A free port: the system has just assigned it to a socket that is closed again.
 std::string freePort() {
   const UniqueFd probe(::socket(AF_INET, SOCK_DGRAM, 0));
   sockaddr_in address{};
@@ -143,14 +143,14 @@ TEST(UdpPort, PassesOnWholeDatagramsInPiecesAndIsTakenByOneProgramOnly) {
   std::array<std::byte, 100> buffer{};
   for (int i = 0; i < 100 && got.size() < 2; ++i) {
     const auto n = (*stream)->read(buffer, std::chrono::seconds(5));
-    if (!n) continue;  // the empty one
+    if (!n) continue;  // the empty datagram
     for (const Got& d : parse(parser, {reinterpret_cast<const char*>(buffer.data()), *n}))
       got.push_back(d);
   }
   ASSERT_EQ(got.size(), 2u);
   EXPECT_EQ(got[0].bytes, "first");
   EXPECT_EQ(got[1].bytes, std::string(3000, 'y'));
-  EXPECT_NE(got[0].sender, got[1].sender);  // two sockets, two ports
+  EXPECT_NE(got[0].sender, got[1].sender);  // two sockets on two ports
   EXPECT_EQ(parser.badBytes(), 0u);
   EXPECT_FALSE((*stream)->write(buffer, std::chrono::seconds(1)));
   (*stream)->interrupt();
@@ -163,7 +163,7 @@ TEST(UdpPort, AnAddressThatIsNotThisMachinesIsSaidToBe) {
   EXPECT_EQ(stream.error().what, "udp://192.0.2.1:3333: this machine does not have this address");
 }
 
-// Writes what it takes as text.
+// Writes the messages that it takes as text.
 struct Lines final : OscSink {
   void take(const OscMessage& message) noexcept override {
     text += message.address;
@@ -200,7 +200,7 @@ TEST(OscPacket, MessagesOfNestedBundlesComeInTheirOrder) {
 TEST(OscPacket, OfADatagramThatIsMalformedAnywhereNothingIsTaken) {
   const std::string good = oscMessage("/a", {1}), bundle = oscBundle({good, good});
   for (std::size_t n = 0; n < bundle.size(); ++n) {
-    const bool one = n == 16 || n == 16 + 4 + good.size();  // whole elements alone
+    const bool one = n == 16 || n == 16 + 4 + good.size();  // cut between two elements
     EXPECT_EQ(read(bundle.substr(0, n)).starts_with("malformed"), !one) << n;
     if (!one) {
       EXPECT_EQ(read(bundle.substr(0, n)), "malformed: ") << n;
@@ -211,7 +211,8 @@ TEST(OscPacket, OfADatagramThatIsMalformedAnywhereNothingIsTaken) {
   EXPECT_EQ(read("#bun"), "malformed: ");
 }
 
-// oscpack adds 4 to the size in 32 bits: for 0xFFFFFFFC it would read the same element for ever.
+// oscpack adds 4 to the size in 32-bit arithmetic; with a size of 0xFFFFFFFC it would read the same
+// element for ever.
 TEST(OscPacket, AnElementThatReachesBeyondItsBundleIsMalformed) {
   const std::string head = oscText("#bundle") + oscWord(0) + oscWord(0);
   const std::string good = oscMessage("/a", {1});
@@ -220,12 +221,12 @@ TEST(OscPacket, AnElementThatReachesBeyondItsBundleIsMalformed) {
     const std::string bundle = head + oscWord(size) + "abcd";
     EXPECT_EQ(read(bundle), "malformed: ") << size;
     EXPECT_EQ(read(oscBundle({good, bundle})), "malformed: ") << size;
-    // In the outer bundle there would be room for the inner one's element.
+    // The inner bundle's element reaches beyond the inner bundle, but not beyond the outer one.
     EXPECT_EQ(read(oscBundle({oscBundle({bundle}), good, good})), "malformed: ") << size;
   }
 }
 
-// What oscpack itself refuses, in messages that end where the datagram does.
+// Damage that oscpack itself detects, in messages that end where the datagram does.
 TEST(OscPacket, MessagesWithoutAnEndAreMalformed) {
   for (const std::string& packet :
        {std::string("/abc"), oscText("/a") + ",iii", oscText("/a") + oscText(",s") + "text",
@@ -236,14 +237,14 @@ TEST(OscPacket, MessagesWithoutAnEndAreMalformed) {
   }
 }
 
-// oscpack does not check a blob's length: reading on behind it would end the program.
+// oscpack does not check the length of a blob: reading beyond it would crash the program.
 TEST(OscPacket, AMessageWithABlobIsPassedOver) {
   for (const std::uint32_t length : {3U, 0x7FFFFFFFU, 0xFFFFFFF0U, 0xFFFFFFFFU}) {
     const std::string blobs = oscText("/a") + oscText(",bbi") + oscWord(length) + oscText("xyz");
     EXPECT_EQ(read(blobs), "") << length;
     EXPECT_EQ(read(oscBundle({blobs, oscMessage("/b", {1})})), "/b i1\n") << length;
   }
-  // An address whose end oscpack sees later than its first zero.
+  // For oscpack, this address ends later than at its first zero.
   const std::string odd("/\0ab/xy\0,bb\0\xFF\xFF\xFF\xF0", 16);
   EXPECT_EQ(read(odd), "");
 }

@@ -55,7 +55,7 @@ struct Loop : test::DeviceBench {
     return all;
   }
 
-  // Calls `then` with each health report.
+  // Keeps each health report and then calls `then` with it.
   struct Reports final : HealthSink {
     void publish(const DeviceHealth& h) noexcept override {
       all.push_back(h);
@@ -70,7 +70,7 @@ struct Loop : test::DeviceBench {
   bool plugged = true;
   std::stop_source stop;
   std::vector<Timestamp> opened_at;
-  test::FakeStream* line = nullptr;  // the newest one; the loop owns it
+  test::FakeStream* line = nullptr;  // the newest stream; the loop owns it
 };
 
 TEST(DeviceLoop, AnAbsentPortIsTriedEverMoreRarely) {
@@ -81,13 +81,13 @@ TEST(DeviceLoop, AnAbsentPortIsTriedEverMoreRarely) {
   };
   loop.run();
   EXPECT_EQ(loop.pauses(), (std::vector<long>{100, 200, 250, 250, 250, 250, 250}));
-  // The last report says "stopped".
+  // The last report has the reason "stopped".
   const DeviceHealth& h = loop.health.all[loop.health.all.size() - 2];
   EXPECT_EQ(h.state, HealthState::kAbsent);
   EXPECT_STREQ(h.reason, "/tmp/glove: no such file");
   EXPECT_STREQ(h.port, "pty:/tmp/glove");
   EXPECT_EQ(h.reconnects, 0u);
-  EXPECT_EQ(h.since_ns, toNanoseconds(loop.start));  // absent since the start
+  EXPECT_EQ(h.since_ns, toNanoseconds(loop.start));  // the port has been absent since the start
 }
 
 TEST(DeviceLoop, ADeviceThatStreamsIsWellAndHasARate) {
@@ -127,7 +127,7 @@ TEST(DeviceLoop, ALostDeviceIsReopenedAndCounted) {
   EXPECT_EQ(states[4], HealthState::kOpening);
   EXPECT_EQ(states[5], HealthState::kOk);
   for (const DeviceHealth& h : loop.health.all) {
-    const bool unmeasured = h.rate_hz == 0;  // no rate yet, as after each gap
+    const bool unmeasured = h.rate_hz == 0;  // no rate has been measured yet, as after each gap
     EXPECT_TRUE(unmeasured || h.state == HealthState::kOk);
     EXPECT_TRUE(unmeasured || std::abs(h.rate_hz - 100) < 2) << h.rate_hz;
   }
@@ -138,7 +138,7 @@ TEST(DeviceLoop, ASilentDeviceHasFailedAndItsRetryStartsAgainAtTheFirst) {
   loop.absent = true;
   loop.before_opening = [&](std::size_t n) {
     if (n == 4) loop.absent = false;   // after 550 ms of failed attempts
-    if (n == 5) loop.plugged = false;  // it has streamed and then fallen silent
+    if (n == 5) loop.plugged = false;  // the device has streamed and then fallen silent
     if (n == 7) loop.stop.request_stop();
   };
   loop.health.then = [&](const DeviceHealth& h) {

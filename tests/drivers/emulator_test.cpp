@@ -19,14 +19,14 @@ using namespace std::string_literals;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// The program at the other end of an emulator's line.
+// Plays the program at the other end of an emulator's line.
 struct Box {
   explicit Box(const char* device, const EmulatorSettings& settings = {},
                const char* script_name = "visit")
       : emulator(
             findEmulator(device)->make(settings, *findMotionScript(script_name), clock.now())) {}
 
-  // Sends `bytes`; returns what the emulator answers without a delay.
+  // Sends `bytes`; returns the emulator's immediate answer.
   std::string ask(std::string_view bytes) {
     emulator->receive(std::as_bytes(std::span(bytes)), clock.now());
     std::string out;
@@ -34,7 +34,7 @@ struct Box {
     return out;
   }
 
-  // Everything that the emulator sends during `time`.
+  // Returns everything that the emulator sends during `time`.
   std::string listen(Duration time) {
     std::string out;
     for (const Timestamp end = clock.now() + time;;) {
@@ -61,7 +61,7 @@ TEST(Emulators, AreFoundByName) {
 TEST(Emulators, OneSeedGivesOneStream) {
   const auto stream = [](const char* device, std::uint64_t seed, int garbage_every) {
     Box box(device, {.seed = seed, .garbage_every = garbage_every});
-    box.ask("SfC\rMSSV\r");  // starts streaming, whichever device it is
+    box.ask("SfC\rMSSV\r");  // starts the stream of any of the devices
     return box.listen(seconds(5));
   };
   for (const EmulatorEntry& entry : emulators()) {

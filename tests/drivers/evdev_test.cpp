@@ -1,5 +1,5 @@
-// Input devices of the kernel as the ball: records, axes and buttons of a gamepad, a space mouse, a
-// joystick and a clicker, the driver's stream.
+// The kernel's input devices as a ball: records, the axes and buttons of a gamepad, a space mouse,
+// a joystick and a clicker, and the driver's stream.
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 
@@ -29,7 +29,8 @@ std::string axis(int code, std::int32_t low, std::int32_t high, std::int32_t val
   return test::evdevRecord(EvdevRecord::kAxis, code, value, low, high);
 }
 
-// As xpad describes a controller; resting values are seldom the middle.
+// A controller as the kernel's driver xpad describes it. Resting values are seldom in the middle of
+// the range.
 std::string gamepad() {
   std::string text =
       named(EvdevRecord::kName, 0, "Microsoft X-Box 360 ") + named(EvdevRecord::kName, 0, "pad");
@@ -107,10 +108,10 @@ TEST_F(EvdevTest, AGamepadMovesTurnsAndRises) {
   EXPECT_EQ(device_->input().chosen(),
             "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east, north, west, tl, start");
   EXPECT_FLOAT_EQ(after(moved(ABS_X, 32767)).translation[0], 1);
-  EXPECT_FLOAT_EQ(after(moved(ABS_Y, -32768)).translation[2], -1);  // forwards: away
-  EXPECT_EQ(sink_.ball.back().raw[2], 1000);                        // a Spaceball's z points there
+  EXPECT_FLOAT_EQ(after(moved(ABS_Y, -32768)).translation[2], -1);  // forwards is away
+  EXPECT_EQ(sink_.ball.back().raw[2], 1000);  // the z axis of a Spaceball has this direction
   EXPECT_FLOAT_EQ(after(moved(ABS_RZ, 255)).translation[1], 1);
-  EXPECT_FLOAT_EQ(after(moved(ABS_Z, 255)).translation[1], 0);  // both triggers
+  EXPECT_FLOAT_EQ(after(moved(ABS_Z, 255)).translation[1], 0);  // triggers cancel out
   EXPECT_FLOAT_EQ(after(moved(ABS_RX, 32767)).rotation[1], 1);
   EXPECT_FLOAT_EQ(after(moved(ABS_RY, 32767)).rotation[0], 1);
   EXPECT_FLOAT_EQ(after(moved(ABS_HAT0X, 1)).rotation[2], -1);
@@ -124,7 +125,8 @@ TEST_F(EvdevTest, ItsResponseIsZeroWithinTheDeadZoneAndFineBeyondIt) {
   settings.curve = 2;
   connect(gamepad(), settings);
   EXPECT_FLOAT_EQ(after(moved(ABS_X, 6500)).translation[0], 0);
-  EXPECT_NEAR(after(moved(ABS_X, 19660)).translation[0], 0.25, 1e-3);  // 0.6: half of what is left
+  // A deflection of 0.6 is half of the range that is left beyond the dead zone.
+  EXPECT_NEAR(after(moved(ABS_X, 19660)).translation[0], 0.25, 1e-3);
   EXPECT_NEAR(after(moved(ABS_X, -19660)).translation[0], -0.25, 1e-3);
 }
 
@@ -166,7 +168,8 @@ TEST_F(EvdevTest, ARelativeAxisThatSaysNothingMoreIsAtRest) {
   EXPECT_GE(clock_.now() - pushed, std::chrono::milliseconds(60));
 }
 
-// The kernel tells of no motion by no event, so only the axis that goes on is told of.
+// The kernel sends no event for an axis that stands still, so only the other axis, which moves, is
+// reported.
 TEST_F(EvdevTest, ARelativeAxisRestsWhileAnotherOneMoves) {
   connect(test::evdevRecord(EvdevRecord::kRelative, REL_X) +
           test::evdevRecord(EvdevRecord::kRelative, REL_Y) +
@@ -271,7 +274,7 @@ TEST_F(EvdevTest, ReconnectedItForgetsTheDeviceOfBefore) {
   EXPECT_EQ(s.counter, 3u) << "one said that nothing is pressed any more";
 }
 
-// Nobody sees the release of a button while its device is away.
+// While a device is unplugged, nobody notices that its button is released.
 TEST_F(EvdevTest, WhatWasHeldWhenItWentIsReleasedWhenItReturns) {
   connect(gamepad());
   EXPECT_TRUE(sink_.ball.empty()) << "at rest it is silent";
@@ -306,7 +309,7 @@ TEST_F(EvdevTest, AHeldButtonActsWhenItIsDue) {
   EXPECT_EQ(sink_.ticks.size(), 1u);
 }
 
-// A line that describes itself for ever takes no memory.
+// A line that sends descriptions without end must not use more and more memory.
 TEST_F(EvdevTest, WhatComesAfterTheDescriptionDescribesNothing) {
   connect(gamepad());
   for (int i = 0; i < 3; ++i) stream_.feed(gamepad() + axis(ABS_THROTTLE, 0, 255, 0));

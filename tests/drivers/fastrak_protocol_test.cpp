@@ -116,8 +116,8 @@ TEST(FastrakParser, OutOfStepItWaitsForTheNextRecordsFirstByte) {
   EXPECT_TRUE(parse(parser, "x" + kGood).empty());
   // The record is accepted once the next record's first byte comes.
   EXPECT_EQ(parse(parser, "0").size(), 1u);
-  EXPECT_EQ(parse(parser, kGood.substr(1)).size(), 1u);  // in step, it is accepted at once
-  // The following byte does not begin a record: rejected.
+  EXPECT_EQ(parse(parser, kGood.substr(1)).size(), 1u);  // in step, so accepted at once
+  // The record is rejected, since the byte after it does not begin a record.
   EXPECT_TRUE(parse(parser, "x" + kGood + "x").empty());
   parser.reset();
   EXPECT_EQ(parse(parser, kGood).size(), 1u);

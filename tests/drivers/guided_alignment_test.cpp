@@ -1,5 +1,5 @@
-// Computes a station's alignment and boresight from the places where a person holds it; the samples
-// may be given in any frame.
+// Computes a station's alignment and boresight from the places where a person holds it. The samples
+// may be in any frame of the unit.
 #include "drivers/fastrak/guided_alignment.h"
 
 #include <cmath>

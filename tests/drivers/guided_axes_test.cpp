@@ -15,7 +15,8 @@ Result<AxisAnswer> answer(GuidedAxes& guided, std::size_t step, std::initializer
   for (const Raw& raw : all) {
     BallSample sample{};
     std::copy(raw.begin(), raw.end(), sample.raw);
-    sample.translation[0] = 1;  // derived from the present settings; only the raw counts matter
+    // This value depends on the present settings; the calibration uses raw counts only.
+    sample.translation[0] = 1;
     guided.add(sample);
   }
   return guided.end();

@@ -1,4 +1,4 @@
-// Which axes of an input device a person means, from what was moved when asked.
+// Finds which axes of an input device a person means, from those that were moved at each request.
 #include "drivers/port/guided_pad.h"
 
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@ namespace {
 
 using Readings = std::vector<AxisReading>;
 
-// As a gamepad rests: two sticks, of which one hangs a little, and two triggers.
+// Readings of a gamepad at rest: two sticks, one of which is slightly off-centre, and two triggers.
 Readings atRest() { return {{"x", 0}, {"y", 0.04F}, {"z", -1}, {"rx", 0}, {"ry", 0}, {"rz", -1}}; }
 
-// The same with one axis elsewhere.
+// The same readings, except for one axis.
 Readings with(const std::string& name, float deflection) {
   Readings readings = atRest();
   for (AxisReading& reading : readings) {
@@ -83,7 +83,8 @@ TEST(GuidedPad, NothingMovedIsNoResult) {
   EXPECT_FALSE(guided.solve());
 }
 
-// A VRPN server sends its channels when they change, the first time perhaps while one is pushed.
+// A VRPN server sends a channel when it changes, so the first value may come while a stick is
+// deflected.
 TEST(GuidedPad, AnAxisThatWasSilentAtRestRestsInTheMiddle) {
   GuidedPad guided;
   ASSERT_TRUE(answer(guided, 0, {}));

@@ -1,5 +1,5 @@
-// A tracker whose poses come as OSC messages: forms of addresses and arguments, the opening,
-// faults.
+// A tracker whose poses come as OSC messages: forms of addresses and arguments, the opening of the
+// port, faults.
 #include <cmath>
 #include <limits>
 
@@ -83,7 +83,8 @@ TEST_F(OscTest, TheSendersFrameMayLieOtherwise) {
   for (int i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(newest().orientation_wxyz[i], wxyz[i]) << i;
 }
 
-// To turn in the sender's frame and then place gives the same as to place and then turn.
+// A rotation in the sender's frame followed by the placement has to equal the placement followed by
+// the rotation in our frame.
 TEST(TrackerPlacement, TurnsPlacesAndRotationsAlikeAlsoIfItMirrors) {
   using Vector = std::array<float, 3>;
   const auto turned = [](const float(&q)[4], const Vector& v) {  // q v q*
@@ -122,7 +123,8 @@ TEST(TrackerPlacement, TurnsPlacesAndRotationsAlikeAlsoIfItMirrors) {
             "is 1, -1, 3; needed is each of 1, 2 and 3 once, with or without a minus");
 }
 
-// A person holds the station at the origin and on two axes: what is placed then lies there.
+// A person holds the station at the origin and on two axes. With the computed placement, these
+// three places lie at the origin and on the axes.
 TEST(TrackerPlacement, FollowsFromThreePlaces) {
   const auto solved = placementOf({1, 2, 3}, {1.02, 2, 3.5}, {0.4, 1.95, 3});
   ASSERT_TRUE(solved) << solved.error().what;
@@ -186,14 +188,14 @@ TEST_F(OscTest, WithoutItsPlaceInTheAddressTheStationIsTheFirstArgument) {
   EXPECT_EQ(newest().station, 1u);
   feed(named(std::string("7"), kAtRest));
   EXPECT_EQ(newest().station, 1u);
-  feed(oscMessage("/pose", kAtRest));  // without a name: the first station
+  feed(oscMessage("/pose", kAtRest));  // the message has no name, so it is for the first station
   EXPECT_EQ(newest().station, 1u);
   EXPECT_EQ(newest().counter, 3u);
   feed(named(8, kAtRest));
   feed(named(7.5F, kAtRest));
   feed(named(std::numeric_limits<float>::quiet_NaN(), kAtRest));
   EXPECT_EQ(sink_.tracker.size(), 4u);
-  feed(named(7.0F, {7.0F, 8.0F, 9.0F}));  // of a sender that has floats only
+  feed(named(7.0F, {7.0F, 8.0F, 9.0F}));  // from a sender that can send floats only
   ASSERT_EQ(sink_.tracker.size(), 5u);
   EXPECT_EQ(newest().station, 1u);
   EXPECT_FLOAT_EQ(newest().position_m[0], 7);

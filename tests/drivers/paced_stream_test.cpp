@@ -1,5 +1,5 @@
-// A line that sends more than its device may is read at a limited pace, and this is reported. A
-// line within the limit is not affected.
+// A line that sends more than its device may is read at a limited pace, and the health reports it.
+// A line within the limit is not affected.
 #include "drivers/loop/paced_stream.h"
 
 #include <string>
@@ -74,7 +74,8 @@ TEST_F(PacedStreamTest, ReadsAFloodAtItsPaceInFewReads) {
   EXPECT_EQ(pace_.sentence(), "sends more than 15.4 kB/s, the limit at which it is read");
 }
 
-// Where a read takes as long as a byte on the line, the stream must not read each byte separately.
+// If a read takes as long as a byte takes on the line, the stream must not read each byte
+// separately.
 TEST_F(PacedStreamTest, ReadsAFastFloodInFewReadsToo) {
   ReadPace fast(1e6, [] {});
   auto line = std::make_unique<FloodStream>(clock_, 'x');
@@ -173,7 +174,7 @@ struct Flooded {
 };
 
 TEST(FloodedLine, OfAnyDeviceCostsItsPaceInEveryStepOfItsDialogueAndSaysSo) {
-  int floods = 0;  // a dialogue may end after the first bytes, which is not a flood
+  int floods = 0;  // a dialogue may end after a few bytes, which are no flood
   for (const char* name : {"cyberglove", "fastrak", "spaceball"}) {
     for (const char byte : {'\n', '\r', '\0', 'S', '0'}) {
       Flooded line;
@@ -215,7 +216,8 @@ TEST(FloodedLine, ADeviceAtTheSpeedOfItsLineIsNeverOne) {
   }
 }
 
-// As after the machine was suspended for a second: the pty has kept 4 KiB, which are no flood.
+// While the machine is suspended for a second, a pty keeps 4 KiB. They must not be taken for a
+// flood.
 TEST(FloodedLine, WhatCameWhileTheMachineWasAsleepIsNone) {
   test::FakeClock clock;
   bool above = false;

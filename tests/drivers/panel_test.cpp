@@ -1,5 +1,5 @@
-// The wall's control panel: the projectors' delays, lamp and button, and a GPIO chip that comes and
-// goes.
+// The wall's control panel: the projectors' delays, the lamp, the button, and a GPIO chip that is
+// unplugged and plugged in.
 #include "drivers/gpio/panel.h"
 
 #include <map>
@@ -41,7 +41,7 @@ struct Bench {
 TEST(Panel, TheLampWarnsWhateverItWasSwitchedTo) {
   Bench b;
   ASSERT_TRUE(b.panel.execute("lamp_on", b.clock.now()));
-  const auto changes = [&] {  // of the lamp, in a second
+  const auto changes = [&] {  // of the lamp, in one second
     int count = 0;
     bool lit = b.panel.outputs(b.clock.now()).lamp;
     for (int i = 0; i < 100; ++i) {

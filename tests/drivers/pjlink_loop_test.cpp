@@ -1,5 +1,5 @@
-// A projector over TCP on the loopback: one that obeys, one that asks for a password, and those
-// that are slow, refuse, vanish, send junk or close.
+// A projector over TCP on the loopback: one that obeys, one with a password, and others that are
+// slow, refuse, vanish, send junk or close the connection.
 #include <csignal>
 
 #include <gtest/gtest.h>
@@ -17,14 +17,14 @@ using std::chrono::milliseconds;
 using test::eventually;
 using test::ProjectorServer;
 
-// A loop on its thread, connected to that port.
+// A ProjectorLoop on a thread of its own, connected to this port.
 struct Running {
   explicit Running(const std::string& port, const std::string& password_file = {},
                    Duration answer_time = std::chrono::seconds(20))
       : loop(
             {.name = "left", .address = "127.0.0.1", .password_file = password_file, .input = {}},
             [port] { return io::openTcp("127.0.0.1", port); }, clock, answer_time) {
-    std::signal(SIGPIPE, SIG_IGN);  // as merlind does
+    std::signal(SIGPIPE, SIG_IGN);  // merlind ignores the signal too
     thread = std::jthread([this](const std::stop_token& stop) { loop.run(stop); });
   }
   bool becomes(Health health) {
@@ -73,7 +73,7 @@ TEST(ProjectorLoop, AProjectorThatSaysNothingIsUnreachable) {
   EXPECT_EQ(r.loop.state().power, Power::kUnknown);
 }
 
-// A byte now and then does not prolong the time in which the answer is due.
+// An answer that comes byte by byte does not extend the time-out.
 TEST(ProjectorLoop, AProjectorThatDripsIsUnreachable) {
   ProjectorServer server;
   server.manner = ProjectorServer::kDripping;

@@ -1,4 +1,4 @@
-// PJLink without a network: the protocol and hostile answers, a projector's state, the schedule.
+// PJLink without a network: the protocol, hostile answers, a projector's state, the schedule.
 
 #include <vector>
 
@@ -85,7 +85,7 @@ TEST(Pjlink, EveryDamagedByteOfAnAnswerIsAnErrorOrAnotherValue) {
       const auto answer = session.feed(damaged);
       const bool value_only = answer && *answer && (*answer)->value != "1";
       const bool incomplete = answer && !*answer;
-      const bool same_letter = answer && *answer && std::isalpha(value) != 0;  // "%1powr"
+      const bool same_letter = answer && *answer && std::isalpha(value) != 0;  // such as "%1powr"
       EXPECT_TRUE(!answer || value_only || incomplete || same_letter) << i << " " << value;
     }
   }
@@ -114,7 +114,8 @@ TEST(Pjlink, HostileBytesEndTheConnection) {
             "sends a line of more than 136 bytes, \"xx");
 }
 
-// A projector on a virtual clock, asked and told whatever is due, each second.
+// A projector on a virtual clock. Each second it gets the commands that are due and its answers are
+// read.
 struct Bench {
   test::FakeClock clock;
   test::EmulatedProjector device;
@@ -231,7 +232,7 @@ TEST(Pjlink, AProjectorThatNeverGetsReadyHasFailed) {
 
 TEST(Pjlink, ASwitchingWithoutEffectIsRepeated) {
   Bench b;
-  b.device.refusal = "OK";  // accepts and does nothing
+  b.device.refusal = "OK";  // the projector accepts the command and does nothing
   b.projector.want(true, b.clock.now());
   b.pass(31);
   EXPECT_EQ(b.device.log, "1111");
@@ -247,7 +248,7 @@ TEST(Pjlink, WhatAPersonDoesWithARemoteControlIsLeftAlone) {
   EXPECT_EQ(b.state().power, Power::kOff);
 }
 
-// For a moment after it has accepted to go off, a projector may still say that it is on.
+// For a moment after it has accepted to switch off, a projector may still report that it is on.
 TEST(Pjlink, OnAfterOffIsNotReachedByAnAnswerFromBefore) {
   Bench b;
   b.projector.want(true, b.clock.now());
@@ -374,7 +375,7 @@ TEST(Schedule, SpeaksOnlyWhenItsStateChanges) {
   EXPECT_EQ(Schedule({}).step(at(0, 9)), std::nullopt) << "without entries nothing is switched";
 }
 
-// 02:00 to 03:00 happens twice.
+// When the clocks go back, 02:00 to 03:00 occurs twice.
 TEST(Schedule, ARepeatedHourSwitchesOnce) {
   Schedule schedule({{kDaily, "01:00", "02:30"}});
   EXPECT_EQ(schedule.step(at(0, 2, 29)), true);
@@ -386,7 +387,7 @@ TEST(Schedule, ARepeatedHourSwitchesOnce) {
   EXPECT_EQ(schedule.step(at(1, 1)), true);
 }
 
-// 02:00 to 03:00 does not happen.
+// When the clocks go forward, 02:00 to 03:00 does not occur.
 TEST(Schedule, AnHourThatIsLeftOutCountsAsPassed) {
   Schedule schedule({{kDaily, "02:30", "12:00"}});
   EXPECT_EQ(schedule.step(at(0, 1, 59)), false);

@@ -1,4 +1,4 @@
-// The driver to copy for a new device: its protocol and its dialogue.
+// The driver that is the template for a new device: its protocol and its dialogue.
 #include <gtest/gtest.h>
 
 #include "drivers/sample/device.h"

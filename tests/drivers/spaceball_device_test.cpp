@@ -73,11 +73,11 @@ TEST(SpaceballDevice, IsSilentAtRestAndYetWell) {
   ASSERT_TRUE(ball.device->open(ball.stream));
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(1)));
   const auto at_rest = ball.sink.ball.size();
-  EXPECT_LE(at_rest, 2u);  // its buttons, and a displacement of zero
+  EXPECT_LE(at_rest, 2u);  // the state of its buttons, and a displacement of zero
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(60)));
   EXPECT_EQ(ball.sink.ball.size(), at_rest);
   const std::string& written = ball.stream.written();
-  EXPECT_TRUE(written.ends_with("\rk\rk\rk\rk\rk\r"));  // pings, which the ball answers
+  EXPECT_TRUE(written.ends_with("\rk\rk\rk\rk\rk\r"));  // pings; the ball answers each
 }
 
 TEST(SpaceballDevice, ReportsKeysAndTheEndOfAPush) {
@@ -135,7 +135,7 @@ TEST(SpaceballDevice, IsSetUpAgainAfterAResetOfItsOwn) {
   ASSERT_TRUE(ball.device->open(ball.stream));
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(1)));
   const auto before = ball.stream.written().size();
-  ball.type("@RESET\r");  // as after a reset by its watchdog
+  ball.type("@RESET\r");  // sent by the ball, as after a reset by its watchdog
   ASSERT_TRUE(ball.pollFor(*ball.device, seconds(1)));
   EXPECT_EQ(ball.stream.written().substr(before), "CB\rNT\rFT?\rFR?\rP@r@r\rMSSV\rZ\rk\r");
   const auto samples = ball.sink.ball.size();
@@ -143,7 +143,7 @@ TEST(SpaceballDevice, IsSetUpAgainAfterAResetOfItsOwn) {
   EXPECT_NEAR(static_cast<double>(ball.sink.ball.size() - samples), 20, 1);
 }
 
-// A ball that is running and ignores @RESET.
+// A ball that runs already and ignores @RESET.
 struct Awake final : emulate::Emulator {
   explicit Awake(emulate::Emulator& ball) : ball_(ball) {}
   void receive(std::span<const std::byte> bytes, Timestamp now) override {

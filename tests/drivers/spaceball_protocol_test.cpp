@@ -98,10 +98,10 @@ TEST(SpaceballDisplacement, EncodingIsTheInverse) {
   }
 }
 
-// One packet of each kind; the damage is applied to it.
+// The tests damage one packet of each kind.
 class SpaceballDamage : public testing::TestWithParam<test::NamedPacket> {};
 
-// Whatever came before, the packet after the next CR is read: no parser state persists.
+// The packet after the next CR is read whatever came before: the parser keeps no state.
 TEST_P(SpaceballDamage, EveryPrefixCostsAtMostItself) {
   for (std::size_t n = 0; n < GetParam().bytes.size(); ++n) {
     Parser parser;

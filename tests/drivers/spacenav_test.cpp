@@ -1,4 +1,5 @@
-// A space mouse through spacenavd: its frames, and the driver's dialogue with both versions.
+// A space mouse that is read through spacenavd: its frames, and the driver's dialogue with both
+// versions of the protocol.
 #include <gtest/gtest.h>
 
 #include "daemon/base/random.h"
@@ -95,7 +96,7 @@ TEST_F(SpacenavTest, AsksForTheNameAndStreams) {
 }
 
 TEST_F(SpacenavTest, OneOfVersion0IsToldItsSensitivityAndItsFirstEventIsKept) {
-  stream_.feed(encode(kPush).substr(0, 4));  // an event instead of the echo
+  stream_.feed(encode(kPush).substr(0, 4));  // an event arrives instead of the echo
   const auto identity = device_.open(stream_);
   ASSERT_TRUE(identity);
   EXPECT_EQ(*identity, "space mouse");
@@ -120,7 +121,7 @@ TEST_F(SpacenavTest, AHeldPushIsPublishedAgainUntilItEnds) {
   const std::size_t ended = sink_.ball.size();
   EXPECT_FLOAT_EQ(sink_.ball.back().translation[0], 0);
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(device_.poll(stream_));
-  EXPECT_EQ(sink_.ball.size(), ended);  // at rest it is silent, and that is no fault
+  EXPECT_EQ(sink_.ball.size(), ended);  // at rest the mouse is silent, which is no fault
 }
 
 TEST_F(SpacenavTest, ButtonsAreBitsAndOnesThatABallLacksAreLeftOut) {
@@ -169,7 +170,7 @@ TEST_F(SpacenavTest, AHeldButtonActsWhenItIsDue) {
   EXPECT_EQ(sink_.ticks, due);
 }
 
-// spacenavd tells that a mouse went, not whether another one is left.
+// spacenavd reports that a mouse was unplugged, but not whether another one is left.
 TEST_F(SpacenavTest, OfTwoMiceTheOneThatIsLeftIsTheSpaceMouse) {
   connect();
   feed({kDevice, 1});

@@ -1,4 +1,5 @@
-// Touch frames and mice of the kernel: slots, one position, a pressed mouse; the driver's stream.
+// Touch frames and mice of the kernel: devices with slots, with one position, a mouse with its
+// button pressed, and the driver's stream.
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 #include <linux/input.h>
@@ -32,7 +33,7 @@ std::string shifted(int code, int by) { return evdevRecord(EvdevRecord::kShifted
 const std::string kReady = evdevRecord(EvdevRecord::kReady),
                   kReport = evdevRecord(EvdevRecord::kReport);
 
-// A frame of 800 mm by 400 mm with ten slots.
+// The description of a touch frame of 800 mm by 400 mm with ten slots.
 std::string frame() {
   return evdevNamed(EvdevRecord::kName, 0, "made-up frame") + axis(ABS_X, 8000, 10) +
          axis(ABS_Y, 4000, 10) + axis(ABS_MT_SLOT, 9) + axis(ABS_MT_TRACKING_ID, 65535) +
@@ -93,7 +94,7 @@ TEST_F(TouchTest, TwoFingersComeMoveAndGo) {
   EXPECT_EQ(both.id[0], first.id[0]);
   EXPECT_NE(both.id[1], first.id[0]);
   EXPECT_FLOAT_EQ(both.position[1][0], 1);
-  const TouchSample pinched =  // the slot is still 1; then the other one
+  const TouchSample pinched =  // slot 1 is still selected; then slot 0 is
       after(moved(ABS_MT_POSITION_X, 6000) + moved(ABS_MT_SLOT, 0) +
             moved(ABS_MT_POSITION_Y, 2000));
   EXPECT_FLOAT_EQ(pinched.position[1][0], 0.75F);
@@ -113,8 +114,8 @@ TEST_F(TouchTest, AReportThatMovesNoFingerIsNotPublished) {
   EXPECT_EQ(sink_.touch.size(), 1u);
 }
 
-// After events were dropped, libevdev may tell of another finger on a slot without an end of the
-// first one's.
+// After events were lost, libevdev may report another finger on a slot without the end of the first
+// one.
 TEST_F(TouchTest, AnotherTrackingNumberIsAnotherFinger) {
   connect(frame());
   const std::uint32_t first = after(finger(0, 7, 2000, 1000)).id[0];
@@ -156,7 +157,7 @@ TEST_F(TouchTest, AScreenWithOnePositionHasOneFinger) {
   EXPECT_EQ(down.fingers, 1u);
   EXPECT_FLOAT_EQ(down.position[0][0], 0.25F);
   EXPECT_FLOAT_EQ(down.position[0][1], 0.5F);
-  EXPECT_FLOAT_EQ(down.aspect, 16.0F / 9);  // equal ranges say nothing of it
+  EXPECT_FLOAT_EQ(down.aspect, 16.0F / 9);  // the ranges are equal and do not show the aspect ratio
   EXPECT_FLOAT_EQ(after(moved(ABS_X, 4096)).position[0][0], 1);
   EXPECT_EQ(after(pressed(BTN_TOUCH, 0)).fingers, 0u);
   after(moved(ABS_X, 0));
@@ -184,8 +185,8 @@ TEST_F(TouchTest, APressedMouseIsAFingerThatBeginsInTheMiddle) {
   EXPECT_FLOAT_EQ(down.position[0][0], 0.5F);
   EXPECT_FLOAT_EQ(down.position[0][1], 0.5F);
   const TouchSample dragged = after(shifted(REL_X, 200) + shifted(REL_Y, -100));
-  EXPECT_FLOAT_EQ(dragged.position[0][0], 0.6F);  // as far as 200 counts down, on a surface twice
-  EXPECT_FLOAT_EQ(dragged.position[0][1], 0.4F);  // as wide as high
+  EXPECT_FLOAT_EQ(dragged.position[0][0], 0.6F);  // a count is as long in x as in y,
+  EXPECT_FLOAT_EQ(dragged.position[0][1], 0.4F);  // on a surface twice as wide as high
   EXPECT_EQ(dragged.id[0], down.id[0]);
   EXPECT_FLOAT_EQ(after(shifted(REL_X, 5000)).position[0][0], 1);
   EXPECT_EQ(after(pressed(BTN_LEFT, 0)).fingers, 0u);

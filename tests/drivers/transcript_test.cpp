@@ -1,4 +1,5 @@
-// Streams other than ptys: transcripts and their replay, the recorder, tcp://, adapters that delay.
+// Streams other than ptys: transcripts and their replay, the recorder, tcp://, adapters that add a
+// delay.
 #include "drivers/io/transcript.h"
 
 #include <filesystem>
@@ -45,7 +46,7 @@ TEST(Transcript, IsReadAsItIsWritten) {
   EXPECT_EQ(t->chunks[0].bytes, "\r@");
   EXPECT_EQ(t->chunks[1].bytes.size(), 16u);
   EXPECT_EQ(t->chunks[1].at, milliseconds(250));
-  // The 16 bytes before it take ten bits each at 9600 baud.
+  // The 16 bytes before this chunk take ten bits each at 9600 baud.
   EXPECT_EQ(t->chunks[2].at, milliseconds(250) + std::chrono::nanoseconds(16'666'666));
 }
 
@@ -222,7 +223,7 @@ TEST(AdapterWarning, NamesTheDelayAndTheWayOut) {
   EXPECT_EQ(adapterWarning(dir / "by-id", dir.path()), "");
 }
 
-// The kernel's interface: a 32-bit number, in force as long as the device file is open.
+// The kernel's interface is a 32-bit number, which is in force as long as the device file is open.
 TEST(CpuLatency, WritesTheLimitAndSaysWhereItCannot) {
   const test::TempDir dir;
   const std::string device = dir / "cpu_dma_latency";

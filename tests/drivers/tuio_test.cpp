@@ -1,4 +1,4 @@
-// A touch surface whose tracker speaks TUIO 1.1: frames that are lost, late, split and damaged,
+// A touch surface whose tracker speaks TUIO 1.1: frames that are lost, late, split or damaged,
 // several trackers, silence.
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST_F(TuioTest, FingersComeMoveAndGo) {
   const std::uint32_t first = newest().id[0], second = newest().id[1];
   EXPECT_NE(first, second);
   EXPECT_STREQ(device_->complaint(), "");
-  feed(tuioCursors(2, {{41, 0.5F, 0.5F}}, {40}));  // the first one stays where it is
+  feed(tuioCursors(2, {{41, 0.5F, 0.5F}}, {40}));  // the first finger stays where it is
   EXPECT_EQ(newest().id[0], first);
   EXPECT_FLOAT_EQ(newest().position[0][0], 0.25F);
   EXPECT_EQ(newest().id[1], second);
@@ -67,7 +67,7 @@ TEST_F(TuioTest, FingersComeMoveAndGo) {
   feed(tuioCursors(4, {}));
   EXPECT_EQ(newest().fingers, 0u);
   EXPECT_EQ(newest().counter, 4u);
-  feed(tuioCursors(5, {{40, 0.1F, 0.1F}}));  // the number comes again, and is another finger
+  feed(tuioCursors(5, {{40, 0.1F, 0.1F}}));  // the number 40 is used again, for another finger
   EXPECT_NE(newest().id[0], first);
   EXPECT_EQ(device_->counters().bad_packets, 0u);
 }
@@ -87,9 +87,9 @@ TEST_F(TuioTest, AFrameThatComesLateIsLeftOutAndARestartedTrackerIsNot) {
   feed(tuioCursors(199, {{1, 0.1F, 0.1F}}));
   feed(tuioCursors(101, {}));
   ASSERT_EQ(sink_.touch.size(), 1u);
-  feed(tuioCursors(200, {{2, 0.2F, 0.2F}}, {1}));  // the second part of the frame 200
+  feed(tuioCursors(200, {{2, 0.2F, 0.2F}}, {1}));  // the second part of frame 200
   EXPECT_EQ(newest().fingers, 2u);
-  feed(tuioCursors(100, {{1, 0.9F, 0.9F}}));  // 100 behind: it was started again
+  feed(tuioCursors(100, {{1, 0.9F, 0.9F}}));  // 100 frames behind: the tracker was restarted
   EXPECT_EQ(newest().fingers, 1u);
   feed(tuioCursors(101, {}));
   EXPECT_EQ(newest().fingers, 0u);
@@ -100,13 +100,13 @@ TEST_F(TuioTest, AFrameWithTheNumberMinusOneCountsAlways) {
   feed(tuioCursors(50, {{1, 0.5F, 0.5F}}));
   feed(tuioCursors(-1, {{1, 0.75F, 0.5F}}));
   EXPECT_FLOAT_EQ(newest().position[0][0], 0.75F);
-  feed(tuioCursors(49, {}));  // still late
+  feed(tuioCursors(49, {}));  // this frame is still late
   EXPECT_EQ(newest().fingers, 1u);
 }
 
 TEST_F(TuioTest, AFingerWhosePlaceWasLostIsNoFingerUntilItIsTold) {
   connect();
-  feed(tuioCursors(2, {}, {7}));  // frame 1, which set it, was lost
+  feed(tuioCursors(2, {}, {7}));  // frame 1, which had the finger's position, was lost
   EXPECT_TRUE(sink_.touch.empty());
   feed(tuioCursors(3, {{7, 0.5F, 0.5F}}));
   EXPECT_EQ(newest().fingers, 1u);
@@ -129,7 +129,7 @@ TEST_F(TuioTest, SourcesAreToldApartByNameAndWithoutOneBySender) {
   feed(tuioCursors(5, {{1, 0.9F, 0.9F}}, {}, "right@10.0.0.2"));
   ASSERT_EQ(newest().fingers, 2u);
   EXPECT_NE(newest().id[0], newest().id[1]);
-  feed(tuioCursors(1001, {}, {}, "left@10.0.0.1"), 2);  // of another port, and still the left one
+  feed(tuioCursors(1001, {}, {}, "left@10.0.0.1"), 2);  // of another port, still "left"
   ASSERT_EQ(newest().fingers, 1u);
   EXPECT_FLOAT_EQ(newest().position[0][0], 0.9F);
   feed(tuioCursors(1, {{1, 0.3F, 0.3F}}), 3);
@@ -149,7 +149,7 @@ TEST_F(TuioTest, ASourceThatIsSilentForTwoSecondsTouchesNoMore) {
   EXPECT_LE(clock_.now() - at, milliseconds(2250));
   EXPECT_STREQ(device_->complaint(), "silent: no TUIO frame for 2 s, so nothing touches");
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(device_->poll(stream_));  // silence is no fault
-  feed(tuioCursors(1, {{1, 0.5F, 0.5F}}));  // started again, with numbers from the beginning
+  feed(tuioCursors(1, {{1, 0.5F, 0.5F}}));  // restarted: frames count from 1 again
   EXPECT_EQ(newest().fingers, 1u);
   EXPECT_STREQ(device_->complaint(), "");
 }
@@ -163,7 +163,7 @@ TEST_F(TuioTest, WhatIsMalformedDropsItsFrameAndIsSaid) {
   feed(tuioCursors(3, {{1, std::numeric_limits<float>::quiet_NaN(), 0}}));
   const std::string kCursor = "/tuio/2Dcur";
   const auto set = std::string("set");
-  feed(oscBundle({oscMessage(kCursor, {std::string("fseq"), 4})}));  // without "alive"
+  feed(oscBundle({oscMessage(kCursor, {std::string("fseq"), 4})}));  // a frame without "alive"
   feed(oscBundle({oscMessage(kCursor, {std::string("alive"), 1}), oscMessage(kCursor, {set, 1}),
                   oscMessage(kCursor, {std::string("fseq"), 5})}));
   feed(oscBundle({oscMessage(kCursor, {std::string("alive"), 0.5F}),
@@ -197,7 +197,7 @@ TEST_F(TuioTest, ASurfaceThatIsMountedOtherwiseIsTurned) {
   settings.orientation.swap_axes = settings.orientation.invert_x = true;
   settings.aspect = 0.5;
   connect(settings);
-  feed(tuioCursors(1, {{1, 0.25F, -0.1F}}));  // just outside: at the margin
+  feed(tuioCursors(1, {{1, 0.25F, -0.1F}}));  // just outside of the surface, so it is at the margin
   EXPECT_FLOAT_EQ(newest().position[0][0], 1);
   EXPECT_FLOAT_EQ(newest().position[0][1], 0.25F);
   EXPECT_FLOAT_EQ(newest().aspect, 0.5F);
@@ -207,7 +207,7 @@ TEST_F(TuioTest, OfManyFingersTheFirstTenAreFollowed) {
   connect();
   std::vector<test::TuioContact> many;
   for (int i = 0; i < 64; ++i) many.push_back({i, 0.01F * static_cast<float>(i), 0.5F});
-  const auto feedAll = [&](const std::string& packet) {  // longer than what one poll reads
+  const auto feedAll = [&](const std::string& packet) {  // feeds more than one poll reads
     feed(packet);
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(device_->poll(stream_));
   };

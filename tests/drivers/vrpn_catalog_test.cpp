@@ -1,5 +1,5 @@
-// What a VRPN server says about its devices when it is asked: that of VRPN itself, as it was
-// recorded, and servers that lie.
+// The catalog of a VRPN server's devices, made from its messages: a recording of VRPN's own server,
+// and servers that lie.
 #include <chrono>
 
 #include <gtest/gtest.h>
@@ -29,14 +29,14 @@ std::string types() {
          type(kPong, kVrpnPong);
 }
 
-// What a catalog makes of a server's bytes after its greeting.
+// The catalog of a server that sends these bytes after its greeting.
 Catalog catalogOf(const std::string& bytes) {
   Catalog catalog;
   EXPECT_TRUE(catalog.take(vrpnCookie() + bytes));
   return catalog;
 }
 
-// "Wand0 tracker buttons, Dial analog": all devices with what they have sent.
+// All devices with the kinds of their messages, as "Wand0 tracker buttons, Dial analog".
 std::string textOf(const Catalog& catalog) {
   std::string text;
   for (const CatalogDevice& device : catalog.devices()) {
@@ -153,7 +153,7 @@ TEST(VrpnCatalog, WhatWasUnderstoodStaysWhenTheServerTurnsToNonsense) {
             "the greeting \"HTTP/1.1 400 Bad Request\" is not that of a server of VRPN 7");
 }
 
-// The damage may turn the description of a type into that of a sender.
+// Damage may change the description of a type to that of a sender.
 TEST(VrpnCatalog, OneDamagedByteAddsNoMoreThanADevice) {
   const std::string good = vrpnCookie() + sender(1, "Wand0") + types() + message(1, kPose, "x");
   for (std::size_t i = 0; i < good.size(); ++i) {

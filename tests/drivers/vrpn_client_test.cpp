@@ -1,5 +1,5 @@
-// A tracker of a VRPN server: its messages, and the driver's dialogue with servers that are as they
-// should be, and with some that are not.
+// A tracker of a VRPN server: its messages, and the driver's dialogue with servers that conform to
+// the protocol and with some that do not.
 #include <cmath>
 #include <limits>
 
@@ -87,7 +87,7 @@ class VrpnTest : public testing::Test {
     EXPECT_EQ(*identity, "VRPN tracker Tracker0 at server version 07.38");
     ASSERT_EQ(sink_.tracker.size(), 1u);
   }
-  // The number of samples that these bytes give.
+  // The number of samples that the driver makes of these bytes.
   std::size_t samplesOf(const std::string& bytes) {
     const std::size_t before = sink_.tracker.size();
     stream_.feed(bytes);
@@ -187,7 +187,8 @@ TEST_F(VrpnTest, OnlyWhatTheServerCallsOurDevicesPosesIsTaken) {
   EXPECT_EQ(samplesOf(message(kOther, kPoseNumber, payload) + message(99, kPoseNumber, payload) +
                       message(kTracker, 99, payload) + message(kTracker, -77, payload)),
             0u);
-  // A number that now has another name, or one that cannot be read, is not ours any more.
+  // A sender number that now has another name, or an unreadable one, no longer belongs to our
+  // device.
   EXPECT_EQ(samplesOf(sender(kTracker, "Wand") + pose(0, {1, 2, 3})), 0u);
   EXPECT_EQ(samplesOf(sender(kOther, "Tracker0") + message(kOther, kPoseNumber, payload)), 1u);
   EXPECT_EQ(
@@ -307,7 +308,8 @@ TEST_F(VrpnTest, ReconnectedItForgetsTheServersNumbers) {
   EXPECT_EQ(sink_.tracker.back().counter, 2u) << "the counter goes on";
 }
 
-// Damage of every byte of a stream: no sample that is not plausible, and no end but a refusal.
+// Damages every byte of a stream. No sample may be implausible, and the driver may end only by
+// refusing the server.
 TEST_F(VrpnTest, OneDamagedByteHarmsNothingElse) {
   const std::string good =
       descriptions() + pose(0, {1, 2, 3}) + pose(1, {1, 2, 3}) + pose(0, {1, 2, 3});

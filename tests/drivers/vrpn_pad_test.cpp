@@ -1,4 +1,4 @@
-// Buttons and analogs of a VRPN server: their messages, what they mean as a ball, and the driver's
+// Buttons and analogs of a VRPN server: their messages, their meaning as a ball, and the driver's
 // dialogue with a server.
 #include <limits>
 
@@ -171,7 +171,7 @@ class VrpnPadTest : public testing::Test {
     ASSERT_TRUE(identity) << identity.error().what;
     EXPECT_EQ(*identity, "VRPN buttons and analogs Joystick0 at server version 07.38");
   }
-  // The number of samples that these bytes give.
+  // The number of samples that the driver makes of these bytes.
   std::size_t samplesOf(const std::string& bytes) {
     const std::size_t before = sink_.ball.size();
     stream_.feed(bytes);
@@ -281,7 +281,8 @@ TEST_F(VrpnPadTest, ADeviceThatLeavesItsServerIsSaidAndLetsGo) {
   EXPECT_EQ(sink_.ball.back().buttons, 4u);
 }
 
-// Damage of every byte of a stream: no sample that is not plausible, and no end but a refusal.
+// Damages every byte of a stream. No sample may be implausible, and the driver may end only by
+// refusing the server.
 TEST_F(VrpnPadTest, OneDamagedByteHarmsNothingElse) {
   const std::string good = descriptions() + button(2, true) +
                            message(kStick, kStates, vrpnButtons(7, 5)) + channels({0.5, -0.25}) +

@@ -1,6 +1,6 @@
-// Every file of corpus/ through its target, then the same files damaged at random: what libFuzzer
-// once found stays mended, and every build and sanitizer sees it. Faults are crashes and reports;
-// the targets abort where something does not hold.
+// Gives every file of corpus/ to its target, then the same files with random damage. So a fault
+// that libFuzzer once found is detected if it comes back, in every build and under every sanitizer.
+// Faults are crashes and sanitizer reports; a target aborts where a condition does not hold.
 #include <filesystem>
 #include <fstream>
 
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Data = std::vector<std::uint8_t>;
 
-constexpr int kDamaged = 1000;  // inputs for each target, beside its files
+constexpr int kDamaged = 1000;  // damaged inputs for each target, besides the files of the corpus
 
 std::vector<Data> corpusOf(const Target& target) {
   std::vector<fs::path> paths;

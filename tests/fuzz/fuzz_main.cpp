@@ -1,5 +1,5 @@
-// merlin_fuzz: the targets of targets.h for libFuzzer; the environment variable MERLIN_FUZZ names
-// the one to be fuzzed. ./dev fuzz starts it for each.
+// merlin_fuzz: libFuzzer's program for the targets of targets.h. The environment variable
+// MERLIN_FUZZ names the target; ./dev fuzz starts the program once for each.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +26,7 @@ const merlin::fuzz::Target& chosen() {
 
 }  // namespace
 
-// The names that libFuzzer calls.
+// The functions that libFuzzer calls by name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

@@ -60,7 +60,8 @@
 namespace merlin::fuzz {
 namespace {
 
-// What must hold whatever the bytes are; libFuzzer and the test see the abort.
+// Aborts unless the condition `what` holds, as it must for any bytes; libFuzzer and the test detect
+// the abort.
 void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "fuzz: does not hold: %s\n", what);
@@ -71,7 +72,7 @@ std::string_view textOf(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// The bytes as a file without a name, for readers of files.
+// A file without a name that contains the bytes, for readers of files.
 class MemoryFile {
  public:
   explicit MemoryFile(Bytes bytes) : fd_(::memfd_create("fuzz", MFD_CLOEXEC)) {
@@ -164,7 +165,7 @@ void configurationText(Bytes bytes) {
 }
 
 void commandText(Bytes bytes) {
-  constexpr std::size_t kMostBytes = 4096;  // of a request
+  constexpr std::size_t kMostBytes = 4096;  // of the longest request
   std::vector<status::Command> commands;
   for (const CommandInfo& info : kCommands) {
     status::Command command{std::string(info.name), std::string(info.help), nullptr, nullptr};
@@ -208,7 +209,8 @@ void gzipFile(Bytes bytes) {
   require(!all || all->starts_with(beginning), "the beginning is the same");
 }
 
-// 28 bytes a triangle: three of 27 vertices, its texture, and u and v of its corners, as floats.
+// A mesh made of the bytes, 28 for each triangle: three numbers of its 27 vertices, the number of
+// its texture, then u and v of its corners as floats.
 render::mesh::Mesh meshOf(Bytes bytes, std::vector<std::uint32_t>& textures) {
   constexpr std::size_t kTriangle = 28, kVertices = 27;
   render::mesh::Mesh mesh;
@@ -293,7 +295,7 @@ void vrpnBytes(Bytes bytes) {
   }
 }
 
-// A sink that judges what it gets.
+// A sink that requires every sample to be plausible.
 struct PlausibleSink final : SampleSink {
   void publish(const GloveSample& s) noexcept override {
     require(plausible(s), "a glove's sample");
@@ -305,7 +307,7 @@ struct PlausibleSink final : SampleSink {
   }
 };
 
-// The bytes of a line to the whole driver, which is polled a few times more than they need.
+// Gives the bytes of a line to the whole driver, which is polled more often than the bytes need.
 void driverBytes(Device& device, test::FakeClock& clock, std::string_view bytes) {
   constexpr std::size_t kPolls = 20;
   test::FakeStream stream(clock, nullptr);
@@ -315,8 +317,8 @@ void driverBytes(Device& device, test::FakeClock& clock, std::string_view bytes)
     goes_on = device.poll(stream).ok();
 }
 
-// Gives the bytes of a VRPN server to the driver of a tracker, to that of buttons and analogs, and
-// to the catalog of its devices.
+// Gives the bytes of a VRPN server to the tracker's driver, to the driver of buttons and analogs,
+// and to the catalog of the server's devices.
 void vrpnServerBytes(Bytes bytes) {
   PlausibleSink sink;
   test::FakeClock clock;
@@ -348,7 +350,7 @@ void tuioBytes(Bytes bytes) {
   driverBytes(device, clock, line + line);
 }
 
-// The bytes are the line: records of datagrams.
+// The bytes are the content of the line: records of datagrams.
 void oscBytes(Bytes bytes) {
   PlausibleSink sink;
   test::FakeClock clock;

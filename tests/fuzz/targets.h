@@ -1,4 +1,4 @@
-// What is fuzzed: everything that reads bytes from outside, a function for each. libFuzzer calls
+// The fuzz targets: one function for each reader of bytes that come from outside. libFuzzer calls
 // one of them (fuzz_main.cpp, ./dev fuzz); fuzz_corpus_test calls all with the files in corpus/.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace merlin::fuzz {
 using Bytes = std::span<const std::uint8_t>;
 
 struct Target {
-  const char* name;  // of its folder in corpus/, too
+  const char* name;  // also the name of the target's folder in corpus/
   void (*run)(Bytes bytes);
 };
 

@@ -50,7 +50,8 @@ TEST(Recording, TakesSlotsByNameInAnyOrder) {
   EXPECT_EQ(read->unit, InputUnit::kRadians);
 }
 
-// A header of another program: the choice says what is where, and the rest is left out.
+// The header is that of another program. The chosen columns say which sensor each holds; all other
+// columns are skipped.
 TEST(Recording, TakesTheColumnsThatWereChosen) {
   const std::string text = "Frame,Symbol,ThumbRotate,IndexInner,Battery\n7,fist,0.5,0.25,99\n";
   const auto columns = [&](std::vector<ChosenColumn> chosen) {

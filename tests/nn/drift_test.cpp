@@ -1,5 +1,5 @@
-// Postures while the glove's sensors drift: what the training bears, and what DriftFollower
-// follows.
+// Postures while the glove's sensors drift: how much drift the trained network tolerates, and how
+// much DriftFollower corrects.
 #include "nn/drift.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ class TwoPostures : public testing::Test {
     statistics_.mean[1][4] = 0.8F;
   }
 
-  // A hand of one of the two, with the same drift in every slot.
+  // A hand that shows one of the two postures, with the same drift in every slot.
   static Angles hand(bool fist, float drift) {
     Angles value;
     value.fill(0.5F + drift);

@@ -11,16 +11,17 @@
 
 namespace merlin::nn::test {
 
-// Deviations after a whole session; a walk of N steps takes steps of 1 / sqrt(N) of them.
+// Standard deviations of the drift after a whole session. A walk of N steps has steps of 1 /
+// sqrt(N) of these.
 struct SessionSettings {
-  double offset = 0.18;     // of a sensor's zero, share of its range of angles
-  double gain = 0.18;       // of the factor on a sensor's angles
-  std::size_t rounds = 30;  // times that the person takes each posture, one after another
+  double offset = 0.18;     // of a sensor's zero, as a share of its range of angles
+  double gain = 0.18;       // of the factor by which a sensor's angles are multiplied
+  std::size_t rounds = 30;  // rounds of the session; in each the person takes every posture once
   std::size_t per_take = 5;
 };
 
 struct Session {
-  DataSet first, second;  // the earlier and the later half, both in order of time
+  DataSet first, second;  // the earlier and the later half, both in chronological order
 };
 
 // In each round the person takes every posture once, in random order.

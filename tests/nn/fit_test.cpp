@@ -257,7 +257,8 @@ TEST(Folds, AreScoredByANetworkOfTheOthersAndAveraged) {
       LabelledHand hand;
       hand.posture = name;
       hand.value.fill(0.01F * static_cast<float>(n));
-      // In the second half the label says nothing of the hand: both are as open hands are.
+      // In the second half the label does not depend on the hand: both postures have the open
+      // hand's angles.
       hand.value[4] += n >= 5 || *name == 'o' ? 0.0F : 1.0F;
       hands.push_back(hand);
     }

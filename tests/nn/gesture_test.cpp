@@ -25,7 +25,8 @@ float smooth(double share) {
   return static_cast<float>(x * x * x * (10 + x * (-15 + 6 * x)));
 }
 
-// A hand that rests half a second, does way(share of `seconds`) and rests again.
+// The poses of a hand that rests for half a second, moves as way(share of `seconds`) says, and
+// rests again.
 template <typename Way>
 std::vector<HandPose> motion(double seconds, Way way, double rate_hz = 100) {
   std::vector<HandPose> poses;
@@ -137,7 +138,7 @@ TEST(Strokes, AMotionWithoutEndIsNone) {
     const auto t = static_cast<float>(n) * 0.01F;
     EXPECT_TRUE(finder.update(poseAt(n * 0.01, {std::sin(t), std::cos(t), 0})).empty()) << n;
   }
-  int strokes = 0;  // it ends, after 20 s
+  int strokes = 0;  // the motion ends after 20 s
   for (int n = 2000; n < 2100; ++n)
     strokes += finder.update(poseAt(n * 0.01, {0.91F, 0.41F, 0})).empty() ? 0 : 1;
   EXPECT_EQ(strokes, 0);
@@ -187,8 +188,8 @@ TEST(DiscriminantTest, FindsAQuadric) {
   EXPECT_GT(right, 780);
 }
 
-// People 1 to 12 train, 801 to 806 test: small, so that the test takes no time. The benchmark has
-// the figures of the shipped file.
+// People 1 to 12 train the model, 801 to 806 test it. The numbers are small so that the test is
+// fast; figures of the shipped file are in the benchmark.
 const GestureModel& trained() {
   static const GestureModel model = [] {
     PathRecording recording = test::gesturesOf(1, 12, 4, 1);
@@ -246,7 +247,7 @@ TEST(GestureFollowerTest, AnUnhurriedReachIsNoGesture) {
 }
 
 TEST(GestureFollowerTest, TheWayBackIsNoGesture) {
-  // The names, which live only as long as the follower.
+  // The names are copied, since they live only as long as the follower.
   const auto thereAndBack = [](double rest_s) {
     GestureFollower follower(trained());
     std::vector<HandPose> poses = line({0.48F, 0, 0}, 0, 0.38);
@@ -317,7 +318,7 @@ TEST(PathRecordingTest, ATakeOfAGestureNeedsAStroke) {
   EXPECT_EQ(faultOf(line({0, 0, 0})), fault("0 cm, at most 0.00 m/s"));
   EXPECT_EQ(faultOf(line({0.3F, 0, 0}, 0, 3)), fault("30 cm, at most 0.19 m/s"));
   std::vector<HandPose> cut = line({0.3F, 0, 0});
-  cut.resize(70);  // it still moves
+  cut.resize(70);  // the hand still moves at the end of the recording
   EXPECT_EQ(faultOf(cut), fault("14 cm, at most 1.25 m/s"));
 }
 

@@ -1,5 +1,5 @@
-// Shared by the tests of nn/gesture and its benchmark: recordings of synthetic people who move, as
-// the follower sees them at run time: through the smoothing of the hand.
+// Recordings of synthetic people who move, after the hand's smoothing, as the gesture follower gets
+// them at run time. Shared by the tests of nn/gesture and the benchmark.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ inline void append(PathRecording& recording, const hand::Performance& performanc
   }
 }
 
-// `count` people from `first` on, who make each gesture `times` times.
+// Recordings of `count` people, numbered from `first`; each makes every gesture `times` times.
 inline PathRecording gesturesOf(std::uint64_t first, std::size_t count, std::size_t times,
                                 std::uint64_t seed) {
   PathRecording recording;
@@ -35,7 +35,7 @@ inline PathRecording gesturesOf(std::uint64_t first, std::size_t count, std::siz
   return recording;
 }
 
-// `count` people from `first` on, each of whom goes about for `seconds`.
+// Recordings of `count` people, numbered from `first`; each makes ordinary motions for `seconds`.
 inline PathRecording ordinaryOf(std::uint64_t first, std::size_t count, double seconds,
                                 std::uint64_t seed) {
   PathRecording recording;
@@ -44,7 +44,7 @@ inline PathRecording ordinaryOf(std::uint64_t first, std::size_t count, double s
   return recording;
 }
 
-// The same of one kind of ordinary motion.
+// As above, but with one kind of ordinary motion only.
 inline PathRecording ordinaryOf(hand::Ordinary kind, std::uint64_t first, std::size_t count,
                                 double seconds, std::uint64_t seed) {
   PathRecording recording;

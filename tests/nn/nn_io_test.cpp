@@ -117,7 +117,7 @@ TEST(NetworkDamage, OneWrongByteNeverLoadsHalf) {
     }
     text[at] = kept;
   }
-  EXPECT_GT(refused, text.size() / 12);  // at least a third of the damages tried
+  EXPECT_GT(refused, text.size() / 12);  // at least a third of the damaged files that were tried
 }
 
 struct Fault {

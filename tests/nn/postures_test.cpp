@@ -61,7 +61,7 @@ TEST(Codes, AreWrittenWithOutputZeroLast) {
 }
 
 Recognition recognise(const PostureNetwork& network, const Angles& value) {
-  // Results refer to its names, so it has to outlive them.
+  // A result refers to the recogniser's names, so the recogniser must outlive it.
   static std::vector<std::unique_ptr<Recogniser>> kept;
   return (*kept.emplace_back(std::make_unique<Recogniser>(network)))(value);
 }
@@ -82,7 +82,7 @@ TEST(Recognise, SaysCodeActivationsAndName) {
 TEST(Recognise, ScalesByTheNetworksOwnRanges) {
   PostureNetwork network;
   network.weights.hidden[0][4] = 100;
-  // On if the index MCP angle is above the middle of its range.
+  // The hidden node is on if the index MCP angle is above the middle of its range.
   network.weights.hidden[0][kInputs] = -50;
   network.weights.output[0][0] = 100;
   network.weights.output[0][kHidden] = -50;

@@ -21,7 +21,7 @@ using image::Wrap;
 using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 
-// Waves of a phase of its own, so that a place that is missed by some pixels shows.
+// A picture of waves with the given phase, in which a shift by a few pixels changes the colours.
 ImageFile waves(int width, int height, double phase) {
   ImageFile picture{width, height, {}, {1, 2, 3}};
   for (int y = 0; y < height; ++y) {
@@ -70,7 +70,8 @@ ImageFile textureOf(const Mesh& mesh) {
   return picture ? *std::move(picture) : ImageFile{};
 }
 
-// Expects the same colours all over the triangles, of the pictures and of the atlas.
+// Expects the same colours everywhere on the triangles, from the textures before and from the
+// atlas.
 void expectSameColours(const Mesh& before, const Mesh& after, const SurfaceTextures& textures,
                        float tolerance) {
   const ImageFile atlas = textureOf(after);
@@ -103,11 +104,11 @@ TEST(Atlas, ShowsEachTriangleWhatItsPictureShows) {
                                   {&a, Wrap::kMirror, Wrap::kRepeat},
                                   {&b, Wrap::kRepeat, Wrap::kClamp}},
                                  {0, 1, 2, 3, 4, 0}};
-  Mesh mesh = trianglesWith({0,    0,    1,    0,  0,    1,      // a whole
-                             -0.5, -0.5, 1.5,  0,  0,    1.5,    // over the clamped border
-                             7.25, -3,   8.5,  -3, 7.25, -1.5,   // repeats, far away
+  Mesh mesh = trianglesWith({0,    0,    1,    0,  0,    1,      // the whole of a
+                             -0.5, -0.5, 1.5,  0,  0,    1.5,    // beyond a clamped border
+                             7.25, -3,   8.5,  -3, 7.25, -1.5,   // repeated, far from the origin
                              -0.5, 0.5,  2.25, 1,  0.5,  3,      // mirrored
-                             -1.5, -1,   0.5,  2,  0.25, 0.25,   // one of each
+                             -1.5, -1,   0.5,  2,  0.25, 0.25,   // one of each kind
                              5.25, 9.75, 5.75, 9,  5.5,  9.5});  // a part of a
   const Mesh before = mesh;
   const JoinedTextures joined = joinTextures(mesh, textures);
@@ -265,7 +266,7 @@ TEST(Atlas, MakesAPictureSmallerThatIsRepeatedOften) {
   expectSameColours(before, mesh, textures, 0.06F);
 }
 
-// Two triangles over the vertices 0, 1, 2, 3, of which 1 and 2 are in both.
+// Two triangles of the vertices 0, 1, 2, 3; vertices 1 and 2 belong to both.
 Mesh twoTriangles(const Floats& uv) {
   Mesh mesh{{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, {{"texcoord", 2, uv}}, {0, 1, 2, 1, 3, 2}};
   mesh.features.push_back({"heat", 1, {1, 2, 3, 4}});

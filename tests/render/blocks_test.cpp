@@ -1,5 +1,5 @@
-// Reduction in blocks, for meshes that do not fit into memory: nearly as good as in one piece, one
-// collapse log, no cracks.
+// Reduction in blocks, for meshes that do not fit into memory: the result is nearly as good as that
+// of a reduction in one piece, in one collapse log and without cracks.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -59,7 +59,7 @@ TEST(Blocks, AreRefusedWhereNotEvenTheyFit) {
   const reduce::ReductionNeed need = reduce::needOf(mesh::sizeOf(mesh), {});
   EXPECT_TRUE(reduce::reduce(mesh, {.memory = need.least}));
   EXPECT_FALSE(reduce::reduce(mesh, {.memory = need.least - 1}));
-  // This cost cannot work in blocks.
+  // The cost `pattern` cannot work in blocks.
   EXPECT_FALSE(reduce::reduce(mesh, {.cost = "pattern", .memory = need.least}));
 }
 
@@ -69,7 +69,8 @@ TEST(JobNeed, IsThatOfTheStepThatTakesMost) {
   const reduce::JobNeed loaded = reduce::needOfJob(size, 0, {});
   EXPECT_EQ(loaded.besides, size.bytes() + (32U << 20));
   EXPECT_EQ(loaded.least, loaded.besides + reduction.least);
-  // A file of 10 GB is in memory together with the mesh, whose normals come later.
+  // A file of 10 GB is in memory together with the mesh, whose normals are computed after the file
+  // has been released.
   EXPECT_EQ(reduce::needOfJob(size, 10'000'000'000, {}).least,
             10'000'000'000 + size.bytes() - 12 * size.vertices + (32U << 20));
 }

@@ -1,4 +1,5 @@
-// Clusters: each cut, uniform or not, is compared with the one derived from the dendrogram alone.
+// Clusters: each cut, uniform or not, is compared with the cut that follows from the dendrogram
+// alone.
 #include "render/lod/clusters.h"
 
 #include <algorithm>
@@ -263,7 +264,7 @@ TEST(Clusters, TheSmallestModelsAreCutToo) {
   }
 }
 
-// No other reduction than one by hand goes so far.
+// Reductions usually stop earlier; this log is written by hand.
 TEST(Clusters, AModelThatEndsWithoutTrianglesIsCutToo) {
   const lod::Dendrogram d = test::goldenCube();
   ASSERT_EQ(d.trianglesAt(d.levels() - 1), 0u);
@@ -271,7 +272,8 @@ TEST(Clusters, AModelThatEndsWithoutTrianglesIsCutToo) {
   EXPECT_EQ(evenCut(clusters, d, 0).size(), 3 * d.triangleCount());
 }
 
-// Otherwise a crack could open along the seam where its sides had different levels.
+// If the two sides of a seam were in different clusters, their levels could differ and a crack
+// could open.
 TEST(Clusters, BothSidesOfASeamAreInOne) {
   const lod::Dendrogram d = dendrogramOf(test::tube(60, 40, true));
   const lod::Clusters clusters(d, {.clusters = 100});

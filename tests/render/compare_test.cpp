@@ -57,7 +57,7 @@ mesh::Mesh withFeature(mesh::Mesh mesh, const std::string& name, std::vector<flo
 }
 
 void expectHolds(const compare::Interval& max, double value, double width) {
-  constexpr double kRounding = 1e-7;  // of the meshes' coordinates, which are floats
+  constexpr double kRounding = 1e-7;  // rounding of the meshes' coordinates, which are floats
   EXPECT_LE(max.low, value + kRounding);
   EXPECT_GE(max.high, value - kRounding);
   EXPECT_LE(max.high - max.low, width);
@@ -189,7 +189,7 @@ TEST(Compare, SpreadsItsSamplesOverTheArea) {  // the distance is 1 - |x|
   const compare::Comparison c = compared(ground(), walls());
   EXPECT_NEAR(c.forward.mean, 0.5, 1e-3);
   EXPECT_NEAR(c.forward.rms, 1 / kSqrt3, 1e-3);
-  // A thousand times as many triangles on one side of the middle do not change the mean.
+  // A thousand times as many triangles on one side of the middle must not change the mean.
   mesh::Mesh half = scaled(test::grid(20, 50), 0.05F);
   for (std::size_t i = 1; i < half.positions.size(); i += 3) half.positions[i] *= 0.8F;
   mesh::Mesh uneven =
@@ -246,7 +246,7 @@ TEST(Compare, IsNothingForOneMeshTwice) {
   expectHolds(c.symmetric().max, 0, 0.0001 * c.diagonal);
 }
 
-// All bits of a comparison's results.
+// The results of a comparison as raw bytes, to be compared bit by bit.
 std::string bitsOf(const compare::Comparison& c) {
   std::string bits;
   const auto add = [&](double value) {

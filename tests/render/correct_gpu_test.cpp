@@ -1,4 +1,4 @@
-// Corrections by a shader, with EGL and with OSMesa: the same picture as the CPU's.
+// Corrections by a shader, with EGL and with OSMesa: the picture has to equal that of the CPU.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -35,10 +35,10 @@ std::vector<std::uint8_t> signalOf(correct::OutputCorrection& correction,
   return {signal.pixels.begin(), signal.pixels.end()};
 }
 
-// How far two pictures differ.
+// The difference between two pictures.
 struct Difference {
   int largest = 0;   // of 255
-  double share = 0;  // of the channels that differ at all
+  double share = 0;  // share of the channels that differ at all
 };
 
 Difference differenceOf(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
@@ -107,7 +107,7 @@ TEST_P(ShaderOf, EachCorrectionIsTheCpusWithin1Of255) {
   }
 }
 
-// An MPCDI file's alpha and beta maps, which have no headroom rule.
+// The alpha and beta maps of an MPCDI file have no headroom rule.
 TEST_P(ShaderOf, AMeasuredCorrectionIsTheCpusWithin1Of255) {
   correct::MeasuredCorrection measured;
   measured.warp = {2, 2, {{0.05, 0.02}, {0.97, 0}, {0, 1}, {1, 0.95}}};
@@ -141,7 +141,8 @@ TEST_P(ShaderOf, AWidthThatIsNoMultipleOfEightIsWhole) {
   expectTheCpusPicture("13 x 5", mapOf(s, 13, 5));
 }
 
-// Outputs of different sizes in turn, as each frame has them; then one is aligned anew.
+// Outputs of different sizes in turn, as in each frame of a wall; then one of them gets another
+// correction.
 TEST_P(ShaderOf, ServesSeveralOutputsAndMapsThatAreReplaced) {
   CorrectionSettings s;
   s.corners[0] = 7;

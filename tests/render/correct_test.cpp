@@ -33,7 +33,7 @@ std::vector<std::uint8_t> corrected(const correct::CorrectionSettings& s,
   return {signal.pixels.begin(), signal.pixels.end()};
 }
 
-// The part of an RGBA picture of `width` pixels in a row.
+// Cuts a part out of an RGBA picture whose rows have `width` pixels.
 std::vector<std::uint8_t> partOf(const std::vector<std::uint8_t>& picture, int width,
                                  const out::Rectangle& part) {
   std::vector<std::uint8_t> pixels;
@@ -388,7 +388,7 @@ TEST(Correct, AChainCorrectsThePictureThatTheTilesMake) {
   EXPECT_TRUE(std::ranges::equal(signal.pixels, expected));
 }
 
-// Both eyes' pictures in one signal: each is corrected as the picture of an output of its own.
+// A signal with both eyes' pictures: each is corrected like the picture of an output of its own.
 TEST(CorrectionMap, EachPartOfASignalHasTheWholeCorrection) {
   const std::vector<std::uint8_t> picture = noise(kWidth, kHeight);
   for (const correct::SignalParts parts : {correct::SignalParts{2, 1}, {1, 2}}) {

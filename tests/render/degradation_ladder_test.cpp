@@ -1,4 +1,4 @@
-// What the wall gives up when even the coarsest detail is late.
+// The steps by which the wall reduces its quality when even the coarsest detail is late.
 #include "render/governor/degradation_ladder.h"
 
 #include <gtest/gtest.h>

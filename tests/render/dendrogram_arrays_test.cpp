@@ -1,5 +1,5 @@
-// Dendrogram::make refuses arrays with which a cut would read out of bounds or go wrong, and says
-// which array it is.
+// Dendrogram::make refuses arrays with which a cut would read out of bounds or give wrong results,
+// and names the array.
 #include <functional>
 #include <limits>
 #include <memory>

@@ -21,7 +21,7 @@ namespace {
 
 using Node = std::uint32_t;
 using Triangle = std::array<Node, 3>;
-// Triangles of node numbers in the log; each triangle begins with its smallest number.
+// Triangles of node numbers in the log, each beginning with its smallest number.
 using Triangles = std::multiset<Triangle>;
 
 struct Reduced {

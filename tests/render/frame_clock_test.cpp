@@ -52,7 +52,7 @@ TEST_F(TimerFrameClockTest, StartsAnewWithAnotherPeriod) {
 class VblankFrameClockTest : public testing::Test {
  protected:
   static constexpr Duration kRefresh = std::chrono::microseconds(16683);  // 59.94 Hz
-  // Waits for frames as the wall does, while the display's blanks go on.
+  // Waits for frames as the wall does, while the display's vertical blanks continue.
   void run(std::int64_t frames) {
     const std::stop_source stop;
     for (std::int64_t k = next_; k < next_ + frames; ++k) {

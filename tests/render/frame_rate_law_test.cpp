@@ -22,8 +22,8 @@ Answer draw(inventor::FrameRateLaw& law, double start_s, double hz, int frames,
 
 TEST(FrameRateLaw, IsTrianglesASecondOverTheRate) {
   inventor::FrameRateLaw law;
-  // The model of [GOURLEY98] figure 5.37 at 8 Hz: 306,144 triangles/s, which are 5,102 a frame at
-  // 60 Hz.
+  // The model of [GOURLEY98] figure 5.37 at 8 Hz is drawn at 306,144 triangles/s, which are 5,102
+  // triangles a frame at 60 Hz.
   EXPECT_EQ(draw(law, 100, 8, 8, 38268, 60), 5102);
   // The same model at 223,020 and 72,000 triangles/s, as on the two machines of the dissertation.
   EXPECT_NEAR(draw(law, 200, 223020.0 / 38268, 6, 38268, 60).value_or(0), 3717, 1);
@@ -45,8 +45,8 @@ TEST(FrameRateLaw, AFrameLongerThanTheWindowIsAWindow) {
 
 TEST(FrameRateLaw, WithinToleranceItLeavesTheResolution) {
   inventor::FrameRateLaw law;
-  EXPECT_EQ(draw(law, 0, 64, 64, 1000, 60), std::nullopt);  // 1066 triangles a frame would be right
-  EXPECT_EQ(draw(law, 10, 64, 64, 1000, 70), std::nullopt);  // 914 would be right
+  EXPECT_EQ(draw(law, 0, 64, 64, 1000, 60), std::nullopt);   // exact: 1066 triangles a frame
+  EXPECT_EQ(draw(law, 10, 64, 64, 1000, 70), std::nullopt);  // exact: 914
   EXPECT_EQ(draw(law, 20, 64, 64, 1000, 50), 1280);
   EXPECT_EQ(draw(law, 30, 64, 64, 1000, 80), 800);
 }

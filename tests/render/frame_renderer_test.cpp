@@ -145,7 +145,8 @@ TEST(FrameRenderer, TwoContextsDrawThePixelsOfOne) {
   EXPECT_TRUE(same()) << "full detail, drawn at once by one";
 }
 
-// Whole frames of any size, and a refined one. Only one wall at a time has its context current.
+// Frames at full size and reduced sizes, and a refined one. Only one wall at a time can have its
+// context current.
 std::vector<std::vector<std::uint8_t>> framesOf(const gl::GlSettings& settings) {
   Wall wall(fourTiles(), settings);
   EXPECT_EQ(wall.renderer->contexts()->asynchronous,
@@ -186,7 +187,7 @@ TEST(FrameRenderer, ASoftwareRendererIsReadBackDirectlyUnlessSet) {
   EXPECT_FALSE((*contexts)->asynchronous);
 }
 
-// A clock that every look at it takes a millisecond on.
+// A clock that advances by a millisecond each time that it is read.
 class TickingClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return now_ += std::chrono::milliseconds(1); }
@@ -196,7 +197,7 @@ class TickingClock final : public Clock {
   mutable Timestamp now_{};
 };
 
-// Giving a frame to the GPU, waiting for it and copying its pixels: nothing of it is forgotten.
+// The measured time includes giving a frame to the GPU, waiting for it, and copying its pixels.
 TEST(FrameRenderer, AsynchronousFramesCountTheirWholeTime) {
   const auto timesWith = [](gl::ReadBackMode mode) {
     const TickingClock clock;
@@ -208,7 +209,7 @@ TEST(FrameRenderer, AsynchronousFramesCountTheirWholeTime) {
   };
   const frame::DrawTimes direct = timesWith(gl::ReadBackMode::kDirect);
   const frame::DrawTimes later = timesWith(gl::ReadBackMode::kAsynchronous);
-  // It looks at the clock twice more for each of the four tiles.
+  // In this mode the renderer reads the clock twice more for each of the four tiles.
   EXPECT_GT(later.drawing + later.fixed,
             direct.drawing + direct.fixed + std::chrono::milliseconds(7));
   EXPECT_GE(later.drawing, direct.drawing);
@@ -328,7 +329,7 @@ TEST(FrameRenderer, SaysWhatItsTimeWentTo) {
                                 kReadBack, kDraw, kReadBack}));
 }
 
-// The steps of both threads are listed one thread after the other; one thread draws each tile.
+// The steps of the second thread follow those of the first; each tile is drawn by one thread.
 TEST(FrameRenderer, SaysWhatTheTimeOfBothThreadsWentTo) {
   Wall wall(fourTiles(), gl::GlBackend::kEgl, 2);
   wall.draw(model().levelFor(200));
@@ -384,7 +385,7 @@ TEST(FrameRenderer, OsmesaDrawsTheSameWall) {
   EXPECT_LE(1000 * test::differing(egl, osmesa, 2), kTileWidth * kTileHeight);
 }
 
-// One tile with a view of its own.
+// A wall with one tile that has a camera of its own.
 tiles::TilesSettings ownView(tiles::TileCamera view) {
   tiles::TilesSettings s;
   s.frame_width = s.tile_width = kTileWidth;
@@ -411,7 +412,8 @@ const lod::Dendrogram& lopsided() {
   return made;
 }
 
-// From the right it looks as from the front after a quarter turn, wherever it is.
+// Seen from the right, the content looks as it does from the front after a quarter turn, wherever
+// it is.
 TEST(OwnViews, AreThoseOfTheSameContentFromAnotherSide) {
   const struct {
     tiles::TileCamera camera;
@@ -438,7 +440,8 @@ TEST(OwnViews, AreThoseOfTheSameContentFromAnotherSide) {
   }
 }
 
-// The content is drawn as coarsely as asked for in every view, the wall's own pixels stay.
+// In every view the content is drawn at the requested detail, and the pixels of the wall's tiles do
+// not change.
 TEST(OwnViews, DoNotChangeTheWallsPicture) {
   tiles::TilesSettings with = fourTiles();
   with.tiles[0].turns = 0;

@@ -1,4 +1,5 @@
-// Fusion of synthetic scans of known shapes: closed, near the shape, blended, nothing bridged.
+// Fusion of synthetic scans of known shapes: the result is closed, near the shape and blended, and
+// bridges no gaps.
 #include "render/fuse/fuse.h"
 
 #include <algorithm>
@@ -125,7 +126,7 @@ TEST(Fuse, TheNumberOfThreadsChangesNothing) {
 }
 
 TEST(Fuse, OneScanStaysOpenAndDoesNotBridgeADepthEdge) {
-  // A plate in front of a wall: the plate is seen, and the wall around it.
+  // A plate in front of a wall: the scanner sees the plate and the wall around it.
   Mesh mesh = grid(4, 4);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     mesh.positions[i] = i % 3 == 2 ? -1.5F : mesh.positions[i] - 2;
@@ -160,7 +161,7 @@ TEST(Fuse, ConfidenceSaysWhichColourCounts) {
     image.planes.push_back({"heat", 1, std::vector<float>(image.pixels(), i == 0 ? 0.F : 8.F)});
     image.planes.push_back({"label", 1, std::vector<float>(image.pixels(), i == 0 ? 3.F : 4.F)});
     image.planes.push_back({"confidence", 1, std::vector<float>(image.pixels(), 1.F)});
-    // A quarter of the confidence of the one pixel in the corner, which is 1.
+    // All pixels have a quarter of the confidence of the one in the corner, which is 1.
     if (i == 0) std::fill_n(image.planes[2].values.begin() + 1, image.pixels() - 1, 0.25F);
   }
   fuse::FuseSettings settings;

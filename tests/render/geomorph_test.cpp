@@ -1,4 +1,4 @@
-// Geomorphs: where vertices are at a level, and that no vertex jumps from one level to the next.
+// Geomorphs: the positions of vertices at a level, and that no vertex jumps between two levels.
 #include "render/lod/geomorph.h"
 
 #include <algorithm>
@@ -125,7 +125,7 @@ TEST(Geomorph, EachClusterHasItsOwnWindow) {
     EXPECT_LT(collapse, clusters.coarsestLevel());
     ++of[c];
   }
-  // A rough cluster may have no node that moves at its level.
+  // A coarse cluster may have no node that moves at its level.
   EXPECT_GT(std::count_if(of.begin(), of.end(), [](std::size_t n) { return n > 0; }), 6);
   EXPECT_EQ(of.back(), 0U) << "nothing of it merges any more";
 }

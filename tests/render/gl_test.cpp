@@ -85,15 +85,15 @@ class Studio {
 // A triangle that faces the viewer, in the upper right quarter of the image.
 mesh::Mesh upperRight() { return {{0.2F, 0.2F, 0, 0.9F, 0.2F, 0, 0.2F, 0.9F, 0}, {}, {0, 1, 2}}; }
 
-// The first level from `level` on whose last merge is on the front side.
+// The first level, from `level` on, at which the last merge is on the side that faces the viewer.
 std::size_t mergesInFront(const lod::Dendrogram& model, std::size_t level) {
   const auto z = [&](std::size_t node) { return model.arrays().positions[3 * node + 2]; };
   while (z(model.nodeCount() - 2 * level - 1) < 0.3F) ++level;
   return level;
 }
 
-// With the next two merging nodes morphed to their parent's position, the image is as if they had
-// merged; without, it is as before.
+// If the next two nodes to be merged are morphed to their parent's position, the image equals that
+// after the merge; otherwise it is unchanged.
 TEST(Gl, AMorphedNodeStandsWhereItIsTold) {
   const lod::Dendrogram model = wholeModel(ball());
   Studio studio(gl::GlBackend::kEgl, model);
@@ -210,7 +210,7 @@ TEST_P(GlOf, LookIsLookedAt) {
   const Image wires = studio.picture({.wireframe = true});
   EXPECT_EQ(wires.at(100, 40), kBackground);  // inside a triangle
   EXPECT_GT(wires.covered(kBackground), 50);
-  EXPECT_EQ(studio.picture().at(100, 40), plain);  // no wireframe state is left
+  EXPECT_EQ(studio.picture().at(100, 40), plain);  // the state for wireframes does not persist
 }
 
 TEST_P(GlOf, NearerHidesFarther) {
@@ -352,7 +352,7 @@ TEST_P(GlOf, TextureCoordinatesAreOnTheirWayToo) {
   const std::vector<lod::Morph> half = {{last - 2, 0.5F}, {last - 1, 0.5F}};
   studio.renderer().morph(half);
   const Image image = studio.picture();
-  // On the left side v now ranges from 0.25 to 0.75, over half of the height.
+  // On the left side v now ranges from 0.25 to 0.75, and the surface covers half of the height.
   EXPECT_EQ(image.at(1, 10), kBackground);
   EXPECT_LE(test::difference(image.at(2, 50), {0, 105, 0, 255}), 1);
   EXPECT_LE(test::difference(image.at(2, 75), {0, 0, 105, 255}), 1);
@@ -366,7 +366,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, GlOf,
                            return backend.param == gl::GlBackend::kEgl ? "Egl" : "Osmesa";
                          });
 
-// A context of a GPU that its driver has reset.
+// Simulates a GPU context that the driver has reset.
 class LostContext final : public gl::GlContext {
  public:
   LostContext() {

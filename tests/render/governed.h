@@ -1,4 +1,4 @@
-// A governor at its target, with which two tests start; each frame's cost is given literally.
+// A governor that has reached its target, for two tests; each frame's cost is given literally.
 #pragma once
 
 #include "render/governor/governor.h"

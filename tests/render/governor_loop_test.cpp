@@ -48,7 +48,7 @@ struct Loop {
     return cost.late;
   }
   double lateShare() const { return static_cast<double>(late) / static_cast<double>(frames); }
-  double utilisation() const {  // share of the period
+  double utilisation() const {  // as a share of the period
     return work_s / static_cast<double>(frames) / toSeconds(governor.period());
   }
 };
@@ -139,7 +139,7 @@ TEST(GovernorLateShare, NoiseTakesHeadRoomAndQuietGivesItBack) {
   EXPECT_EQ(loop.late, 0u);
 }
 
-// A machine whose speed changes by a factor of 1.35 for seconds at a time: only a few frames are
+// The machine's speed changes by a factor of 1.35 for several seconds; only a few frames may be
 // late at each change.
 TEST(GovernorLoop, LivesWithAMachineThatChangesItsSpeed) {
   const FakeRenderer fast{0.004, 0.060, 0.62, 0.03};

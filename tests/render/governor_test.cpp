@@ -203,7 +203,8 @@ TEST(Governor, KeepsStillWithinTheNoise) {
   EXPECT_NEAR(governor.coefficient() / before, 31.5 / 32, 0.01);
 }
 
-// Each frame costs 2 per cent more for a second: the model is never off by 9 per cent.
+// For a second, each frame costs 2 per cent more than the last one: the model is never off by 9 per
+// cent.
 TEST(Governor, FollowsALoadThatRisesWithoutLagging) {
   governor::Governor governor = settled();
   const double before = governor.coefficient();
@@ -253,7 +254,8 @@ TEST(Governor, KeepsTheLeastAndTheMost) {
   EXPECT_EQ(governor.budget(), 1'000'000u);
 }
 
-// 100 of a picture's units are no coarse picture: its own least counts. A higher one does not.
+// A content in another unit has a minimum of its own: a budget of 100 units may already be fine
+// detail of a picture. A minimum above the configured one is ignored.
 TEST(Governor, KeepsTheLeastOfAContentWithAnotherUnit) {
   governor::Governor governor = settled();
   governor.setLeastUseful(16);

@@ -1,4 +1,4 @@
-// The choice of a GPU, of made-up ones and of those that this machine has.
+// The choice of a GPU, from made-up lists and from this machine's.
 #include "render/gl/gpu_list.h"
 
 #include <gtest/gtest.h>

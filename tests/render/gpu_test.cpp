@@ -1,5 +1,5 @@
-// On a machine with a GPU: it draws and corrects what the software renderer and the CPU do. On
-// others these tests are skipped. One command: build/dev/bin/gpu_test
+// On a machine with a GPU, the GPU must draw and correct as the software renderer and the CPU do.
+// On other machines these tests are skipped. One command: build/dev/bin/gpu_test
 #include <future>
 #include <memory>
 #include <span>
@@ -50,7 +50,7 @@ Eigen::Isometry3f viewOf(int k) {
   return T_eye_model;
 }
 
-// Counts the pixels of which a channel differs by more than `most` of 255.
+// Counts the pixels of which any channel differs by more than `most` of 255.
 int pixelsBeyond(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b, int most) {
   int count = 0;
   for (std::size_t i = 0; i < a.size(); i += 4) {
@@ -63,7 +63,7 @@ int pixelsBeyond(std::span<const std::uint8_t> a, std::span<const std::uint8_t> 
 
 using Frame = std::vector<std::uint8_t>;
 
-// Four views, each at full detail and coarse, drawn in a thread that has this context alone.
+// Four views, each at full detail and coarse, drawn by a thread that has this context alone.
 std::vector<Frame> framesOf(const lod::Dendrogram& model, const gl::GlSettings& settings) {
   return std::async(std::launch::async,
                     [&] {

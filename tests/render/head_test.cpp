@@ -1,4 +1,5 @@
-// The wall is drawn for where the tracked head is, and stays as it is while the head is at rest.
+// The wall is drawn for the tracked head's position, and its picture does not change while the head
+// is at rest.
 #include "render/stereo/head.h"
 
 #include <limits>
@@ -38,7 +39,7 @@ class HeadTest : public testing::Test {
     now_ += time;
     return head_.update(sample, now_);
   }
-  // Stands there until that is no motion any more.
+  // Repeats the sample until the head counts as being at rest.
   stereo::Head::View restAt(const std::optional<TrackerSample>& sample) {
     for (int i = 0; i < 10; ++i) after(sample);
     return after(sample);
@@ -64,7 +65,8 @@ TEST_F(HeadTest, ScalesWhatTheTrackerSays) {
   EXPECT_TRUE(head.update(at(1, 0, 0), now_).viewer.place_m.isApprox(Vector3d(0, 2, 2), 1e-6));
 }
 
-// Rolled to the left by 90 degrees, about the way from the wall to the person: the right eye is up.
+// The head is rolled to the left by 90 degrees, about the axis from the wall to the person, so the
+// right eye is above the left one.
 TEST_F(HeadTest, TurnsTheEyesWithTheHead) {
   TrackerSample rolled = at(1, 0, 0);
   rolled.orientation_wxyz[0] = rolled.orientation_wxyz[1] = 0.70710678F;
@@ -92,7 +94,7 @@ TEST_F(HeadTest, BeyondTheDeadBandIsTakenAsItIsUntilItRests) {
   EXPECT_NEAR(at_rest.viewer.place_m.z() - rested.z(), 0.008, 1e-6);
 }
 
-// A millimetre a frame is motion, since it adds up.
+// A drift of a millimetre a frame counts as motion, since it adds up.
 TEST_F(HeadTest, ThatDriftsIsFollowed) {
   restAt(at(1, 0, 0));
   stereo::Head::View view;

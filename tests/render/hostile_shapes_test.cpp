@@ -1,5 +1,5 @@
-// A mesh with very many triangles at one vertex takes hardly more work for each triangle than
-// others.
+// Reducing a mesh with very many triangles at one vertex takes hardly more work per triangle than
+// reducing others.
 #include "tests/support/hostile_shapes.h"
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct Way {
   reduce::ReduceSettings settings;
 };
 
-// Number of elements that a reduction visits, for each triangle.
+// Number of elements that a reduction visits, divided by the number of triangles.
 double workOf(const test::HostileShape& shape, Way way) {
   mesh::Mesh mesh = shape.make(24'000);
   mesh::splitNonManifold(mesh);
@@ -49,10 +49,11 @@ std::vector<Way> waysFor(const test::HostileShape& shape) {
   return ways;
 }
 
-// A step that visits all triangles of a vertex each time would visit thousands for each triangle.
+// A reduction with a step that visits all triangles of a vertex would visit thousands of elements
+// per triangle here.
 class HostileShape : public testing::TestWithParam<test::HostileShape> {};
 
-// Work of each way on a regular mesh, the bound of all shapes.
+// The work of each way of reducing on a regular mesh, which bounds that on all shapes.
 const std::vector<double>& regularWork() {
   static const std::vector<double> work = [] {
     const test::HostileShape regular = test::hostileShapes().front();

@@ -31,7 +31,7 @@ void turn(mesh::Mesh& mesh) {
     std::swap(mesh.triangles[i + 1], mesh.triangles[i + 2]);
 }
 
-// All that can be odd about a mesh, which is nothing.
+// Expects that the inspection has found none of the peculiarities that it looks for.
 void expectNothingOdd(const mesh::Inspection& is) {
   EXPECT_EQ(is.degenerate + is.no_area + is.duplicate, 0u);
   EXPECT_EQ(is.non_manifold_edges + is.turned_edges + is.non_manifold_vertices, 0u);
@@ -64,7 +64,7 @@ TEST(Inspect, AnOpenCubeHasOneHoleOfItsOutline) {
 
 TEST(Inspect, TheLongestHoleComesFirst) {
   mesh::Mesh sheet = test::grid(4, 4);
-  const std::size_t cell = 6 * (1 * 4 + 2);  // not at the edge
+  const std::size_t cell = 6 * (1 * 4 + 2);  // a cell that is not at the edge
   sheet.triangles.erase(sheet.triangles.begin() + cell, sheet.triangles.begin() + cell + 6);
   const auto is = mesh::inspect(sheet);
   ASSERT_EQ(is.holes.size(), 2u);
@@ -73,10 +73,10 @@ TEST(Inspect, TheLongestHoleComesFirst) {
   expectNothingOdd(is);
 }
 
-// Where two holes touch at a vertex, each fan of triangles there leads from one to the other.
+// At a vertex where two holes touch, each fan of triangles leads from one hole to the other.
 TEST(Inspect, HolesThatTouchAreOneLoop) {
   mesh::Mesh sheet = test::grid(4, 4);
-  for (const int cell : {2 * 4 + 2, 1 * 4 + 1})  // diagonal neighbours, the later first
+  for (const int cell : {2 * 4 + 2, 1 * 4 + 1})  // diagonal neighbours, the later one first
     sheet.triangles.erase(sheet.triangles.begin() + 6 * cell,
                           sheet.triangles.begin() + 6 * cell + 6);
   const auto is = mesh::inspect(sheet);
@@ -158,7 +158,7 @@ TEST(Inspect, CountsTrianglesThatAreNone) {
   EXPECT_EQ(is.isolated, 1u);
 }
 
-// As an STL file has it: no triangle shares a vertex.
+// As in an STL file, no two triangles share a vertex.
 TEST(Inspect, VerticesAtOnePlaceAreOne) {
   const mesh::Mesh cube = test::cube();
   mesh::Mesh soup;

@@ -1,4 +1,5 @@
-// Tests the read-back of what a card's displays really show, without the records of `Displays`.
+// Tests reading back what a graphics card's displays really show, independently of what `Displays`
+// has recorded.
 #include <gtest/gtest.h>
 
 #include "render/out/kms/displays.h"
@@ -136,7 +137,7 @@ TEST_F(KmsReadBackTest, ACardThatIsGoneIsAnError) {
   EXPECT_EQ(displays_.readBack(0)->size(), 0U);
 }
 
-// Its book says that a newer frame is shown, the card says otherwise.
+// According to `Displays` a newer frame is shown; according to the card it is not.
 TEST_F(KmsReadBackTest, ACommitWithoutAFlipLeavesTheOldBuffer) {
   light();
   const ScannedOut before = bench_.scanned[21];

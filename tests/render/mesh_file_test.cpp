@@ -154,7 +154,8 @@ TEST(ReadMesh, ColoursOfFacesBecomeThoseOfTheirCorners) {
                                       "colours)"}));
 }
 
-// A picture may be given on the command line (mesh import --texture).
+// The file need not name a texture, since it may be given on the command line (mesh import
+// --texture).
 TEST(ReadMesh, TextureCoordinatesOfFacesNeedNoPictureInTheFile) {
   const TempDir dir;
   writeText(dir / "a.ply",
@@ -297,7 +298,8 @@ TEST(ReadMesh, AFeatureThatIsNoNumberBecomesZeroWithANote) {
   EXPECT_EQ(loaded->notes[0], "2 values of features were not numbers; 0 stands there");
 }
 
-// The note is about meshes that floats make visibly coarse, not about large coordinates.
+// The note is for meshes that look coarse because of the floats, not for large coordinates in
+// general.
 TEST(ReadMesh, FloatsAreSaidToBeCoarseWhereTheMeshIsSmallForItsDistance) {
   const TempDir dir;
   const auto notes = [&](double at, double size) {

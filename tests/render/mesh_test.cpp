@@ -122,7 +122,8 @@ TEST(WeldDegenerate, CornersOfOtherValuesOrPlacesAndThoseOfNoCommonTriangleStayA
 }
 
 TEST(WeldDegenerate, ARowOfCopiesBecomesItsFirst) {
-  mesh::Mesh fan;  // the pole of a sphere: each triangle has its own copy, joined to the next one's
+  // The pole of a sphere: each triangle has its own copy of it, joined to that of the next one.
+  mesh::Mesh fan;
   fan.positions.assign(9, 0);
   for (int i = 0; i < 4; ++i)
     fan.positions.insert(fan.positions.end(),
@@ -230,9 +231,9 @@ TEST(EnsureNormals, AddsThemOnce) {
   EXPECT_EQ(mesh.features.size(), 1u);
 }
 
-// Pages of a book at these angles; each has its own copies of the spine's two vertices. The first
-// three pages are one surface, the outer two by way of the middle one; the last faces away from
-// all.
+// Pages of a book at these angles; each page has its own copies of the spine's two vertices. The
+// first three pages are one surface (the outer two through the middle one). The last page faces
+// away from all others.
 TEST(EnsureNormals, AreOneWhereSidesOfASeamAreOneSurface) {
   const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
   mesh::Mesh book;

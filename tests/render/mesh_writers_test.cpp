@@ -1,4 +1,4 @@
-// What third-party readers find in the files that writeMesh() writes.
+// Third-party readers read the files that writeMesh() writes, and find the mesh in them.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -38,7 +38,7 @@ mesh::Mesh richSquare() {
   return mesh;
 }
 
-// Writes the mesh to `path`; returns the names of what the format could not store.
+// Writes the mesh to `path`; returns the names of the features that the format could not store.
 Names written(const std::string& path, const mesh::Mesh& mesh) {
   const auto result = mesh::writeMesh(path, mesh);
   EXPECT_TRUE(result) << result.error().what;
@@ -140,7 +140,7 @@ struct Gltf {
   Json json;
   std::string buffer;
 
-  // The values of an accessor, located as the specification says; floats and unsigned ints.
+  // The values of an accessor, floats or unsigned integers, located as the specification says.
   template <typename T>
   std::vector<T> numbers(std::size_t accessor) const {
     const Json& a = json["accessors"][accessor];
@@ -181,7 +181,7 @@ Gltf readGlb(const std::string& path) {
   return {Json::parse(bytes.substr(20, json)), bytes.substr(28 + json)};
 }
 
-// An independent decoder, so that the encoder is not tested with itself.
+// An independent decoder, so that MERLIN's encoder is not tested by MERLIN's decoder.
 std::string fromBase64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;
@@ -226,7 +226,7 @@ TEST(GltfWriter, TurnsFeaturesIntoWhatTheFormatWants) {
   EXPECT_EQ(gltf.attribute("_heat"), (Floats{20, 21.5F, -3, 1e30F}));
   EXPECT_EQ(gltf.attribute("_label"), (Floats{0, 1, 2, 70000}));
   const Floats colour = gltf.attribute("COLOR_0");
-  // The linear values of n / 5 in sRGB.
+  // The sRGB values n / 5, converted to linear values.
   const float linear[] = {0, 0.0331048F, 0.1328683F, 0.3185468F, 0.6038273F, 1};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(colour[i], linear[i], 1e-6) << i;
 }
@@ -258,7 +258,7 @@ TEST(GltfWriter, TakesTheTexturesPictureAlong) {
 
 TEST(GltfWriter, WritesTheSameBytesIntoOneJsonFile) {
   const TempDir dir;
-  // So that buffers of every length modulo 3 occur.
+  // These meshes have buffers of every length modulo 3.
   for (const std::uint32_t columns : {1U, 2U, 3U}) {
     const mesh::Mesh mesh = test::noisyGrid(columns, 1, 0.1, 7);
     written(dir / "a.glb", mesh);
@@ -287,7 +287,7 @@ TEST(GltfWriter, KeepsAFeatureWhateverItsName) {
 
 constexpr mesh::Origin kUtm = {500'000, 5'200'000, -0.25};
 
-// The coordinates of the file, as doubles.
+// The coordinates of the file as doubles.
 std::vector<double> placed(const mesh::LoadedMesh& loaded) {
   std::vector<double> all;
   for (std::size_t i = 0; i < loaded.mesh.positions.size(); ++i)
@@ -385,8 +385,8 @@ TEST(WriteMesh, RefusesAnEmptyMeshAndAnUnknownEnding) {
   EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
 }
 
-// Without texture coordinates the image is left out; if the image file cannot be written,
-// writeMesh() fails.
+// A mesh without texture coordinates is written without its image. If the image file cannot be
+// written, writeMesh() fails.
 TEST(WriteMesh, HasAPictureOnlyWhereItLiesSomewhere) {
   const TempDir dir;
   mesh::Mesh mesh = test::cube();

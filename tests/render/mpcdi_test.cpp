@@ -146,8 +146,9 @@ TEST(Mpcdi, AFileShowsWhatItsSettingsShow) {
   EXPECT_GT(lit, kWidth * kHeight * 2);
 }
 
-// OpenSpace #399: a measured correction still needs an adjustment by hand, here of the corners.
-// Other readers would repeat the picture's edge there, and lift its black.
+// As in the OpenSpace issue 399, a measured correction still needs an adjustment by hand, here of
+// the corners. Other readers would repeat the edge of the picture outside of it, and raise the
+// black there.
 TEST(Mpcdi, PixelsOutsideThePictureShowNothing) {
   correct::CorrectionSettings s;
   s.corners = {20, 10, 0, 0, 0, 0, 0, 0};
@@ -207,7 +208,7 @@ std::string pfm(int columns, int rows, const std::vector<std::array<float, 3>>& 
   return correct::pfmBytes({columns, rows, cells});
 }
 
-// 2 x 2 cells that map to themselves.
+// A warp of 2 x 2 cells that maps each point to itself.
 std::string identity() {
   return pfm(
       2, 2,
@@ -218,7 +219,7 @@ std::string greyPng(int width, int height, const std::vector<std::uint16_t>& val
   return *image::encodeLevels({width, height, 1, values});
 }
 
-// The parts of a file with one region; each test changes one of them.
+// The parts of a file with one region; each test changes one part.
 struct Parts {
   std::string version = "version=\"2.0\"", profile = "2d", interpolation = "linear";
   std::string warp = identity(), alpha = greyPng(2, 2, {0, 65535, 32768, 13107});
@@ -328,7 +329,7 @@ TEST(Mpcdi, AnAlphaMapsGammaIsTakenOut) {
   EXPECT_NEAR(measured.alpha->shares[3], 0.04, 1e-4);
 }
 
-// 8 bits and three channels, as many tools write it.
+// Many tools write beta maps with 8 bits and three channels.
 TEST(Mpcdi, ABetaMapMayHaveOneColour) {
   const TempDir dir;
   const auto png = [&](const std::vector<std::uint8_t>& pixels) {
@@ -439,7 +440,7 @@ TEST(Mpcdi, ABrokenWarpIsSaid) {
         << head;
 }
 
-// Such a map shows one place of the picture everywhere: its tool has not filled it.
+// Such a warp shows one point of the picture everywhere: the tool has not filled it.
 TEST(Mpcdi, AWarpWithoutAnAreaIsSaidWithItsRegion) {
   const auto warp = [&](const std::vector<std::array<float, 3>>& cells) {
     return faultWith([&](Parts& p) { p.warp = pfm(2, 2, cells); });
@@ -526,7 +527,7 @@ TEST(Mpcdi, ABrokenDescriptionIsSaid) {
             "mpcdi.xml: region \"r\" has no fileset with a geometryWarpFile");
 }
 
-// The gamma of a region's colours: absent is something else than wrong.
+// The gamma of a region's colours: a missing value is not the same as a wrong one.
 TEST(Mpcdi, ABrokenDecodeGammaIsSaid) {
   const auto with = [](const std::string& colour) {
     Parts parts;

@@ -21,7 +21,7 @@ class MrmDamage : public testing::Test {
     test::writeText(path_, bytes);
     return lod::readMrm(path_);
   }
-  // The message about these bytes, without the file's name, with which it must begin.
+  // The error message for these bytes without the file's name, with which it must begin.
   std::string faultOf(const std::string& bytes, Errc code = Errc::kMalformed) const {
     const auto result = read(bytes);
     if (result) return "none";
@@ -30,7 +30,8 @@ class MrmDamage : public testing::Test {
     EXPECT_TRUE(what.starts_with(path_ + ": ")) << what;
     return what.substr(std::min(what.size(), path_.size() + 2));
   }
-  // The same, after `change` to one entry of the table, with valid checksums.
+  // The error message after `change` was made to one entry of the table and the checksums
+  // corrected.
   std::string faultWith(Kind kind, const std::function<void(MrmBytes::Entry&)>& change,
                         Errc code = Errc::kMalformed) const {
     MrmBytes file = golden_;
@@ -167,7 +168,7 @@ TEST_F(MrmDamage, AFeaturesNameIsText) {
   };
   for (const char* name : {"he\x1b[31mat", "he\xff", "\xc2\x9bheat"})
     EXPECT_EQ(faultOf(named(name)), "a feature's name is not valid UTF-8");
-  // As an earlier program wrote it: cut in the middle of a UTF-8 character.
+  // An earlier program cut names in the middle of a UTF-8 character.
   const auto cut = read(named(std::string(30, 'x') + '\xc2'));
   ASSERT_TRUE(cut) << cut.error().what;
   EXPECT_EQ(cut->arrays().features[0].name, std::string(30, 'x'));
@@ -188,7 +189,7 @@ TEST_F(MrmDamage, ATextureIsCheckedAsAllElseIs) {
   EXPECT_EQ(faultOf(file.bytes), "section texture is damaged");
 }
 
-// The size of a value of an unknown kind is known to later readers only: here 1 or 8 bytes.
+// Only later readers know the size of a value of an unknown kind; here it is 1 or 8 bytes.
 TEST_F(MrmDamage, AnUnknownSectionMayHoldValuesOfAnySize) {
   for (const std::uint32_t dimension : {168U, 21U}) {
     MrmBytes file = golden_;

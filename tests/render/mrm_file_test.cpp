@@ -18,7 +18,8 @@ namespace {
 using test::MrmBytes;
 using test::readText;
 
-// Reads back what was written, writes that again, and returns the bytes.
+// Writes the model, reads it, and writes it again; both files have to be equal. Returns their
+// bytes.
 std::string expectRoundTrip(const lod::Dendrogram& d) {
   const test::TempDir dir;
   EXPECT_TRUE(lod::writeMrm(dir / "first.mrm", d));
@@ -48,7 +49,7 @@ lod::Dendrogram reducedSphere() {
 TEST(MrmFile, IsTheSameWrittenInPiecesStraightFromTheReduction) {
   const test::TempDir dir;
   const mesh::Mesh mesh = sphere();
-  for (const std::size_t stop : {std::size_t{0}, std::size_t{300}}) {  // one root, and many
+  for (const std::size_t stop : {std::size_t{0}, std::size_t{300}}) {  // one root, and many roots
     const reduce::Reduction r = *reduce::reduce(mesh, {.min_triangles = stop});
     ASSERT_TRUE(lod::writeMrm(dir / "whole.mrm", lod::buildDendrogram(mesh, r.log)));
     ASSERT_TRUE(lod::readMrm(dir / "whole.mrm"));

@@ -57,7 +57,7 @@ class MrmBytes {
   Entry entry(std::size_t i) const { return at<Entry>(entryAt(i)); }
   void set(std::size_t i, const Entry& entry) { put(entryAt(i), entry); }
 
-  // The index of the first section of `kind` in the table.
+  // Index in the table of the first section of `kind`.
   std::size_t find(render::lod::mrm::Kind kind) const {
     for (std::size_t i = 0; i < header().sections; ++i) {
       if (entry(i).kind == static_cast<std::uint32_t>(kind)) return i;
@@ -95,7 +95,7 @@ class MrmBytes {
     return *this;
   }
 
-  // Whether a byte is padding between sections, which aligns them.
+  // Whether the byte is padding that aligns a section.
   bool isPadding(std::size_t at) const {
     if (at < entryAt(header().sections)) return false;
     for (std::size_t i = 0; i < header().sections; ++i) {

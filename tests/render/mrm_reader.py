@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Prints one level of an .mrm file as OBJ: mrm_reader.py FILE [LEVEL]; level 0 is the whole mesh.
 
-Written from render/lod/io/FORMAT.md alone, with nothing but Python 3. Its standard library has no
-XXH3, so the checksums are not looked at; magic, version and sizes are.
+Written from render/lod/io/FORMAT.md alone, with the standard library of Python 3 alone. It has no XXH3, so
+this program checks magic, version and sizes, but no checksums.
 """
 import struct, sys
 
@@ -14,7 +14,7 @@ def fail(what):
     sys.exit(f"{sys.argv[1]}: {what}")
 
 def sections(data, count):
-    """The sections that a cut needs, by name, each as one flat tuple."""
+    """The sections that a cut needs, by name, each as a flat tuple."""
     found = {}
     for i in range(count):
         at = struct.calcsize(HEADER) + i * struct.calcsize(ENTRY)

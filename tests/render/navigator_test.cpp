@@ -1,4 +1,4 @@
-// How the ball moves the viewer in a plane and in a panorama. The object's navigator is tested
+// How the ball moves the viewer in a plane and in a panorama. The navigator for models is tested
 // through Scene.
 #include "render/scene/navigator.h"
 
@@ -86,7 +86,8 @@ TEST(PlaneNavigator, StandsStillForShow) {
   EXPECT_TRUE(poses.T_wall_content.isApprox(navigator.start().T_wall_content, 0));
 }
 
-// What was to the right of the viewer comes to the middle; the horizon stays level.
+// The view turns to the right: what was to the right of the viewer comes to the middle, and the
+// horizon stays level.
 TEST(PanoramaNavigator, TurnsToTheRightForShow) {
   const scene::PanoramaNavigator navigator(kSettings);
   scene::Poses poses = navigator.start();
@@ -96,7 +97,8 @@ TEST(PanoramaNavigator, TurnsToTheRightForShow) {
   EXPECT_TRUE((poses.T_wall_content.linear() * Vector3f::UnitY()).isApprox(Vector3f::UnitY()));
 }
 
-// The front of a model, which is towards the viewer, moves to the right; its place stays.
+// The front of the model, which faces the viewer, moves to the right; the model's position does not
+// change.
 TEST(ObjectNavigator, TurnsAboutItsVerticalAxisForShow) {
   const scene::ObjectNavigator navigator(kSettings);
   scene::Poses poses = navigator.start();

@@ -218,7 +218,7 @@ TEST(Tidy, KeepsTheFirstOfEachOfManyDuplicates) {
       if (corners.size() == 3 && seen.insert(corners).second)
         expected.insert(expected.end(), v, v + 3);
     }
-    // So that all vertices are used.
+    // These triangles make all vertices used.
     mesh.triangles.insert(mesh.triangles.end(), {0, 1, 2, 3, 4, 5});
     for (const std::set<std::uint32_t>& last : {std::set{0U, 1U, 2U}, std::set{3U, 4U, 5U}}) {
       if (seen.insert(last).second) expected.insert(expected.end(), last.begin(), last.end());

@@ -22,7 +22,7 @@ class ObjFile : public testing::Test {
     test::writeText(path_, text);
     return mesh::readMesh(path_);
   }
-  // Reads a file with the four corners of a square, then `faces`.
+  // Reads a file with the four corners of a square, followed by `faces`.
   Result<mesh::LoadedMesh> readFaces(const std::string& faces) {
     return read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + faces);
   }
@@ -99,7 +99,8 @@ TEST_F(ObjFile, ObjectsAndGroupsBecomeLabels) {
   EXPECT_EQ(one->mesh.find("label"), nullptr) << "one needs no number";
 }
 
-// The middle triangle has no corner of its own: each belongs to a neighbour of a lower number.
+// No corner belongs to the middle triangle alone: each is shared with a neighbour whose label is
+// lower.
 TEST_F(ObjFile, ATriangleOfEachPartKeepsACornerWithItsLabel) {
   const auto loaded = read(
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 -1 0\nv 1 1 0\nv -1 0 0\n"

@@ -64,7 +64,7 @@ class TexturedObj : public testing::Test {
     EXPECT_TRUE(loaded) << loaded.error().what;
     return loaded ? *std::move(loaded) : mesh::LoadedMesh{};
   }
-  // The notes without the folder's path.
+  // The notes of the reader, without the folder's path.
   Names notesOf(const mesh::LoadedMesh& loaded) const {
     Names notes;
     for (const std::string& note : loaded.notes) {
@@ -163,12 +163,12 @@ TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
     EXPECT_TRUE(texture.starts_with("\x89PNG")) << faces;
     EXPECT_NE(texture, file) << faces;
   };
-  expectAtlas(two, "usemtl a\nf 1/1 2/2 4/4\nf 1/1 4 3/3\n");    // a bare corner
-  expectAtlas(two, "f 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");  // a bare face
+  expectAtlas(two, "usemtl a\nf 1/1 2/2 4/4\nf 1/1 4 3/3\n");    // a corner without "vt"
+  expectAtlas(two, "f 1/1 2/2 4/4\nusemtl b\nf 1/1 4/4 3/3\n");  // a face without "usemtl"
   expectAtlas("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n");
 }
 
-// Each output has a folder of its own, so that no reader finds another one's image.
+// Each output file is in a folder of its own, so that no reader finds another one's image.
 TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
   writePngFile(dir_ / "four.png", 2, 2, kFour);
   test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd four.png\n");
@@ -250,7 +250,8 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
   EXPECT_TRUE(readPly("comment texture four pixels.png\n").mesh.texture.empty());
 }
 
-// Two squares of two faces each, of MeshLab's form: each corner of a face has its own coordinates.
+// Two squares of two faces each, in the form that MeshLab writes: each corner of a face has its own
+// texture coordinates.
 TEST_F(TexturedObj, MayBeAPlyWhoseFacesHaveSeveralPictures) {
   writePngFile(dir_ / "a.png", 1, 1, {255, 0, 0});
   writePngFile(dir_ / "b.png", 1, 1, {0, 0, 255});
@@ -354,7 +355,7 @@ TEST_F(TexturedObj, OpensNothingOutsideItsFolder) {
   EXPECT_TRUE(loaded->notes[1].starts_with(dir_ / "model/four.png:")) << loaded->notes[1];
 }
 
-// A pipe without a writer: the reader must not block on it.
+// The file is a pipe without a writer; the reader must not block on it.
 TEST_F(TexturedObj, WaitsForNoPipe) {
   ASSERT_EQ(::mkfifo((dir_ / "x.mtl").c_str(), 0600), 0);
   const auto loaded = read(std::string("mtllib x.mtl\nusemtl red\n") + kSquare + "f 1 2 3\n");
@@ -375,7 +376,7 @@ TEST_F(TexturedObj, NamesTheLineOfACornerWithoutItsCoordinate) {
   test::writeText(dir_ / "a.obj", std::string(kSquare) + "vt 0 0\nf 1/1 2/1 3/1\nf 1/2 2/1 3/1\n");
   EXPECT_EQ(mesh::readMesh(dir_ / "a.obj").error().what,
             dir_ / "a.obj: line 7: a corner refers to texture coordinate 2, but there are 1");
-  read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // defined after its use
+  read(std::string(kSquare) + "f 1/1 2/1 3/1\nvt 0 0\n");  // "vt" comes after its use
   read(std::string(kSquare) + "vt 0 0\nvt 1 1\nf 1/-1 2/-2 3/-1\n");
 }
 

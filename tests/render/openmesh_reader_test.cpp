@@ -14,8 +14,8 @@
 namespace merlin::render {
 namespace {
 
-#ifdef MERLIN_ANY_SANITIZER  // each takes twenty times as long, and OpenMesh itself is not
-                             // instrumented
+// Under a sanitizer each case takes twenty times as long, and OpenMesh itself is not instrumented.
+#ifdef MERLIN_ANY_SANITIZER
 constexpr std::size_t kDamagedEvery = 3;
 #else
 constexpr std::size_t kDamagedEvery = 1;

@@ -1,4 +1,5 @@
-// The plates over the operator's tile: where they are, what they show, that nothing stays behind.
+// The plates over the operator's tile: their places, their content, and that they leave no pixels
+// behind.
 #include "render/text/operator_overlay.h"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ struct Wall {
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(4 * (y * plan.frame_width + x));
   }
-  // Pixels of the canvas that differ from the picture, in a tile.
+  // Number of pixels of a tile in the canvas that differ from the picture.
   int changedIn(std::size_t tile) const {
     const tiles::Tile& t = plan.tiles[tile];
     int changed = 0;
@@ -141,7 +142,7 @@ TEST(OperatorOverlay, ReadsTheFactsAtMostTenTimesASecond) {
 
 TEST(OperatorOverlay, AWallThatStandsIsPresentedAnewOnlyIfTheFactsDiffer) {
   Wall wall;
-  EXPECT_TRUE(wall.overlay->hasChanged());  // never drawn
+  EXPECT_TRUE(wall.overlay->hasChanged());  // the overlay was never drawn
   wall.overlay->draw(wall.canvas);
   wall.overlay->erase(wall.canvas);
   for (int period = 0; period < 120; ++period) {
@@ -154,8 +155,8 @@ TEST(OperatorOverlay, AWallThatStandsIsPresentedAnewOnlyIfTheFactsDiffer) {
   EXPECT_TRUE(wall.overlay->hasChanged());
 }
 
-// The wall's last frame, before it stands, may be drawn too soon after the one before for the facts
-// to be read: for example the first frame of another content.
+// The last frame before a standstill may follow the one before so soon that the facts are not read
+// for it: for example the first frame of another content.
 TEST(OperatorOverlay, WhatTheLastFrameDidNotReadIsLookedAtSoonAfterIt) {
   Wall wall;
   wall.overlay->draw(wall.canvas);
@@ -195,7 +196,7 @@ TEST(OperatorOverlay, WhatIsBeneathIsStillSeen) {
   std::fill(dark.canvas.begin(), dark.canvas.end(), std::uint8_t{0});
   bright.overlay->draw(bright.canvas);
   dark.overlay->draw(dark.canvas);
-  const std::size_t corner = bright.at(640 + 8, 480 + 8);  // of the plate, without text
+  const std::size_t corner = bright.at(640 + 8, 480 + 8);  // a pixel of the plate without text
   EXPECT_GT(bright.canvas[corner], dark.canvas[corner] + 50);
   EXPECT_LT(bright.canvas[corner], 100);  // dark enough for white text
 }
@@ -214,7 +215,7 @@ TEST(OperatorOverlay, AnyTextStaysOnItsPlate) {
   EXPECT_EQ(wall.canvas, wall.before);
 }
 
-// Red pixels of the plates: a late frame's bars are the only ones with these facts.
+// Number of red pixels of the plates. With these facts, only the bars of late frames are red.
 int redPixels(const OperatorFacts& facts) {
   const int sizes[] = {13, 20};
   const GlyphAtlas atlas = *GlyphAtlas::make(fontFile(), sizes);
@@ -268,7 +269,7 @@ TEST(FrameChart, AfterTenSecondsAFrameIsGone) {
   EXPECT_EQ(chart.at(began + milliseconds(10'000)), FrameChart::Columns{});
 }
 
-// A frame of a minute, a period of zero, times before the clock's origin.
+// A frame that takes a minute, a period of zero, times before the clock's origin.
 TEST(FrameChart, AnyTimesAreAccepted) {
   FrameChart chart;
   const Timestamp began{std::chrono::seconds(1000)};

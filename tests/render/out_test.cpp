@@ -1,4 +1,4 @@
-// Outputs: the shared framebuffer as another process reads it, PNG files as libpng reads them.
+// Outputs: the shared frame as another process reads it, and PNG files as libpng reads them.
 #include <atomic>
 #include <csignal>
 #include <cstring>
@@ -108,7 +108,7 @@ TEST(Framebuffer, ReadsBackWhatOthersRead) {
   EXPECT_EQ(read->at(0).found.digest, out::digestOf({128, 96, pixels, 512}));
 }
 
-// Such as that of a second daemon, under the name of the first.
+// For example that of a second daemon with the name of the first one.
 TEST(Framebuffer, AnotherGenerationUnderItsNameIsForeign) {
   const auto sink = out::SharedFrameOutput::make(name("mine"), smallPlan(), 7, kClock);
   ASSERT_TRUE(sink) << sink.error().what;
@@ -231,7 +231,7 @@ Error captureDamaged(Damage damage) {
   return frame ? Error{Errc::kIo, "none"} : frame.error();
 }
 
-// The Python reader knows the table of fields only, and nothing of this segment.
+// The Python reader knows only the table of fields, and nothing specific to this segment.
 TEST(Framebuffer, DescribesItself) {
   const auto sink = out::SharedFrameOutput::make(name("table"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink);
@@ -357,7 +357,7 @@ TEST(PngOutput, WritesNoMoreOftenThanAsked) {
   EXPECT_TRUE(test::eventually([&] { return present(output, 4, seconds += 60) && red() == 4; }));
 }
 
-// When a motion ends within the interval, the file would keep a frame of the motion.
+// Without this, the file would keep a frame of the motion if the motion ended within the interval.
 TEST(PngOutput, WantsAFrameOnceItMayTakeOneIfItLeftOutTheLast) {
   const test::TempDir folder;
   ThreadWatch watch;

@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Shows each frame `delay` after it was finished, fails, or leaves the frame out.
+// Shows each frame `delay` after it was finished; or fails; or leaves the frame out.
 struct FakeOutput final : out::Output {
   Result<std::optional<Timestamp>> present(const out::Signal& signal,
                                            const out::FrameInfo& info) override {
@@ -125,7 +125,7 @@ TEST_F(OutputSetTest, OneThatCannotBeMendedDoesNotKeepTheOthersFromBeingMended) 
   EXPECT_EQ(set_->mend().error().what, "gone; gone as well");
 }
 
-// Draws its number into the first byte of the canvas.
+// Writes its number into the first byte of the canvas.
 struct FakeOverlay final : frame::Overlay {
   explicit FakeOverlay(std::uint8_t number) : number_(number) {}
   bool hasChanged() const override { return changed; }
@@ -148,7 +148,7 @@ struct Inverted final : frame::Correction {
   int applied = 0;
 };
 
-// The first output has a correction; the second gets the canvas as it is.
+// The first output has a correction; the second one gets the canvas unchanged.
 TEST_F(OutputSetTest, OverlaysComeBeforeEachOutputsOwnCorrectionAndAreTakenOutAgain) {
   FakeOverlay below(70), above(80);
   std::vector<std::unique_ptr<frame::Correction>> corrections;
@@ -198,7 +198,7 @@ TEST_F(OutputSetTest, TheFirstDisplayThatTellsItsBlanksLeads) {
 }
 
 struct Delivered : OutputSetTest {
-  // The first output's correction is this one.
+  // Makes the delivery; `correction` is that of the first output.
   void deliverWith(std::unique_ptr<frame::Correction> correction,
                    frame::SignalWatcher* watcher = nullptr) {
     std::vector<std::unique_ptr<frame::Correction>> corrections;
@@ -231,7 +231,7 @@ TEST_F(Delivered, AnotherCorrectionTakesItsPlaceFromTheNextFrameOn) {
   EXPECT_EQ(shown(), meant_);
 }
 
-// Counts how many there are, and says where one is destroyed.
+// Counts the corrections that exist, so that a test sees when one is destroyed.
 struct Counted final : frame::Correction {
   explicit Counted(int& alive) : alive_(alive) { ++alive_; }
   ~Counted() override { --alive_; }

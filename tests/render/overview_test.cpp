@@ -1,4 +1,4 @@
-// A small picture of a whole pyramid.
+// Makes a small picture of a whole pyramid.
 #include "render/image/overview.h"
 
 #include <gtest/gtest.h>

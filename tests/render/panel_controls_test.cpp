@@ -1,4 +1,5 @@
-// The operator's panel: what its controls ask for, where they are, and what pointer and ball do.
+// The operator's panel: what its controls request, where they are, and what pointer and ball do to
+// them.
 #include <algorithm>
 #include <set>
 
@@ -57,7 +58,7 @@ TEST(PanelControls, StepTheDetailByAQuarterUpToAllOfIt) {
   EXPECT_EQ(request(C::kDetailMore, f), std::nullopt);
   f.detail = 100;
   EXPECT_EQ(request(C::kDetailLess, f), std::nullopt);
-  f.detail = 0;  // the first frame was not drawn yet
+  f.detail = 0;  // no frame has been drawn yet
   EXPECT_EQ(request(C::kDetailMore, f), std::nullopt);
   EXPECT_EQ(request(C::kDetailAuto, f), (Request{"triangles", "auto"}));
 }
@@ -380,7 +381,7 @@ TEST_F(PanelInputTest, ABallThatIsNotUsedForHalfAMinuteLeaves) {
   EXPECT_EQ(acts(), Acted{});
 }
 
-// A client that sends without end: what waits is bounded.
+// A client sends events without end; the number of requests that wait is limited.
 TEST_F(PanelInputTest, ActsThatNobodyTakesAreBounded) {
   for (int i = 0; i < 1000; ++i) {
     point(C::kBlank, true);

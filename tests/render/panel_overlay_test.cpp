@@ -1,4 +1,5 @@
-// The operator's panel as it is drawn: where, when anew, and that nothing stays behind.
+// The pixels of the operator's panel: their place, when they are drawn anew, and that none is left
+// behind.
 #include "render/panel/panel_overlay.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ struct Wall {
   const std::uint8_t* pixel(const std::vector<std::uint8_t>& of, int x, int y) const {
     return &of[static_cast<std::size_t>(4 * (y * plan.frame_width + x))];
   }
-  // Pixels inside and outside the panel's place that differ from the picture.
+  // Numbers of pixels inside and outside the panel's place that differ from the picture.
   std::pair<int, int> changed() const {
     const Rect at = place->inFrame();
     std::pair<int, int> counts;
@@ -58,7 +59,7 @@ struct Wall {
     }
     return counts;
   }
-  // The panel's pixels with this view.
+  // Draws the panel with this view; returns the panel's pixels.
   std::vector<std::uint8_t> drawn() {
     overlay->draw(canvas);
     auto pixels = canvas;
@@ -100,7 +101,7 @@ TEST(PanelOverlay, IsDrawnAnewOnlyIfItsViewIsAnotherOne) {
   EXPECT_EQ(wall.drawn(), first) << "the same view gives the same bytes";
 }
 
-// Each thing that an operator is to see changes the pixels of its control, and no others.
+// Each state that an operator has to see changes the pixels of its control and no others.
 TEST(PanelOverlay, ShowsWhatIsHoveredPressedSelectedAndSwitchedOn) {
   using Change = void (*)(PanelView&);
   const std::pair<C, Change> changes[] = {
@@ -119,7 +120,7 @@ TEST(PanelOverlay, ShowsWhatIsHoveredPressedSelectedAndSwitchedOn) {
     change(wall.source.shown);
     const auto other = wall.drawn();
     const Rect panel = wall.place->inFrame(), r = wall.place->layout.find(id)->at;
-    const int edge = 3;  // the frame of what is selected
+    const int edge = 3;  // the selected control has a frame of this width
     int inside = 0, outside = 0;
     for (int y = panel.y; y < panel.y + panel.height; ++y) {
       for (int x = panel.x; x < panel.x + panel.width; ++x) {

@@ -1,4 +1,5 @@
-// Parts of a surface: which are closed, which face inwards, and how they are turned.
+// Parts of a surface: which of them are closed, which face inwards, and how these are turned
+// outwards.
 #include "render/mesh/parts.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ Mesh insideOut(Mesh mesh) {
   return mesh;
 }
 
-// Adds `other`, of `size` times its size, moved by `x`.
+// Adds `other`, scaled by `size` and then moved by `x` along the x axis.
 void addMesh(Mesh& mesh, const Mesh& other, float size, float x) {
   const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
   for (std::size_t i = 0; i < other.positions.size(); ++i)
@@ -106,7 +107,7 @@ TEST(Parts, TheBackOfABodyWithTwoSidesIsItsInnerWall) {
   expectFacing(both, 2, 0, 0);
 }
 
-// The tilted plate has the larger box, and the cube in it the larger volume.
+// The plate is tilted and has the larger box, but the cube in it has the larger volume.
 TEST(Parts, OnlyALargerPartHasAnInnerWall) {
   Mesh plate = test::cube();
   for (std::size_t i = 0; i < plate.positions.size(); i += 3)
@@ -135,7 +136,7 @@ TEST(Parts, OneTurnedTriangleMakesAPartOpen) {
 
 TEST(Parts, VerticesAtOnePlaceConnectWhereTheSurfaceEnds) {
   Mesh soup = soupOf(insideOut(test::cube()));
-  soup.positions.insert(soup.positions.end(), {9, 9, 9});  // in no triangle
+  soup.positions.insert(soup.positions.end(), {9, 9, 9});  // a vertex that no triangle uses
   const Parts found = partsOf(soup);
   ASSERT_EQ(found.parts.size(), 1u);
   EXPECT_EQ(found.part_of.back(), Parts::kNone);
@@ -144,12 +145,12 @@ TEST(Parts, VerticesAtOnePlaceConnectWhereTheSurfaceEnds) {
   expectFacing(soup, 1, 0, 0);
 }
 
-// As readers leave them: the common vertices of the bodies have twins.
+// As readers leave a mesh: the vertices that the two bodies share exist twice.
 TEST(Parts, BodiesThatShareAnEdgeAreTwoParts) {
   Mesh mesh = test::cube();
   addMesh(mesh, insideOut(test::cube()), 1, 2);
   for (std::size_t v = 8; v < 16; ++v) mesh.positions[3 * v + 1] += 2;
-  for (std::uint32_t& v : mesh.triangles) {  // 3 and 7 are the ends of the edge
+  for (std::uint32_t& v : mesh.triangles) {  // vertices 3 and 7 are the ends of the shared edge
     if (v == 8) v = 3;
     if (v == 12) v = 7;
   }
@@ -169,7 +170,7 @@ TEST(Parts, ASheetWithTwoSidesIsNotClosed) {
 TEST(Parts, TrianglesWithTwoCornersAtOnePlaceAreIgnored) {
   Mesh mesh = insideOut(test::cube());
   mesh.triangles.insert(mesh.triangles.end(), {0, 0, 1, 2, 2, 2});
-  expectFacing(mesh, 1, 1, 14);  // and turned with the others
+  expectFacing(mesh, 1, 1, 14);  // degenerate triangles are turned with the others
   Mesh none;
   none.positions = {0, 0, 0, 0, 0, 0, 1, 0, 0};
   none.triangles = {0, 1, 2, 0, 0, 0};

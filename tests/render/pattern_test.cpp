@@ -81,7 +81,7 @@ TEST(Placement, KeepsTheVertexWhereTwoPiecesTouch) {
 TEST(Placement, MixesFeaturesAsThePositionAndTakesTheNormalOfTheNewFaces) {
   mesh::Mesh mesh = orderedStrip();
   addFeature(mesh, "heat", {0, 0, 0, 0, 7, 1, 2, 0, 0, 0, 0, 0});
-  mesh.find("normal")->values.assign(36, 0.57735027F);  // not the surface's own normals
+  mesh.find("normal")->values.assign(36, 0.57735027F);  // differs from the surface's own normals
   const reduce::Reduction r = collapseInOrder(mesh, 2);
   EXPECT_EQ(r.log.children[1], (Children{4, 12}));
   EXPECT_EQ(r.log.features[1], (Floats{0.5F, 2.5F}));  // the mean; then 4's own value

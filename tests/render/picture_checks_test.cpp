@@ -1,4 +1,4 @@
-// Outputs that show something else than what they were handed, and when that is found.
+// Outputs that show something other than what they were given, and how soon the checks find it.
 #include "render/out/picture_checks.h"
 
 #include <memory>
@@ -25,7 +25,7 @@ Pixels picture(std::uint8_t n) {
   return pixels;
 }
 
-// Shows what it is handed, or what a test puts there.
+// Shows what it is given, unless a test changes that.
 struct FakeDisplay final : Output {
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override {
     if (takes) shown.assign(signal.pixels.begin(), signal.pixels.end());
@@ -71,7 +71,7 @@ class PictureChecksTest : public testing::Test {
     for (std::size_t i = 0; i < set_->size(); ++i)
       set_->present(i, {kSide, kSide, pixels}, {.finished = clock_.now()}, std::nullopt);
   }
-  // Everything that is due within this time.
+  // Performs every check that is due within this time.
   void pass(Duration time) {
     const Timestamp end = clock_.now() + time;
     for (auto due = checks_->step(); due && *due <= end; due = checks_->step()) {

@@ -1,5 +1,5 @@
-// Pictures as a content: which tiles are chosen, asked for and drawn, and that what is drawn is the
-// picture: beside one that is scaled, or mapped onto the sphere, directly.
+// Pictures as a content: which tiles are chosen, requested and drawn. The drawn pixels are compared
+// with the picture itself, scaled or mapped onto the sphere directly.
 #include "render/content/picture/picture_content.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using image::TilePlace;
 
-// Loads at once, when it is asked for a tile; or nothing, while `silent`.
+// Loads each tile as soon as it is requested; loads nothing while `silent`.
 class FakeTiles final : public TileSource {
  public:
   void ask(const std::shared_ptr<const Picture>& picture,
@@ -60,7 +60,7 @@ std::shared_ptr<const Picture> pictureOf(const test::PyramidSpec& spec,
   return *picture;
 }
 
-// Smooth, and different everywhere.
+// A picture whose colours change smoothly and are different everywhere.
 test::Rgb waves(int x, int y) {
   const auto wave = [](double phase) {
     return static_cast<std::uint8_t>(127.5 + 120 * std::sin(phase));
@@ -80,7 +80,8 @@ tiles::TilePlan planOf(double field_of_view_deg) {
   return *tiles::planTiles(s);
 }
 
-// A square view of a plane at distance 1 that is 2 x 2 m, or of half of it after `zoom` 2.
+// A square view of a plane at distance 1, whose picture is 2 x 2 m; after `zoom` 2 it shows half of
+// that.
 ContentView viewOf(const tiles::TilePlan& plan, const Eigen::Isometry3f& T_eye_content) {
   const tiles::Tile& t = plan.tiles[0];
   return {0,
@@ -102,7 +103,7 @@ class PictureTest : public testing::Test {
                                          std::size_t{kSide} * kSide, PictureMemory{memory, 1});
   }
 
-  // The coarsest level of all that is drawn.
+  // The coarsest level of all tiles that are drawn.
   int levelShown() const {
     int level = 0;
     for (const TilePiece& piece : content_->drawList().pieces[0])
@@ -119,7 +120,7 @@ class PictureTest : public testing::Test {
 TEST_F(PictureTest, NeedsTheLevelWhosePixelsAreNoLargerThanTheViews) {
   make({.width = 2048, .height = 2048, .colour = waves});
   choose();
-  // The whole picture fills 256 pixels: the coarsest level, which is always there.
+  // The whole picture fills 256 pixels, so the coarsest level, which is always loaded, suffices.
   EXPECT_TRUE(tiles_.asked.empty());
   EXPECT_EQ(content_->drawList().pieces[0].size(), 1U);
   EXPECT_EQ(content_->pending(), Pending::kNothing);
@@ -160,7 +161,8 @@ TEST_F(PictureTest, TakesFewTilesAFrameWhileItMoves) {
 
 TEST_F(PictureTest, ACoarserStepShowsACoarserLevel) {
   make({.width = 2048, .height = 2048, .colour = plain});
-  look(Eigen::Isometry3f(Eigen::Translation3f(0, 0, -0.2F)));  // 1.6 pixels in one of the view
+  // Now 1.6 pixels of the picture are in one pixel of the view.
+  look(Eigen::Isometry3f(Eigen::Translation3f(0, 0, -0.2F)));
   for (int i = 0; i < 3; ++i) choose(0);
   EXPECT_EQ(levelShown(), 0);
   choose(4);  // texels of up to 4 pixels
@@ -189,7 +191,7 @@ TEST_F(PictureTest, KeepsWithinItsMemory) {
   EXPECT_GT(textures, kMemory / 3);
 }
 
-// 400,000 x 250,000 pixels: only the levels count, so no file is needed.
+// A picture of 400,000 x 250,000 pixels. Only its levels matter here, so there is no file.
 TEST(TileChoice, OfA100GigapixelPictureIsAsSmallAsTheView) {
   std::vector<image::PyramidLevel> levels;
   for (std::int64_t w = 400'000, h = 250'000;; w /= 2, h /= 2) {
@@ -208,7 +210,7 @@ TEST(TileChoice, OfA100GigapixelPictureIsAsSmallAsTheView) {
   }
 }
 
-// Whatever the zoom, on a wall of four tiles that show different parts of the picture.
+// At any zoom, on a wall of four tiles that show different parts of the picture.
 TEST(PictureMemory, ByDefaultIsEnoughForFullDetailOfAnyWall) {
   const std::vector<image::PyramidLevel> levels = [] {
     std::vector<image::PyramidLevel> all;
@@ -239,7 +241,7 @@ TEST(PictureMemory, ByDefaultIsEnoughForFullDetailOfAnyWall) {
 }
 
 TEST(TileChoice, EveryPixelOfAPictureHasOneTileInEachLevel) {
-  // 513 pixels: three tiles, of which the level below, rounded down, has one.
+  // 513 pixels are three tiles; the next level is rounded down and has one tile in their place.
   const std::vector<image::PyramidLevel> levels = {{513, 300, 3, 2}, {256, 150, 1, 1}};
   EXPECT_EQ(parentOf(levels, {0, 2, 1}), (TilePlace{1, 0, 0}));
   EXPECT_EQ(rectOf(levels, {1, 0, 0}).right, 513);
@@ -258,7 +260,7 @@ class DrawnPictureTest : public testing::Test {
     renderer_ = *frame::FrameRenderer::make(std::move(content), plan_,
                                             *frame::DrawContexts::make({}), clock_);
   }
-  // With all tiles that it needs.
+  // Draws until all tiles that the view needs are loaded.
   void draw(const Eigen::Isometry3f& T_eye_content) {
     for (int i = 0; i < 40; ++i) renderer_->draw({.T_eye_content = T_eye_content, .step = 0});
     EXPECT_EQ(renderer_->pending(), Pending::kNothing);
@@ -266,7 +268,7 @@ class DrawnPictureTest : public testing::Test {
   const std::uint8_t* at(int x, int y) {
     return &renderer_->pixels()[static_cast<std::size_t>(4 * (kSide * y + x))];
   }
-  // The largest difference from what `expected` computes for the middles of pixels.
+  // The largest difference between a drawn pixel and what `expected` computes for its centre.
   template <typename Expected>
   int worst(const Expected& expected) {
     int difference = 0;
@@ -334,7 +336,7 @@ TEST_F(DrawnPictureTest, APictureSmallerThanTheViewLeavesTheRestAsBackground) {
   EXPECT_EQ(at(128, 94)[0], 0);
 }
 
-// The colour of a panorama in a direction (x right, y up, the eye looks along -z).
+// The colour of a panorama in a given direction (x right, y up, the eye looks along -z).
 test::Rgb panoramaAt(const Eigen::Vector3d& direction, int width, int height) {
   const Eigen::Vector3d d = direction.normalized();
   const double u = std::atan2(d.x(), -d.z()) / (2 * std::numbers::pi) + 0.5;

@@ -1,4 +1,5 @@
-// Tests the verdict on what an output shows, compared with what it was meant to show.
+// Tests the verdict on the picture that an output shows, compared with the one that it was meant to
+// show.
 #include "render/out/picture/picture_judge.h"
 
 #include <vector>
@@ -16,7 +17,7 @@ using Pixels = std::vector<std::uint8_t>;
 constexpr int kWidth = 200, kHeight = 96;
 const Timestamp kNow{seconds(1000)};
 
-// A picture of which every pixel differs from its neighbours, and from frame to frame.
+// A picture in which every pixel differs from its neighbours, and from that of the next frame.
 Pixels picture(int frame) {
   Pixels pixels(static_cast<std::size_t>(kWidth * kHeight) * 4);
   for (std::size_t i = 0; i < pixels.size(); ++i)
@@ -55,7 +56,7 @@ TEST(PictureDigestTest, LooksAtRowsPitchApart) {
 
 TEST(PictureDigestTest, NoticesOnePixelOfARowThatIsReadAndTwoThatChangePlaces) {
   const Pixels before = picture(1);
-  const std::size_t row = 2 * kWidth * 4;  // of 96 rows the third is the first that is read
+  const std::size_t row = 2 * kWidth * 4;  // of 96 rows, row 2 is the first that is read
   Pixels pixels = before;
   pixels[row + 40] ^= 1U;
   EXPECT_NE(digest(pixels), digest(before));
@@ -83,7 +84,7 @@ TEST(PictureDigestTest, PicturesSmallerThanItsCellsAndNone) {
 
 class PictureJudgeTest : public testing::Test {
  protected:
-  // Frame n was handed over so long ago.
+  // Frame n was presented this long ago.
   void meant(int n, Duration ago) { meant_.push_back({digest(picture(n)), kNow - ago}); }
   PictureVerdict judge(const FoundPicture& f,
                        const std::optional<PictureDigest>& last_right = {}) const {
@@ -131,7 +132,7 @@ TEST_F(PictureJudgeTest, BlackIsWrongOnlyWhereSomethingWasMeant) {
   EXPECT_EQ(judge(found(picture(1))), PictureVerdict::kFrozen) << "a curtain that did not fall";
 }
 
-// A dimmed picture is what was meant; the bright one of before is not.
+// The dimmed picture is the intended one; the earlier bright one is not.
 TEST_F(PictureJudgeTest, ADimmedPictureIsRight) {
   Pixels dim = picture(1);
   for (std::uint8_t& channel : dim) channel = static_cast<std::uint8_t>(channel / 40);

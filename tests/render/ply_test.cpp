@@ -156,7 +156,7 @@ TEST(PlyRead, CutsAFaceThatIsNotConvexWithinItself) {
   EXPECT_EQ(nowhere->mesh.triangles, (Indices{1, 2, 9, 1, 9, 0}));
 }
 
-// Each number goes to the next property, whatever the lines are.
+// Each number belongs to the next property, wherever lines end.
 TEST(PlyAscii, NamesTheRowThatHasMoreNumbersThanTheHeaderPromises) {
   const auto fault = [](const std::string& text) {
     const auto loaded = read(text);

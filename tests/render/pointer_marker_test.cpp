@@ -17,7 +17,7 @@ class PointerMarkerTest : public testing::Test {
     return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(plan_.frame_width) +
                 static_cast<std::size_t>(x));
   }
-  // Whether something was drawn on the pixel; an untouched one is grey (90).
+  // Whether the marker covers the pixel; untouched pixels are grey (90).
   bool marked(int x, int y) const { return pixels_[at(x, y)] != 90; }
   std::size_t markedPixels() const {
     std::size_t n = 0;
@@ -51,7 +51,8 @@ TEST_F(PointerMarkerTest, StraightAheadIsTheMiddleOfTheCentreTile) {
   EXPECT_EQ(pixels_[at(960, 240) + 3], 90) << "alpha stays";
 }
 
-// Each of several hands has its disc; erased, the picture is as it was, also where they overlap.
+// Each of several hands has its own disc. When the discs are erased, the picture is as before, also
+// where they overlapped.
 TEST_F(PointerMarkerTest, SeveralHandsHaveDiscsOfTheirOwn) {
   const std::vector<std::uint8_t> before = pixels_;
   marker_.pointAt({Vector3f(0, 0, -2), Vector3f(0.02F, 0, -2), Vector3f(0.3F, 0, -2)});

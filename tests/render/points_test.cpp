@@ -1,4 +1,4 @@
-// Point clouds: their readers, damaged files, and what is guessed of the surface.
+// Point clouds: their readers, damaged files, and the normals that are estimated for them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -394,7 +394,7 @@ TEST(Normals, OfThePartsOfACloudFaceOutwardsEach) {
 
 TEST(Normals, OfTheTwoSidesOfAThinPartFaceAway) { expectTurnedBack(Ellipsoid(0.1), 1); }
 
-// A cloud whose arrays fit one another, or one sentence.
+// Expects a cloud whose arrays fit one another, or an error of one sentence.
 void expectSound(const std::string& bytes) {
   const auto cloud = points::parseCloud(bytes);
   if (!cloud) {

@@ -1,4 +1,4 @@
-// Faces of more than three corners: which stay fans, and how the others are cut.
+// Faces of more than three corners: which of them become triangle fans, and how the others are cut.
 #include "render/mesh/polygon.h"
 
 #include <array>
@@ -13,14 +13,14 @@ namespace {
 using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 
-// Twice the area of a triangle of a cut; positive if it is counter-clockwise in x and y.
+// Twice the signed area of a triangle of the cut: positive if it is counter-clockwise in x and y.
 double areaOf(const Floats& p, const std::uint32_t* t) {
   const auto at = [&](std::size_t k, std::size_t axis) { return double{p[3 * t[k] + axis]}; };
   return (at(1, 0) - at(0, 0)) * (at(2, 1) - at(0, 1)) -
          (at(1, 1) - at(0, 1)) * (at(2, 0) - at(0, 0));
 }
 
-// Expects triangles that all face up and have this area together; so they do not overlap.
+// Expects triangles that all face up and whose areas add up to `area`; so they do not overlap.
 void expectCut(const Floats& polygon, double area) {
   const Indices cut = mesh::cutPolygon(polygon);
   ASSERT_EQ(cut.size(), polygon.size() - 6);
@@ -46,7 +46,7 @@ TEST(CutPolygon, OneWithANotchIsCutWithinItself) {
             (Indices{3, 0, 1, 1, 2, 3}));
   expectCut({0, 0, 0, 4, 0, 0, 4, 4, 0, 2, 1, 0, 0, 4, 0}, 10);
   expectCut({2, 0, 0, 2, 1, 0, 1, 1, 0, 1, 2, 0, 0, 2, 0, 0, 0, 0}, 3);
-  // A square with a hole in it, to which a cut leads there and back.
+  // A square with a hole; a cut leads from the border to the hole and back.
   expectCut(
       {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 0, 0, 0, 1, 1, 0, 1, 3, 0, 3, 3, 0, 3, 1, 0, 1, 1, 0},
       12);
@@ -83,7 +83,7 @@ TEST(CutPolygon, WithoutACutStaysAFan) {
   EXPECT_EQ(mesh::cutPolygon(Floats{}), Indices{});
 }
 
-// A star of so many corners, half of them notches; its centre is (0, 0).
+// A star with this many corners, half of which are concave; its centre is (0, 0).
 Floats star(std::size_t corners) {
   Floats p;
   for (std::size_t k = 0; k < corners; ++k) {

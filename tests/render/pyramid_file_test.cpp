@@ -1,5 +1,5 @@
-// The reader of pyramids: what it reads, and that nothing in a file makes it crash, loop or take
-// memory.
+// The reader of pyramids: the files that it accepts, and that no file makes it crash, loop or use
+// much memory.
 #include "render/image/pyramid_file.h"
 
 #include <fstream>
@@ -57,7 +57,7 @@ TEST(PyramidFile, IsAPanoramaWhereItsDescriptionSaysSo) {
 }
 
 TEST(PyramidReader, ReadsThePixelsOfATileAndRepeatsTheEdges) {
-  const auto rgba = tileOf(pyramidBytes(), {0, 2, 1});  // 88 x 44 pixels of the picture
+  const auto rgba = tileOf(pyramidBytes(), {0, 2, 1});  // in 88 x 44 pixels of the picture
   const auto at = [&](std::size_t x, std::size_t y) { return &rgba[4 * (256 * y + x)]; };
   EXPECT_EQ(at(0, 0)[0], 512 % 256);
   EXPECT_EQ(at(5, 7)[0], 517 % 256);
@@ -131,7 +131,8 @@ TEST(PyramidFile, RefusesAHeaderOf100GigapixelsWithFewTiles) {
   test::detail::putAt(bytes, fieldAt(bytes, directory, 257), 250'000);
   test::largest_allocation = 0;
   EXPECT_NE(errorOf(bytes), "");
-  // With as many places as it says, beyond the end of the file.
+  // Now the tables have as many entries as the header implies, and so end beyond the end of the
+  // file.
   for (const int tag : {324, 325})
     test::detail::putAt(bytes, fieldAt(bytes, directory, tag) - 8, 1563 * 977);
   EXPECT_NE(errorOf(bytes).find("end beyond the file's"), std::string::npos) << errorOf(bytes);
@@ -165,7 +166,7 @@ TEST(PyramidReader, RefusesATileThatDecodesToAnotherSize) {
       << read.error().what;
 }
 
-// Reads all that a file has, whatever it is.
+// Reads everything in a file, whatever its bytes are.
 void readAll(std::string bytes) {
   const auto file = readPyramid(std::move(bytes));
   if (!file) return;
@@ -183,7 +184,7 @@ void readAll(std::string bytes) {
   }
 }
 
-// Small, so that every place can be tried: two levels, no texture to speak of.
+// Small enough that every byte can be damaged: two levels, and tiles that compress well.
 std::string smallFile() {
   return pyramidBytes({.width = 300, .height = 2, .colour = [](int, int) {
                          return test::Rgb{9, 9, 9};

@@ -92,8 +92,8 @@ TEST(QuadricEvaluate, InAPlaneTheMiddleIsTaken) {
   }
 }
 
-// The scalar and the SIMD version must agree in every bit, so that a model is reduced alike on all
-// machines.
+// The scalar and the SIMD version have to agree in every bit, so that a model is reduced
+// identically on all machines.
 TEST(QuadricEvaluate, EveryProcessorGivesTheSameBits) {
   for (const std::size_t channels : {0u, 3u, 9u}) {
     Bench a(test::noisyGrid(30, 30, 0.4, 3), channels), b(a.mesh, channels);

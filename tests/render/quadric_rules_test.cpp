@@ -1,5 +1,5 @@
-// Which collapses are legal: the scalar and the SIMD version against each other and against a
-// direct check.
+// Which collapses are legal: the scalar and the SIMD version are compared with each other and with
+// a direct check.
 #include "render/reduce/quadric/quadric_rules.h"
 
 #include <cmath>

@@ -15,7 +15,7 @@
 namespace merlin::render {
 namespace {
 
-// Enough vertices for two parts.
+// Enough vertices for a reduction in two parts.
 constexpr std::uint32_t kAround = 200, kHigh = 120;
 
 mesh::Mesh tube(bool cut) {
@@ -38,7 +38,8 @@ struct Levels {
 
 using Place = std::array<float, 3>;
 
-// The border vertices, without those of the tube's two ends: how many coincide at each position.
+// For each border vertex, except for those at the tube's two ends: how many vertices coincide at
+// its position.
 std::map<Place, int> seamOf(const mesh::Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {

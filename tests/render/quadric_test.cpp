@@ -97,7 +97,7 @@ TEST(Quadric, FastIsNearlyAsGood) {
   EXPECT_NE(fast.log.about.find("fast=true"), std::string::npos);
 }
 
-// A mesh with enough vertices for two parts.
+// A mesh with enough vertices for a reduction in two parts.
 mesh::Mesh wide() { return withNormals(test::noisyGrid(170, 170, 0.2, 7)); }
 
 TEST(Quadric, IsTheSameBytesForAnyNumberOfThreads) {
@@ -151,7 +151,8 @@ TEST(Quadric, AThinTipStays) {
 TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
   const mesh::Mesh mesh = wide();
   const mesh::Mesh coarse = levelOf(mesh, reduced(mesh), mesh.triangleCount() / 50);
-  // Along seams between parts triangles might stay small, so count the vertices in 10 x 10 fields.
+  // Triangles might stay small along the seams between the parts, so the test counts the vertices
+  // in 10 x 10 fields.
   std::vector<int> fields(100);
   for (std::size_t v = 0; v < coarse.vertexCount(); ++v) {
     const auto cell = [&](std::size_t k) {
@@ -189,7 +190,8 @@ TEST(Quadric, ComponentsStayUntilNothingElseIsLeft) {
   const mesh::Mesh mesh = specks();
   const reduce::Reduction r = reduced(mesh, {.preserve_components = true});
   EXPECT_EQ(specksLeft(mesh, r), 20u);
-  EXPECT_LE(r.report.triangles, 2u);  // once nothing else is left, components go too
+  // When nothing else is left to collapse, components are removed too.
+  EXPECT_LE(r.report.triangles, 2u);
 }
 
 TEST(Quadric, WhatIsSmallerThanTheErrorVanishes) {
@@ -341,7 +343,7 @@ TEST(Quadric, LabelsAreNeverMixed) {
   for (const float x : r.log.features[1]) EXPECT_TRUE(x == 0 || x == 1) << x;
 }
 
-// Hills with two labels, whose border is a wave.
+// Hills with two labels, separated by a wavy border.
 TEST(Quadric, LockedLabelsKeepTheEdgeBetweenThem) {
   constexpr std::uint32_t kSide = 40;
   mesh::Mesh mesh = withNormals(test::grid(kSide, kSide));

@@ -1,5 +1,5 @@
-// Witnesses: their distances against a plain search in double precision, and that they keep their
-// positions.
+// Witnesses: their distances, compared with a plain search in double precision, and that they keep
+// their positions.
 #include "render/reduce/quadric/quadric_witness.h"
 
 #include <cmath>

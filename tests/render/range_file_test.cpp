@@ -1,4 +1,4 @@
-// Range files: what the readers of our own make of good, damaged and hostile bytes. All files are
+// Range files: what MERLIN's own readers return for good, damaged and hostile bytes. All files are
 // synthetic.
 #include "render/range/io/range_file.h"
 
@@ -40,7 +40,7 @@ class RangeFile : public testing::Test {
     writeText(dir_ / name, bytes);
     return readRange(dir_ / name, options);
   }
-  // The error's text without the folder.
+  // The error's text without the folder's path.
   std::string fault(const std::string& bytes, const RangeOptions& options = {},
                     const std::string& name = "a.pgm") {
     const auto loaded = read(bytes, options, name);
@@ -316,8 +316,8 @@ TEST_F(RangeFile, AndFromAsciiPcd) {
             "a.pgm: the file ends after 3 of 4 points");
 }
 
-// Points with the coordinates of a map: their place is 0 0 0 and their ranges from it would have no
-// digits for what is finer than half a metre.
+// Points with the coordinates of a map. If they were relative to 0 0 0, a float would have no
+// digits for details below half a metre.
 TEST_F(RangeFile, OrganisedPointsOfAMapKeepTheirDigits) {
   const auto header = [](const std::string& viewpoint) {
     return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
@@ -328,7 +328,7 @@ TEST_F(RangeFile, OrganisedPointsOfAMapKeepTheirDigits) {
       "500000.125 5200001.25 400\n500001.375 5200001.25 400.5\nnan nan nan\n"
       "500001.375 5200000.0625 401\n";
   const auto positions = [&](const LoadedRange& loaded) {
-    RangeImage image = loaded.image;  // as merlin mesh import takes the origin from it
+    RangeImage image = loaded.image;  // from which mesh import takes the origin
     const std::array<double, 3> origin = {500'000, 5'200'000, 0};
     for (std::size_t k = 0; k < 3; ++k) image.geometry.T_world_scanner[4 * k + 3] -= origin[k];
     return pointsOf(image, {});
@@ -352,7 +352,7 @@ TEST_F(RangeFile, OrganisedPointsOfAMapKeepTheirDigits) {
   EXPECT_FALSE(isMirrored(far->image)) << "seen from above, the first row is the northern one";
 }
 
-// Only literal runs: what any packer may write.
+// Literal runs only, which any compressor may write.
 std::string packed(const std::string& bytes) {
   std::string out;
   for (std::size_t at = 0; at < bytes.size(); at += 32) {
@@ -380,7 +380,7 @@ std::string pcdCompressed() {
 TEST_F(RangeFile, AndFromCompressedPcd) { expectPcd(read(pcdCompressed())); }
 
 TEST(Lzf, LiteralsAndReferences) {
-  const std::uint8_t bytes[] = {2, 'a', 'b', 'c', 0x20, 2, 0xE0, 3, 0};  // abc, abc, c x 12
+  const std::uint8_t bytes[] = {2, 'a', 'b', 'c', 0x20, 2, 0xE0, 3, 0};  // is abc, abc, c x 12
   const auto text = unpackLzf(bytes, 18);
   ASSERT_TRUE(text);
   EXPECT_EQ(std::string(text->begin(), text->end()), "abcabccccccccccccc");
@@ -615,8 +615,8 @@ TEST_F(RangeFile, ItsRangesAreMetresWhereSomethingSaysSo) {
   EXPECT_TRUE(inMetres("", options));
 }
 
-// As in the Stanford 3D Scanning Repository: seen from far along z, rows from the bottom. 3 x 2
-// pixels, the fifth without a vertex.
+// In the form of the Stanford 3D Scanning Repository: seen from far away along z, rows from the
+// bottom. 3 x 2 pixels, the fifth of which has no vertex.
 const std::string kStanford =
     "ply\nformat ascii 1.0\nobj_info num_cols 3\nobj_info num_rows 2\nelement vertex 5\nproperty "
     "float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar "
@@ -712,7 +712,7 @@ TEST_F(RangeFile, FaultsOfAGridNameThePixelOrTheVertex) {
             "a.ply: the vertices have no property z");
 }
 
-// As merlin-import writes it: 3 x 2 heights, cells of 0.5 x 0.25 degrees at latitude 60.
+// In the form that merlin-import writes: 3 x 2 heights, cells of 0.5 x 0.25 degrees at latitude 60.
 std::string gridOf(const GridHead& head) {
   std::string bytes;
   EXPECT_TRUE(writeGrid(
@@ -803,7 +803,7 @@ void expectGoodEnd(const Result<LoadedRange>& loaded) {
   EXPECT_EQ(text.find("a.pgm: ") != std::string::npos, !loaded.ok()) << text;
 }
 
-// By the reader that the bytes are for: parsed, or refused with a sentence.
+// Uses the reader for the bytes' format: the bytes are parsed, or refused with one sentence.
 void expectParsed(const std::string& bytes) {
   const auto expectSentence = [&](const auto& parsed, std::size_t pixels) {
     EXPECT_TRUE(parsed ? pixels > 0 : parsed.error().what.size() > 10) << bytes;

@@ -155,7 +155,7 @@ TEST(Spikes, GoWhileEdgesWiresAndCornersStay) {
   RangeImage image = flatImage(12, 7, Scanner::kOrthogonal);
   for (std::size_t p = 0; p < image.pixels(); ++p) image.range[p] = p % 12 < 5 ? 1.0F : 3.0F;
   EXPECT_EQ(removeSpikes(image, {0.1F}, {}), 0u) << "edges, corners";
-  for (std::size_t row = 0; row < 7; ++row) image.range[12 * row + 8] = 2;  // a wire
+  for (std::size_t row = 0; row < 7; ++row) image.range[12 * row + 8] = 2;  // a single wire
   EXPECT_EQ(removeSpikes(image, {0.1F}, {}), 2u) << "the ends of the wire";
   image.range[12 * 2 + 10] = 5;
   image.range[12 * 5 + 2] = image.range[12 * 5 + 3] = 5;
@@ -254,8 +254,8 @@ TEST(Triangulation, FacesTheScannerWhateverTheOrderOfItsColumns) {
   }
 }
 
-// Every pattern of returns in 4 x 4 pixels, and a hash of long edges: what the general repair would
-// do, the triangulation has done.
+// For every pattern of returns in 4 x 4 pixels, and for a pseudo-random set of long edges, the
+// triangulation has already done what the general repair would do.
 TEST(Triangulation, AnyPatternOfHolesIsManifold) {
   for (unsigned bits = 0; bits < 65536; bits += 7) {
     RangeImage image = flatImage(4, 4, Scanner::kElevation);

@@ -21,7 +21,7 @@ mesh::Mesh withNormals(mesh::Mesh mesh) {
   return mesh;
 }
 
-// 441 vertices, 800 triangles.
+// A mesh of 441 vertices and 800 triangles.
 mesh::Mesh hills() { return withNormals(test::noisyGrid(20, 20, 0.1, 1)); }
 
 reduce::Reduction reduced(const mesh::Mesh& mesh, reduce::ReduceSettings settings = {}) {

@@ -1,5 +1,5 @@
-// Blend ramps from where the screens are: two projectors side by side whose pictures overlap by a
-// quarter.
+// Blend ramps that follow from the positions of the screens: two projectors side by side whose
+// pictures overlap by a quarter.
 #include "render/out/room_blend.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
-// For each preset, what its tiles show is one view: each tile is a part of one larger rendering in
-// its panel's plane, and neighbours meet at their seams.
+// For each preset, the tiles together show one view: each tile equals a part of one larger
+// rendering in its panel's plane, and neighbours meet at their seams.
 //
-// Figures are printed. With MERLIN_PICTURES=FOLDER the seams are written there, for people to look
-// at: both tiles side by side, and below them the one rendering in the left tile's plane.
+// The test prints its figures. If MERLIN_PICTURES=FOLDER is set, it writes the seams there, for
+// people to look at: both tiles side by side, and below them the one rendering in the left tile's
+// plane.
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -35,7 +36,8 @@ mesh::Mesh scaled(mesh::Mesh mesh, float factor) {
   return mesh;
 }
 
-// A hall of a bumpy wall around the eye, with a hundred balls and cubes in it, each of its colour.
+// A hall with a bumpy wall around the eye, and a hundred balls and cubes of different colours in
+// it.
 mesh::Mesh hall() {
   Random random(11);
   const auto uniform = [&](double low, double high) {
@@ -73,10 +75,11 @@ const lod::Dendrogram& model() {
   return made;
 }
 
-// Draws tiles at full detail, as the wall does. The contexts are shared: making them takes longest.
+// Draws tiles at full detail, as the wall does. The contexts are shared, since making them takes
+// the longest time.
 class Painter {
  public:
-  // By the order of the tiles.
+  // Returns the tiles' images in the order of the tiles.
   std::vector<Image> draw(const tiles::TilesSettings& tiles) {
     const tiles::TilePlan plan = *tiles::planTiles(tiles);
     frame::RenderSettings settings;
@@ -101,7 +104,7 @@ class Painter {
   std::shared_ptr<const frame::DrawContexts> contexts_ = *frame::DrawContexts::make({});
 };
 
-// A rectangle as seen from the eye.
+// A rectangle in the room, which the eye sees from its front.
 struct Rectangle {
   Vector3d corner, across, up;  // lower left; lower and left edge [m]
 
@@ -109,7 +112,8 @@ struct Rectangle {
       : corner(&t.screen_m[0]),
         across(Vector3d(&t.screen_m[3]) - corner),
         up(Vector3d(&t.screen_m[6]) - corner) {}
-  // `part`: left, lower edge, width and height, as shares of its own.
+  // A part of the rectangle, or one that extends beyond it: left, lower edge, width and height as
+  // shares of this one's.
   Rectangle part(double left, double lower, double width, double height) const {
     Rectangle r = *this;
     r.corner += left * across + lower * up;
@@ -117,11 +121,13 @@ struct Rectangle {
     r.up *= height;
     return r;
   }
-  // The point of a pixel's place, from the upper left corner of a picture of width x height.
+  // The point in the room of a pixel position, counted from the upper left corner of a picture of
+  // width x height.
   Vector3d at(double x, double y, int width, int height) const {
     return corner + x / width * across + (1 - y / height) * up;
   }
-  // Where the ray from the eye through `point` meets it; x and y in pixels; false behind the eye.
+  // The pixel position (x, y) at which the ray from the eye through `point` meets the rectangle's
+  // plane; false if that is behind the eye.
   bool meets(const Vector3d& point, int width, int height, double& x, double& y) const {
     const Vector3d normal = across.cross(up);
     const double along = corner.dot(normal) / point.dot(normal);
@@ -150,7 +156,7 @@ struct Count {
   double share() const { return pixels > 0 ? static_cast<double>(off) / pixels : 0; }
 };
 
-// Whether some pixel beside (x, y) differs from it: an edge goes through there.
+// Whether a pixel next to (x, y) differs from it, which means that an edge goes through there.
 bool isAtEdge(const Image& image, int x, int y) {
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -169,7 +175,7 @@ void compare(const test::Rgba& pixel, const Image& one, int x, int y, Count& cou
   count.off_in_surfaces += isAtEdge(one, x, y) ? 0 : 1;
 }
 
-// The tile is the part of `one` whose upper left pixel is at (left, top).
+// Compares a tile with the part of `one` whose upper left pixel is at (left, top).
 Count comparePart(const Image& tile, const Image& one, int left, int top) {
   Count count;
   for (int y = 0; y < tile.height; ++y) {
@@ -185,7 +191,8 @@ test::Rgba mixed(const test::Rgba& a, const test::Rgba& b, double share) {
   return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), 255};
 }
 
-// Between the four nearest pixels; x and y of the pixels' middles are at a half.
+// The colour interpolated between the four nearest pixels; the pixels' centres are at x and y of a
+// half.
 test::Rgba sampleAt(const Image& image, double x, double y) {
   const double fx = std::clamp(x - 0.5, 0.0, image.width - 1.001);
   const double fy = std::clamp(y - 0.5, 0.0, image.height - 1.001);
@@ -225,7 +232,7 @@ class PresetPictures : public testing::TestWithParam<room::RoomPreset> {
   static void SetUpTestSuite() { painter_ = std::make_unique<Painter>(); }
   static void TearDownTestSuite() { painter_.reset(); }
 
-  // The tile's plane with a frustum half as large again each way, around the tile.
+  // Draws the tile's plane with a frustum that is larger by a quarter on each side.
   Image around(const tiles::TileSettings& tile) const {
     return painter_->draw(
         oneTile(Rectangle(tile).part(-0.25, -0.25, 1.5, 1.5), kWidth * 3 / 2, kHeight * 3 / 2))[0];
@@ -261,7 +268,7 @@ TEST_P(PresetPictures, AreEachAPartOfOneRenderingInTheirPlane) {
   print("tiles against a rendering half as large again", all);
 }
 
-// A point of the shared edge is at the edge of both tiles, in the same row.
+// A point of the edge that two panels share is at the edge of both tiles, and at the same height.
 TEST_P(PresetPictures, ShowASharedEdgeAtOnePlace) {
   const tiles::TilePlan plan = *tiles::planTiles(wall_);
   const auto seams = seamsOf(wall_);
@@ -295,7 +302,8 @@ void append(std::vector<std::uint8_t>& pixels, const test::Rgba& p) {
     pixels.push_back(static_cast<std::uint8_t>(value));
 }
 
-// Left tile, then the right one resampled onto its plane; below, the one rendering.
+// Writes the left tile and the right tile, resampled onto the left one's plane, and below them the
+// one rendering.
 void writeSeam(const Image& left, const Image& one, const Rectangle& plane, const Image& right,
                const Rectangle& screen, const std::string& name) {
   const char* const folder = std::getenv("MERLIN_PICTURES");
@@ -322,9 +330,8 @@ void writeSeam(const Image& left, const Image& one, const Rectangle& plane, cons
   EXPECT_TRUE(written);
 }
 
-// The right tile is resampled onto the left one's plane, which a larger rendering shows beyond the
-// seam. Between four pixels an edge is softer than where it is drawn, so that those at edges
-// differ.
+// The right tile is resampled onto the left tile's plane and compared with a larger rendering of
+// that plane. Interpolation softens edges, so pixels at edges differ.
 TEST_P(PresetPictures, GoOnBeyondTheirSeams) {
   const std::vector<Image> tiles = painter_->draw(wall_);
   Count all;
@@ -351,7 +358,7 @@ TEST_P(PresetPictures, GoOnBeyondTheirSeams) {
   EXPECT_LE(all.off_in_surfaces, kMostOff * all.pixels);
 }
 
-// The mean of `times` x `times` pixels each.
+// Each pixel of the result is the mean of `times` x `times` pixels.
 Image reduced(const Image& image, int times) {
   Image small{image.width / times, image.height / times, {}};
   for (int y = 0; y < small.height; ++y) {
@@ -370,8 +377,8 @@ Image reduced(const Image& image, int times) {
   return small;
 }
 
-// The same, with both drawn eight times as fine each way, so that an edge is where it is in both
-// and as soft: a strip of a quarter of a tile beyond each seam.
+// As above, with both renderings eight times as fine in each direction, so that edges have the same
+// place and softness in both. Compares a strip of a quarter of a tile beyond each seam.
 TEST_P(PresetPictures, GoOnBeyondTheirSeamsAlsoAtEdges) {
   constexpr int kFiner = 8, kStrip = kWidth / 4;
   Count all;
@@ -381,7 +388,7 @@ TEST_P(PresetPictures, GoOnBeyondTheirSeamsAlsoAtEdges) {
     const int width = kStrip * kFiner, height = kHeight * kFiner;
     const Image one = painter_->draw(oneTile(strip, width, height))[0];
     const Image right = painter_->draw(oneTile(screen, kWidth / 2 * kFiner, height))[0];
-    Image resampled = one;  // what the right tile does not show is no difference
+    Image resampled = one;  // pixels that the right tile does not show count as equal
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         double rx = 0, ry = 0;
@@ -418,7 +425,7 @@ TEST(CoplanarPictures, AreTogetherOneRendering) {
     const tiles::TilesSettings wall = wallOf(preset);
     const std::vector<Image> tiles = painter.draw(wall);
     const bool six = preset == room::RoomPreset::kSix;
-    // In the order of the presets: rows from the top, each from the left.
+    // The presets list tiles in rows from the top, each row from the left.
     const Rectangle lower_left(wall.tiles[six ? 3 : 0]);
     const int rows = six ? 2 : 1;
     const Image one =
@@ -437,7 +444,7 @@ TEST(CoplanarPictures, AreTogetherOneRendering) {
   }
 }
 
-// Pictures of 320 pixels each, 96 of which its neighbour shows as well.
+// Pictures of 320 pixels each; each shares 96 of them with its neighbour.
 TEST(CoplanarPictures, ThatOverlapAreTogetherOneRendering) {
   Painter painter;
   room::RoomSettings room;

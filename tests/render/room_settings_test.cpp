@@ -1,4 +1,4 @@
-// Rooms in which no wall can be built: each is refused, and the message gives the reason and a
+// Rooms for which no wall can be built: each is refused, and the message gives the reason and a
 // remedy.
 #include <functional>
 #include <limits>

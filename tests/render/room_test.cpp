@@ -196,8 +196,8 @@ TEST(RoomPresets, APictureOfTheWallBeginsBehindTheViewer) {
   EXPECT_EQ(around.plan.wall_width, 6 * 640);
 }
 
-// The wall's picture has rows and columns as the room has, for projectors that overlap too, from
-// wherever the viewer looks.
+// In the wall's picture the tiles are in rows and columns as the frames are in the room, also for
+// projectors that overlap and wherever the viewer looks.
 TEST(RoomPresets, FramesAboveOneAnotherAreSoInAPictureOfTheWall) {
   const char* const order[] = {"upper_left", "upper_centre", "upper_right",
                                "lower_left", "lower_centre", "lower_right"};
@@ -218,7 +218,7 @@ TEST(RoomPresets, FramesAboveOneAnotherAreSoInAPictureOfTheWall) {
 }
 
 TEST(RoomPresets, MeasuringErrorsMoveNoFrameToAnotherRow) {
-  for (const double nudge_m : {-0.01, -1e-6, 1e-6, 0.01}) {  // of the upper row
+  for (const double nudge_m : {-0.01, -1e-6, 1e-6, 0.01}) {  // by which the upper row is moved
     room::RoomSettings room = room::withPanels(presetRoom(room::RoomPreset::kSix));
     room.panels[0].lower_left_m[0] += nudge_m;
     room.panels[0].lower_left_m[1] += nudge_m;
@@ -266,8 +266,8 @@ struct Front {
   double distance_m, horizontal_deg;  // of the front panel
 };
 
-// Distances computed by hand: 0.8 m / tan(half the angle between panels); for a flat wall 4.8 m,
-// its width.
+// Distances computed by hand: 0.8 m / tan(half the angle between panels). For a flat wall the
+// distance is its width, 4.8 m.
 TEST(RoomPresets, TheFrontIsStraightAheadAsFarAsSuggested) {
   const Front expected[] = {{room::RoomPreset::kFlat, 3, "panel_2", 4.8, 18.925},
                             {room::RoomPreset::kThree160, 3, "centre", 4.53703, 20},
@@ -316,7 +316,7 @@ TEST(RoomPresets, SixFramesAreTwoRowsWithBezelsBetween) {
   EXPECT_EQ(wall.tile("lower_right").width, 800);
 }
 
-// Three pictures of 2 m on a screen of 4.8 m, 0.6 m of which two show.
+// Three pictures of 2 m on a screen of 4.8 m; neighbours overlap by 0.6 m.
 TEST(RoomPresets, ProjectorsOfAFlatRowOverlapOnOneScreen) {
   room::RoomSettings room;
   room.preset.name = room::RoomPreset::kFlat;
@@ -407,7 +407,8 @@ TEST(Canvas, TilesNeverOverlapWhateverTheirSizes) {
   }
 }
 
-// One row or one column of seven would waste no space, but be at least 15120 pixels long.
+// A single row or column of seven tiles would waste no space, but it would be at least 15120 pixels
+// long.
 TEST(Canvas, AFrameIsRatherSquareThanFull) {
   std::vector<tiles::TileSettings> tiles(7);
   for (tiles::TileSettings& t : tiles) {

@@ -14,7 +14,7 @@
 namespace merlin::render {
 namespace {
 
-// One tile of 64 x 64 pixels, which a plane of 2 x 2 m fills exactly.
+// A plan with one tile of 64 x 64 pixels, which a plane of 2 x 2 m fills exactly.
 tiles::TilePlan onePlane() {
   tiles::TilesSettings s;
   s.tile_width = s.tile_height = s.frame_width = s.frame_height = 64;

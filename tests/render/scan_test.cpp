@@ -51,7 +51,7 @@ scan::Scan scanned(const Mesh& mesh, const scan::ScanSettings& settings, unsigne
   return result.ok() ? *std::move(result) : scan::Scan{};
 }
 
-// One metre in front of a scanner that stands at the origin, 90 x 90 degrees; orthogonal.
+// A scanner at the origin with orthogonal rays, 90 x 90 degrees, one metre from the wall().
 scan::ScanSettings ahead(std::size_t width, std::size_t height) {
   scan::ScanSettings settings;
   settings.width = width;
@@ -66,7 +66,7 @@ Mesh wall() {
   return mesh;
 }
 
-// Before, ranges of a model without a unit came back as metres.
+// In earlier versions, the ranges of a model without a unit were read back as metres.
 TEST(ScanFile, KeepsTheUnitOfTheModelOrNone) {
   const TempDir dir;
   range::RangeImage image;
@@ -126,11 +126,11 @@ TEST(Ray, MeetsTheNearestTriangleOfAllOnItsWay) {
   EXPECT_GT(met, 500);
 }
 
-// A mesh scanned, written, read and triangulated as merlin mesh import does it.
+// A mesh that was scanned, written, read, and triangulated as merlin mesh import does it.
 struct RoundTrip {
   range::RangeImage image;
   Mesh mesh;
-  double range_step = 0;  // of the file [units]
+  double range_step = 0;  // of ranges in the file [units]
   double step = 0;        // between pixels at the farthest range [units]
 };
 RoundTrip roundTrip(const Mesh& mesh, Scanner scanner) {
@@ -153,8 +153,8 @@ RoundTrip roundTrip(const Mesh& mesh, Scanner scanner) {
   return trip;
 }
 
-// The bounds: each vertex lies within half a step of the file's ranges of the model, each point of
-// the surface within a step between pixels.
+// Each vertex lies within half a step of the file's ranges from the model, and each point of the
+// model's surface within a step between pixels from the mesh.
 void expectWithinTheStep(const char* shape, const Mesh& model, Scanner scanner) {
   const RoundTrip trip = roundTrip(model, scanner);
   ASSERT_GT(trip.mesh.triangleCount(), 4000u);
@@ -274,7 +274,7 @@ TEST(ScanFaults, TheSeedDecidesAndTheThreadsDoNot) {
 
 TEST(ScanFaults, AScannerThatLooksElsewhereIsAnError) {
   scan::ScanSettings settings = ahead(8, 8);
-  settings.geometry.T_world_scanner = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};  // behind it
+  settings.geometry.T_world_scanner = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};  // away from it
   EXPECT_EQ(scan::scan({wall()}, settings, {}).error().what, "none of the rays meets the mesh");
   settings.geometry.horizontal_rad = 4;
   EXPECT_EQ(scan::scan({wall()}, settings, {}).error().code, Errc::kInvalidArgument);

@@ -94,8 +94,8 @@ TEST(SceneHand, CarriesAlongTheAxesOfAViewerWhoHasTurned) {
   expectAt(play, {2.3F, 0, 0}, turnedBy(30, kX) * turnedBy(-90, kY));
 }
 
-// Each of the two releases the model. It stays there, and does not jump to the hand at the next
-// grab.
+// Without the action, and without the tracker, the model is released. It stays where it is, and
+// does not jump to the hand at the next grab.
 TEST(SceneHand, WithoutTheActionOrTheTrackerItLetsGo) {
   for (const int gone : {0, 1}) {
     ScenePlay play = grabbed();
@@ -168,7 +168,8 @@ TEST(SceneHand, OnceMovingItsNoiseIsTheBound) {
   }
 }
 
-// However slow the drift is, the distance since the last motion is what counts.
+// A slow drift counts as motion once its distance from the place of the last motion is large
+// enough.
 TEST(SceneHand, ASlowDriftIsFollowedInTheEnd) {
   ScenePlay play = grabbed();
   play.rest();
@@ -179,7 +180,7 @@ TEST(SceneHand, ASlowDriftIsFollowedInTheEnd) {
     moved += play.scene.view().moving ? 1 : 0;
   }
   EXPECT_GE(moved, 12);
-  EXPECT_LE(moved, 17);  // one motion for each 6 mm or slightly more
+  EXPECT_LE(moved, 17);  // one motion for every 6 mm, or slightly more
   EXPECT_GT(play.position().x(), 0.27F);
 }
 

@@ -39,7 +39,7 @@ class ScenePlay {
     input.step = {};
     return scene.view();
   }
-  // Updates until nothing moves.
+  // Updates the scene until nothing moves.
   void rest() {
     for (int i = 0; i < 20; ++i) update(50);
     EXPECT_FALSE(scene.view().moving);

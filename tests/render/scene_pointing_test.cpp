@@ -59,7 +59,7 @@ TEST(ScenePointing, PastTheModelItHitsTheWall) {
   expectPoint(pointed->at_eye_m, {0.6F, 0, -std::sqrt(9 - 0.36F)});
 }
 
-// After a turn of 90 degrees to the left the hand points to the left, away from the model.
+// The hand is turned by 90 degrees to the left, so it points to the left and away from the model.
 TEST(ScenePointing, FollowsTheHandsTurn) {
   const ScenePlay play = pointingFrom({0, 0.5F, 0}, turnedBy(90, Vector3f::UnitY()));
   ASSERT_TRUE(play.scene.view().pointed);

@@ -67,7 +67,7 @@ TEST(SceneStep, IsAppliedOnceWhateverTheFrameTakes) {
   }
 }
 
-// So a drag in a window, a VNC client or the page moves a picture, too.
+// This lets a drag in a window, a VNC client or the page move a picture, too.
 TEST(SceneStep, ThatWouldTurnAPlaneMovesItAsAFingerDoes) {
   ScenePlay play({.model_radius_m = 2});
   play.scene.setNavigation(content::Navigation::kPlane);
@@ -124,7 +124,7 @@ TEST(SceneHeld, ZoomHalvesAndDoublesTheDistanceInASecond) {
   }
 }
 
-// In the mode fly "right" is where the viewer looks, so that the model moves to the left.
+// In the mode fly, "right" turns the viewer to the right, so the model moves to the left.
 TEST(SceneHeld, TurnsTheViewInModeFlyAndInAPanorama) {
   ScenePlay fly({.ball_turn_deg_s = {100, 100, 100}});
   fly.scene.nextMode();
@@ -176,7 +176,8 @@ TEST(SceneFly, TheBallMovesTheViewer) {
   expectAt(play, {-0.1F, 0, -1.9F});
 }
 
-// After a turn of 90 degrees to the left the model is on the right, and "ahead" is the former left.
+// The viewer turns by 90 degrees to the left: the model is then on the right, and "ahead" is the
+// former left.
 TEST(SceneFly, TheViewerTurnsAboutTheEyeAndFliesAhead) {
   ScenePlay play;
   play.scene.nextMode();
@@ -186,7 +187,7 @@ TEST(SceneFly, TheViewerTurnsAboutTheEyeAndFliesAhead) {
   play.push(-kZ);
   play.update(100);
   expectAt(play, {2, 0, 0.1F}, turnedBy(-90, kY));
-  play.scene.nextMode();  // back to moving the model, still along the viewer's axes
+  play.scene.nextMode();  // moves the model again, along the viewer's axes
   play.push(kX);
   play.update(100);
   expectAt(play, {2.1F, 0, 0.1F}, turnedBy(-90, kY));

@@ -1,4 +1,4 @@
-// The colours that show a feature.
+// The colours by which MERLIN shows a feature of a mesh.
 #include "render/content/shown_colours.h"
 
 #include <cmath>

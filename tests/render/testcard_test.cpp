@@ -1,4 +1,4 @@
-// Test cards by facts of their pixels, and the overlay that shows them.
+// Test cards, checked by single pixels and counts of pixels, and the overlay that shows them.
 #include <array>
 #include <bit>
 
@@ -13,7 +13,7 @@ namespace merlin::render::testcard {
 namespace {
 
 using Rgb = std::array<int, 3>;
-constexpr Rgb kNone = {9, 9, 9};  // what the canvas was before
+constexpr Rgb kNone = {9, 9, 9};  // the canvas before anything is drawn
 const Rgb kBlackPixel = {0, 0, 0}, kWhitePixel = {255, 255, 255};
 
 // A canvas with one tile of 320 x 240 pixels at (10, 20).
@@ -181,7 +181,8 @@ TEST(TestCard, NamesAreAsLargeAsTheTileAllowsAndHaveTheirLinesBelow) {
   testcard::CardTile t = tile();
   t.lines = {"output beamer 1", "320 x 240"};
   const Canvas c = drawn(testcard::Card::kNames, t);
-  // "left" 8 pixels wide each, 4 characters, 80 % of 320: 8 pixels for each of the font's.
+  // Each of the 4 characters of "left" is 8 font pixels wide, and the name may take 80 % of 320
+  // pixels, so each font pixel is 8 pixels wide and high.
   int pixels = 0;
   for (const char letter : t.name) {
     for (const std::uint8_t row : testcard::glyph(letter)) pixels += std::popcount(row);
@@ -193,7 +194,7 @@ TEST(TestCard, NamesAreAsLargeAsTheTileAllowsAndHaveTheirLinesBelow) {
 
 TEST(TestCard, FocusHasSinglePixelsNextToEachOther) {
   const Canvas c = drawn(testcard::Card::kFocus);
-  const int y = 120, x = 26 * 5 / 4;  // the middle of the left column: checkers
+  const int y = 120, x = 26 * 5 / 4;  // in the left column, which is chequered
   EXPECT_NE(c.inTile(x, y), c.inTile(x + 1, y));
   EXPECT_NE(c.inTile(x, y), c.inTile(x, y + 1));
   EXPECT_EQ(c.inTile(x, y), c.inTile(x + 1, y + 1));
@@ -227,7 +228,7 @@ TEST(Font, ABoxStandsForWhatIsNoCharacter) {
   for (const char c : {'\n', '\x7f', '\xc3'}) EXPECT_EQ(testcard::glyph(c)[0], 0x7F);
 }
 
-// Two tiles; the wall's first output shows the left one as the cases say.
+// A plan of two tiles; each test arranges the left one on the wall's first output in its own way.
 class CardTiles : public testing::Test {
  protected:
   CardTiles() {
@@ -249,7 +250,7 @@ class CardTiles : public testing::Test {
     output_.tiles = {placed};
     return testcard::cardTiles(plan_, {out::OutputSettings{}, output_}, {})[0];
   }
-  // The tile's corners that are the picture's, in its order.
+  // Which corner of the tile each corner of the output's picture is, in the picture's order.
   std::array<std::size_t, 4> corners() const {
     std::array<std::size_t, 4> all{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -275,7 +276,7 @@ TEST_F(CardTiles, SayWhichOutputShowsThemAndOnWhichPanelTheyAre) {
   EXPECT_EQ(tiles[1].lines, (std::vector<std::string>{"320 x 240", "panel p 2"}));
 }
 
-// Two projectors on one screen: nobody has set a blend.
+// Two projectors on one screen, without a blend in the settings.
 TEST(CardTilesOnAScreen, HaveTheirPartAndTheStripsOfTheirNeighbours) {
   tiles::TilesSettings settings;
   settings.frame_width = 640;
@@ -322,7 +323,8 @@ TEST_F(CardTiles, StripsAndCornersAreThoseOfTheTileAlsoIfItIsTurned) {
   EXPECT_EQ(strips(leftAs({"", 0, 0, out::Mirror::kNone, out::Turn::k180})),
             (std::array{0, 40, 30, 0}));
   EXPECT_EQ(corners(), (std::array<std::size_t, 4>{3, 2, 1, 0}));
-  // Clockwise: the tile's top is the output's right side, its left the output's top.
+  // Turned clockwise: the tile's top is the output's right side, the tile's left side the output's
+  // top.
   EXPECT_EQ(strips(leftAs({"", 0, 0, out::Mirror::kNone, out::Turn::k90})),
             (std::array{0, 30, 0, 40}));
   EXPECT_EQ(corners(), (std::array<std::size_t, 4>{2, 0, 3, 1}));

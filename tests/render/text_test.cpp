@@ -1,4 +1,4 @@
-// Text in pixels: where it is drawn, and that no bytes make it draw elsewhere.
+// Text as pixels: where it is drawn, and that no bytes make it draw outside of its box.
 #include "render/text/text.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Picture {
   std::uint8_t alpha(int x, int y) const {
     return rgba[static_cast<std::size_t>(4 * (y * width + x) + 3)];
   }
-  // The smallest rectangle that has everything drawn.
+  // The smallest rectangle that contains all drawn pixels.
   Rect drawn() const {
     int left = width, top = height, right = 0, bottom = 0;
     for (int y = 0; y < height; ++y) {
@@ -128,7 +128,7 @@ TEST(Text, ACharacterThatTheFontLacksIsABox) {
   EXPECT_EQ(box, (Rect{11, 25, 10, 15}));
   EXPECT_EQ(picture.alpha(box.x, box.y), 255);
   EXPECT_EQ(picture.alpha(box.x + box.width - 1, box.y + box.height - 1), 255);
-  EXPECT_EQ(picture.alpha(box.x + 4, box.y + 7), 0);  // empty inside
+  EXPECT_EQ(picture.alpha(box.x + 4, box.y + 7), 0);  // the box is empty inside
 }
 
 TEST(Text, LatinGreekCyrillicAndSignsHaveGlyphs) {
@@ -140,10 +140,11 @@ TEST(Text, EachByteThatIsNotUtf8IsOneUnknownCharacter) {
   EXPECT_EQ(decoded("a\xC3\xA4\xE2\x82\xAC\xF0\x9F\x98\x80"), U"aä€😀");
   EXPECT_EQ(decoded("\xC3"), U"\uFFFD");            // cut
   EXPECT_EQ(decoded("\xE2\x82"), U"\uFFFD\uFFFD");  // cut
-  // Cut in the middle of a longer text: what lies behind is not read.
+  // The character is cut in the middle of a longer text: the bytes behind the text's end must not
+  // be read.
   EXPECT_EQ(decoded(std::string_view("\xE2\x82\xAC", 2)), U"\uFFFD\uFFFD");
-  EXPECT_EQ(decoded("\xC3(x"), U"\uFFFD(x");                  // no continuation
-  EXPECT_EQ(decoded("\x80\xBF"), U"\uFFFD\uFFFD");            // continuation alone
+  EXPECT_EQ(decoded("\xC3(x"), U"\uFFFD(x");                  // no continuation byte
+  EXPECT_EQ(decoded("\x80\xBF"), U"\uFFFD\uFFFD");            // a continuation byte alone
   EXPECT_EQ(decoded("\xC0\x80"), U"\uFFFD\uFFFD");            // overlong
   EXPECT_EQ(decoded("\xE0\x80\xAF"), U"\uFFFD\uFFFD\uFFFD");  // overlong
   EXPECT_EQ(decoded("\xED\xA0\x80"), U"\uFFFD\uFFFD\uFFFD");  // surrogate
@@ -151,7 +152,7 @@ TEST(Text, EachByteThatIsNotUtf8IsOneUnknownCharacter) {
   EXPECT_EQ(decoded("\xFF\xFE"), U"\uFFFD\uFFFD");
 }
 
-// Each text is in memory of exactly its size, so that a sanitizer sees a byte read beyond it.
+// Each text is in a buffer of exactly its size, so that a sanitizer detects a read beyond its end.
 TEST(Text, AnyBytesAreDrawnInsideTheirBox) {
   std::minstd_rand random(7);
   for (int i = 0; i < 3000; ++i) {

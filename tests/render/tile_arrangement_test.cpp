@@ -86,7 +86,8 @@ TEST_F(TileArrangementTest, PlacesThatAreNoneAreFound) {
             "/0/tiles is not a setting of kind shared_memory, which holds the whole frame");
 }
 
-// Red is the brightness of "a"'s pixels, green and blue are those of "b", at its mirrored place.
+// The anaglyph's red is the brightness of the pixels of "a"; its green and blue are those of "b",
+// which is mirrored.
 TEST_F(TileArrangementTest, ComposesTwoEyesIntoOneAnaglyph) {
   settings_.tiles[0].width = 2;
   settings_.frame_width = 5;

@@ -1,5 +1,5 @@
-// The thread that loads tiles: it loads what is asked for, the most urgent first, within its
-// memory, and says what cannot be read.
+// The thread that loads tiles: it loads the requested tiles, the most urgent first, within its
+// memory, and reports files that it cannot read.
 #include "render/content/picture/tile_loader.h"
 
 #include <atomic>
@@ -27,7 +27,7 @@ std::vector<TilePlace> allOf(const Picture& picture) {
   return places;
 }
 
-// Stands still until a test moves it; read by the loader's thread.
+// A clock that a test moves while the loader's thread reads it.
 class SteppedClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return Timestamp(Duration(now_ns_.load())); }
@@ -38,10 +38,10 @@ class SteppedClock final : public Clock {
   std::atomic<std::int64_t> now_ns_{1'000'000'000};
 };
 
-// A file of which level 0 cannot be read for a while.
+// A file whose level 0 cannot be read as long as `fails` is true.
 class FlakyAccess final : public image::RandomAccess {
  public:
-  // `fails`: whether it cannot be read now; `tries`: how often that was tried.
+  // `fails`: whether reading fails now; `tries`: number of attempts to read.
   FlakyAccess(std::string bytes, const std::atomic<bool>& fails, std::atomic<int>& tries)
       : whole_(std::move(bytes)), fails_(fails), tries_(tries) {}
   std::uint64_t size() const noexcept override { return whole_.size(); }
@@ -96,7 +96,8 @@ TEST_F(TileLoaderTest, HoldsNoMoreThanItsMemory) {
 
 TEST_F(TileLoaderTest, SaysOnceForAPictureWhatCannotBeReadAndDoesNotTryItAtOnceAgain) {
   std::string bytes = test::pyramidBytes();
-  // The deflate streams of level 0, which begin at byte 16, become noise; the coarsest stays.
+  // The compressed tiles of level 0, which begin at byte 16, are replaced by noise; the coarsest
+  // level stays.
   const auto whole = pictureOf(bytes);
   for (std::size_t i = 20; i < 2000; ++i) bytes[i] = static_cast<char>(i * 31);
   const auto picture = pictureOf(bytes);

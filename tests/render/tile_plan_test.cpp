@@ -80,7 +80,8 @@ TEST(TilePlan, IsFourQuadrantsAsShipped) {
   }
 }
 
-// What the left tile shows at its right edge, the centre tile shows at its left edge, equally high.
+// A point at the right edge of the left tile is at the left edge of the centre tile, at the same
+// height.
 TEST(TilePlan, FrustaTouchAndDoNotOverlap) {
   const tiles::TilePlan plan = planned();
   const tiles::Tile &left = plan.tiles[0], &centre = plan.tiles[1], &right = plan.tiles[2];
@@ -124,7 +125,8 @@ TEST(TilePlan, TheWallsPictureGoesOnAcrossItsSeams) {
       const tiles::Tile& tile = plan.tiles[static_cast<std::size_t>(std::min(step / 1000, 2))];
       const float column = columnOf(tile, pointAt(left_deg, 0, 3));
       ASSERT_GT(column, last) << fov << " " << left_deg;
-      // A step of a thousandth of a tile's field is nowhere wider than at a tile's edge.
+      // A step of a thousandth of a tile's field of view is widest at the tile's edge, and nowhere
+      // wider than there.
       const float steepest = 0.001F * fov * kRadian / 2 * 640 / std::tan(fov / 2 * kRadian) /
                              std::pow(std::cos(fov / 2 * kRadian), 2.0F);
       ASSERT_TRUE(step == 0 || column - last < 1.05F * steepest) << fov << " " << left_deg;
@@ -186,7 +188,8 @@ void expectSphereFits(const Matrix4f& projection, const Vector3f& centre, float 
     look({static_cast<float>(random.normal()), static_cast<float>(random.normal()),
           static_cast<float>(random.normal())});
   }
-  // Circles through the front of the sphere, vertical and horizontal, where it looks largest.
+  // The vertical and the horizontal great circle through the front of the sphere, where it looks
+  // largest.
   for (float a = 0; a < 6.28F; a += 0.01F) {
     look({std::cos(a), 0, std::sin(a)});
     look({0, std::cos(a), std::sin(a)});
@@ -271,7 +274,8 @@ TEST(TilePlan, TilesThatLookUpwardsAreAboveInTheWallsPicture) {
   EXPECT_EQ(plan.wall_height, 960);
 }
 
-// Whatever tiles look at, none covers another one in the wall's picture, which holds them all.
+// In the wall's picture no tile covers another one and all are inside, whatever their directions
+// are.
 TEST(TilePlan, NoTileCoversAnotherInTheWallsPicture) {
   Random random(4);
   for (int wall = 0; wall < 500; ++wall) {
@@ -421,7 +425,8 @@ TEST(TilePlan, FrustaThatAreNoneAreRefused) {
             std::string::npos);
 }
 
-// Where a tile shows a point of a content at `centre`, in clip coordinates.
+// The position, in clip coordinates of the tile, of a point of a content whose middle is at
+// `centre`.
 Vector3f shownAt(const tiles::Tile& tile, const Vector3f& centre, float radius,
                  const Vector3f& point) {
   const tiles::TileMatrices matrices = tiles::matricesOf(tile, centre, radius);
@@ -439,7 +444,8 @@ TEST(OwnViews, ShowTheContentAlongTheWallsAxes) {
   const tiles::TilePlan plan = planned(s);
   const Vector3f centre(3, -1, -7);
   const Vector3f right = Vector3f::UnitX(), up = Vector3f::UnitY(), near = Vector3f::UnitZ();
-  // Directions of each view's picture: to the right, upwards, and away from its camera.
+  // For each view: the directions that point to the right, upwards and away from the camera in its
+  // picture.
   const struct {
     Vector3f right, up, away;
   } expected[] = {{right, -near, -up}, {-near, up, -right}, {right, up, -near}};
@@ -470,7 +476,7 @@ TEST(OwnViews, OfAFreeCameraAreItsPerspective) {
   EXPECT_NEAR(at({1, 1, -3.5F}).y(), 1, 1e-5) << "up: away from the person, tan = 3 / 4";
 }
 
-// The default camera is the tile ahead.
+// The default free camera equals a tile of the wall that looks straight ahead.
 TEST(OwnViews, OfACameraAtTheEyeAreTheWalls) {
   tiles::TilesSettings s;
   s.tiles = {{"wall", tiles::TileKind::kWall, 0, 0, 0},
@@ -481,7 +487,8 @@ TEST(OwnViews, OfACameraAtTheEyeAreTheWalls) {
   EXPECT_EQ(plan.tiles[0].view, plan.tiles[1].view);
 }
 
-// The wall has lost what only a fitted view shows; a free camera that sees it has not.
+// A view that is fitted to the whole content does not count as seeing it; a free camera that sees
+// it does.
 TEST(OwnViews, OfTheWholeContentDoNotCountAsSeeingIt) {
   tiles::TilesSettings s;
   s.tiles = {{"wall", tiles::TileKind::kWall, 0, 0, 0},

@@ -1,4 +1,4 @@
-// Impossible walls: each is refused, and the message names the tile and the value.
+// Impossible tile settings: each is refused, and the message names the tile and the value.
 #include <functional>
 #include <limits>
 #include <string>
@@ -89,7 +89,7 @@ const Fault kFigures[] = {
      "a tile of 640 x -480 pixels is empty"},
 };
 
-// The centre's tile with a view of its own.
+// Gives the centre tile a view of its own.
 void lookFrom(tiles::TilesSettings& s, tiles::TileCamera view) { s.tiles[1].view = view; }
 
 const Fault kViews[] = {

@@ -1,4 +1,4 @@
-// Fingers on a touch surface: how they move together, and how what is shown follows them.
+// Fingers on a touch surface: how their common motion is measured, and how the content follows it.
 #include "render/scene/touch.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 struct Finger {
   std::uint32_t id;
-  float right, down;  // shares
+  float right, down;  // shares of the surface's width and height
 };
 
 TouchSample touch(std::initializer_list<Finger> fingers) {

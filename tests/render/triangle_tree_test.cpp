@@ -141,8 +141,8 @@ TEST(TriangleTree, HasEachTriangleOnce) {
   EXPECT_EQ(triangles, all);
 }
 
-// Triangles whose distances grow exponentially, and thousands at one position: splits by area alone
-// would separate one triangle at a time.
+// Triangles whose distances grow exponentially, and thousands at one position: if nodes were split
+// by area alone, each split would separate one triangle.
 TEST(TriangleTree, StaysShallowWhereTrianglesAreSpreadUnevenly) {
   mesh::Mesh mesh;
   for (int t = 0; t < 20000; ++t) {

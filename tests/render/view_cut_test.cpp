@@ -51,7 +51,7 @@ class OverHills : public ::testing::Test {
     }
     return cut_.levels()[best];
   }
-  // The triangle count of the first position's level over that of the second one.
+  // The triangle count of the level at the first position, divided by that at the second position.
   double finerAt(float x, float y, float other_x, float other_y) const {
     return static_cast<double>(dendrogram_.trianglesAt(levelAt(x, y))) /
            static_cast<double>(dendrogram_.trianglesAt(levelAt(other_x, other_y)));
@@ -86,7 +86,7 @@ TEST_F(OverHills, WhatAnyTileSeesIsNot) {
 }
 
 TEST_F(OverHills, NearIsFinerThanFar) {
-  // Both positions are seen, from a height of 8 and of 20.
+  // One position is seen from a height of 8, the other from a height of 20.
   const lod::TileView tiles[] = {fromAbove(10, 10, 8), fromAbove(50, 50, 20)};
   ASSERT_TRUE(cut_.choose(tiles, 1500));
   EXPECT_LT(levelAt(10, 10), levelAt(50, 50));
@@ -136,14 +136,15 @@ TEST_F(OverHills, AParallelProjectionIsFineWhereItLooks) {
   }
 }
 
-// A map of everything has the same scale everywhere, as a distant eye has.
+// In a map of everything all places have the same scale, as for an eye that is far away.
 TEST_F(OverHills, AParallelProjectionOfAllIsCutEvenly) {
   const lod::TileView tile = mapOf(30, 30, 80);
   EXPECT_FALSE(cut_.choose(std::span(&tile, 1), 1500));
 }
 
-// The eye of the wall is near one corner, another camera near the opposite one: what either sees
-// from near is fine, and each gets what it alone would want, up to what the budget is shared by.
+// The wall's eye is near one corner, another camera near the opposite one. What either sees from
+// near is fine; each view gets the detail that it would get alone, reduced only because the two
+// share the budget.
 TEST_F(OverHills, AnotherCameraIsNotServedByTheWallsEye) {
   const lod::TileView both[] = {fromAbove(10, 10, 8), fromAbove(50, 50, 8)};
   ASSERT_TRUE(cut_.choose(std::span(both, 1), 1500));
@@ -154,8 +155,8 @@ TEST_F(OverHills, AnotherCameraIsNotServedByTheWallsEye) {
   EXPECT_GE(dendrogram_.trianglesAt(levelAt(50, 50)), alone * 9 / 10);
 }
 
-// Seen from above alone, the lower side of a ball is coarse; with a camera below, it is as fine as
-// the upper one.
+// Seen from above alone, the lower side of a ball is coarse. With a camera below, it is as fine as
+// the upper side.
 TEST(ViewCut, ASideThatFacesAwayFromTheEyeIsFineForACameraBehind) {
   const lod::Dendrogram d = dendrogramOf(test::sphere(5));
   const lod::Clusters clusters(d, {.clusters = 64});

@@ -48,7 +48,7 @@ std::size_t componentsOf(const Mesh& mesh) {
   return n;
 }
 
-// The part of a triangle, as its welded corners tell it.
+// The part of each triangle, found from the labels of its welded corners.
 Floats partsOf(const Mesh& mesh) {
   Floats parts;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
@@ -101,7 +101,7 @@ TEST(WeldParts, LeavesASeamABorderOfColoursAndACrease) {
     std::ranges::fill(mesh.features.back().values, 0.25F);
     EXPECT_EQ(weldParts(mesh).vertices, 4u) << name << ", the same on both sides";
   }
-  for (const float z : {-6.0F, -2.0F, 2.0F, 6.0F}) {  // at x = 6: falls by 63 and 34 degrees
+  for (const float z : {-6.0F, -2.0F, 2.0F, 6.0F}) {  // z at x = 6: slopes of 63 and 34 degrees
     Mesh mesh = twoGrids();
     for (std::size_t v = 16; v < 32; ++v)
       mesh.positions[3 * v + 2] = z * (mesh.positions[3 * v] - 3) / 3;
@@ -128,7 +128,8 @@ TEST(WeldParts, LeavesWhatIsNotOneSurface) {
   EXPECT_EQ(weldParts(unlabelled).vertices, 0u);
 }
 
-// All of it at one place, so that all vertices are at the place of the first one.
+// A mesh made to be hard: first all triangles meet at one vertex position, at last all vertices are
+// at one position.
 TEST(WeldParts, BearsAMeshThatIsMadeForIt) {
   Mesh mesh{{}, {{"label", 1, {}}}, {}};
   for (std::uint32_t p = 0; p < 3000; ++p) {

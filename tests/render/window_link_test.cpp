@@ -1,5 +1,5 @@
 // What an output of kind window does without a desktop: its settings, its geometry, the commands
-// of mouse and keys, and the link itself with programs that are not merlin-window.
+// from mouse and keys, and the link to programs that play merlin-window.
 #include "render/out/window/window_link.h"
 
 #include <atomic>
@@ -106,7 +106,7 @@ TEST(WindowCommands, MotionsAddUpToOneCommand) {
   EXPECT_EQ(commands.take(), Strings{}) << "it is back where it began";
 }
 
-// So that `move` never refuses it.
+// A command's limit holds for every motion, so that `move` never refuses one.
 TEST(WindowCommands, NoMotionIsLargerThanOneCommandMayBe) {
   WindowCommands commands;
   commands.drag(Drag::kTurn, 1e6, -1e6, 0);
@@ -160,7 +160,7 @@ class WindowLinkTest : public testing::Test {
     return test::eventually([&] { return link_->fault().find(fault) != std::string::npos; });
   }
 
-  // Waits until the link's thread has had reason and time to do something more than once.
+  // Waits until the link's thread has gone round its loop more than 20 times.
   bool looksAgain() {
     const auto rounds = [&] { return watch_.threads().front().progress; };
     const auto before = rounds();
@@ -254,7 +254,7 @@ while True:
   EXPECT_LE(shown, all);
 }
 
-// What the person does reaches merlind, and the window that was closed is not opened again.
+// The person's commands reach merlind, and a window that was closed is not opened again.
 TEST_F(WindowLinkTest, CommandsAndTheCloseArePassedOn) {
   const std::string script = dir_ / "double.py";
   test::writeText(script, R"(

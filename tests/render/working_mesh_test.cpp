@@ -39,7 +39,7 @@ Vertices neighbours(const reduce::WorkingMesh& mesh, std::uint32_t v) {
   return all;
 }
 
-// The current ends of edges; for removed edges, their ends in `before`.
+// The ends of edges before the collapse, as pairs.
 Pairs endsOf(const reduce::WorkingMesh& before, std::span<const std::uint32_t> edges) {
   Pairs ends;
   for (const std::uint32_t e : edges) ends.insert({before.ends(e)[0], before.ends(e)[1]});
@@ -130,7 +130,7 @@ TEST(WorkingMesh, ThreeTrianglesAtAnEdgeGoTogether) {
   const reduce::WorkingMesh before(meshOf(5, {0, 1, 2, 1, 0, 3, 0, 1, 4}));
   reduce::WorkingMesh mesh = before;
   EXPECT_EQ(trianglesAt(mesh, 0, 1), 3u);
-  EXPECT_EQ(mesh.collapse(0, 1).size(), 7u);  // all of its edges
+  EXPECT_EQ(mesh.collapse(0, 1).size(), 7u);  // the ids of all of its edges
   EXPECT_EQ(mesh.liveTriangles(), 0u);
 }
 
@@ -156,8 +156,8 @@ TEST(LinkCondition, HoldsInsideAndAlongTheBorder) {
 
 TEST(LinkCondition, FailsWhereTwoBordersWouldMeet) {
   EXPECT_FALSE(mayCollapse(test::grid(2, 1), 1, 4));  // across the strip
-  EXPECT_TRUE(mayCollapse(test::grid(2, 1), 0, 1));   // along the strip's border
-  EXPECT_TRUE(mayCollapse(test::grid(1, 1), 0, 1));   // leaves one triangle
+  EXPECT_TRUE(mayCollapse(test::grid(2, 1), 0, 1));   // along the border of the strip
+  EXPECT_TRUE(mayCollapse(test::grid(1, 1), 0, 1));   // one triangle is left
 }
 
 TEST(LinkCondition, FailsWhereNothingWouldBeLeft) {
@@ -183,8 +183,8 @@ TEST(LinkCondition, FailsOnTwoFacesOfTheSameCorners) {
   EXPECT_FALSE(mayCollapse(meshOf(4, {0, 1, 2, 0, 2, 1, 1, 2, 3}), 0, 1));
 }
 
-// The edges of the rim go one by one; the lists of the vertex in the middle are as they would be if
-// each had been taken out at once.
+// The edges of the rim are removed one by one. The lists of the central vertex have to be as if
+// each edge had been taken out at once.
 TEST(WorkingMesh, LongListsHoldWhatIsGoneUntilTheyAreTidied) {
   constexpr std::uint32_t kRim = 200;
   std::vector<std::uint32_t> triangles;

@@ -70,14 +70,14 @@ class Driver:
         self.do("POST", "/url", {"url": url})
 
     def run(self, script, *arguments):
-        """What the JavaScript function body returns."""
+        """Runs the body of a JavaScript function in the page; returns what it returns."""
         return self.do("POST", "/execute/sync", {"script": script, "args": list(arguments)})
 
     def find(self, selector):
         return self.do("POST", "/element", {"using": "css selector", "value": selector})[ELEMENT]
 
     def click(self, selector):
-        """Clicks an element in the middle of the window, where nothing that sticks to its edges covers it."""
+        """Scrolls an element to the middle of the window, where no sticky bar covers it, and clicks it."""
         self.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center'})", selector)
         self.do("POST", "/element/%s/click" % self.find(selector), {})
 
@@ -85,12 +85,13 @@ class Driver:
         self.do("POST", "/element/%s/value" % self.find(selector), {"text": text})
 
     def press(self, key):
-        """A key, as WebDriver names it, for what has the keyboard's focus."""
+        """Sends a key, by its WebDriver name, to the element that has the keyboard's focus."""
         self.do("POST", "/actions", {"actions": [{"type": "key", "id": "k", "actions": [
             {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
 
     def _pointer(self, selector, kind, place, steps, name="p", up=True):
-        """A pointer that is pressed at a place from an element's middle and moved in steps."""
+        """The actions of a pointer that is pressed at `place`, relative to an element's middle, and moved in
+        steps."""
         moves = [{"type": "pointerMove", "duration": 20, "origin": "pointer", "x": x, "y": y} for x, y in steps]
         return {"type": "pointer", "id": name, "parameters": {"pointerType": kind},
                 "actions": [{"type": "pointerMove", "duration": 0, "origin": {ELEMENT: self.find(selector)},
@@ -99,7 +100,7 @@ class Driver:
                            ([{"type": "pointerUp", "button": 0}] if up else [])}
 
     def release(self):
-        """Lets go what hold() presses."""
+        """Releases the pointer that hold() pressed."""
         self.do("DELETE", "/actions")
 
     def _act(self, *sources):
@@ -112,15 +113,15 @@ class Driver:
         self._act(self._pointer(selector, kind, (0, 0), [(x // steps, y // steps)] * steps))
 
     def tap(self, selector, x, y, kind="mouse"):
-        """Clicks at a place from an element's middle."""
+        """Clicks at a place given relative to an element's middle."""
         self._act(self._pointer(selector, kind, (x, y), []))
 
     def hold(self, selector, kind="mouse"):
-        """Presses the pointer on an element, until release()."""
+        """Presses the pointer on an element and holds it until release()."""
         self.do("POST", "/actions", {"actions": [self._pointer(selector, kind, (0, 0), [], up=False)]})
 
     def pinch(self, selector, near, far):
-        """Moves two fingers apart, from so many pixels beside an element's middle to so many."""
+        """Moves two fingers apart, each from `near` to `far` pixels beside an element's middle."""
         steps = 5
         self._act(*(self._pointer(selector, "touch", (sign * near, 0), [(sign * (far - near) // steps, 0)] * steps, name)
                     for name, sign in (("left", -1), ("right", 1))))
@@ -140,7 +141,7 @@ class Driver:
             file.write(base64.b64decode(shot))
 
     def messages(self):
-        """What the browser's console said: faults of scripts, of the policy, of the network."""
+        """Warnings and errors of the browser's console: faults of scripts, of the security policy, of the network."""
         return [entry["message"] for entry in self.do("POST", "/se/log", {"type": "browser"})
                 if entry["level"] in ("SEVERE", "WARNING")]
 
@@ -156,12 +157,12 @@ class Driver:
         if self.session:
             try:
                 self.do("DELETE", "")
-            except Exception:  # it is killed below
+            except Exception:  # the process is killed below
                 pass
         self.process.terminate()
         self.process.wait()
         self.log.close()
-        for _ in range(20):  # Chromium's processes write until they end
+        for _ in range(20):  # Chromium's processes write to the profile until they end
             try:
                 self.profile.cleanup()
                 return

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Checks the pictures of a demo: not black, something in each quadrant, seams that continue.
+"""Checks the pictures of a demo: none is black, each quadrant shows something, and tiles continue each other at the seams.
 
 usage: check_wall_picture.py FRAME.png WALL.png COLUMNS
 
 FRAME.png   the frame buffer, whose quadrants are three tiles of the wall and the operator's view
-WALL.png    the wall's tiles side by side, COLUMNS of them
-Prints what it measured; exits with 1 and a sentence if a picture is not what a wall shows.
+WALL.png    the wall's tiles side by side, in COLUMNS columns
+Prints the measured figures; exits with 1 and a sentence if a picture is not that of a working wall.
 """
 import struct
 import sys
 import zlib
 
-LEAST_COVERED = 0.02  # share of a quadrant's pixels that differ from its background
-MOST_AT_SEAM = 3.0    # mean difference of neighbours across a seam, relative to inside
+LEAST_COVERED = 0.02  # required share of a quadrant's pixels that differ from its background
+MOST_AT_SEAM = 3.0    # limit of the mean difference of neighbours across a seam, relative to that inside a tile
 
 
 def fail(what):
@@ -20,7 +20,7 @@ def fail(what):
 
 
 def unfiltered(kind, line, above, step):
-    """A line of a PNG file (section 9 of its specification), as bytes of the picture."""
+    """Undoes the filter of one line of a PNG file (section 9 of its specification); returns the line's pixels."""
     line = bytearray(line)
     for i in range(len(line)):
         a = line[i - step] if i >= step else 0

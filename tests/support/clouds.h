@@ -25,8 +25,8 @@ inline void setDouble(std::string& bytes, std::size_t at, double v) {
   set32(bytes, at + 4, static_cast<std::uint32_t>(bits >> 32));
 }
 
-// The header of a LAS file, then `points` records of zeros with these raw coordinates: point p is
-// at (p, 10 p, 100 p), the scale 0.01, the offset (500000, 5000000, 100).
+// A LAS file: its header, then `points` records that are zero except for these raw coordinates:
+// point p is at (p, 10 p, 100 p). The scale is 0.01, the offset (500000, 5000000, 100).
 inline std::string las(int minor, std::size_t format, std::uint32_t points) {
   constexpr std::size_t kRecords[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
   const std::size_t header = minor == 2 ? 227 : minor == 3 ? 235 : 375;
@@ -56,7 +56,7 @@ inline std::string las(int minor, std::size_t format, std::uint32_t points) {
   return bytes;
 }
 
-// Two points with a colour, a normal and "heat".
+// A PCD file of two points with a colour, a normal and the feature "heat".
 inline std::string pcdCloud(const std::string& viewpoint, const std::string& points) {
   return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb normal_x normal_y normal_z heat\n"
          "SIZE 4 4 4 4 4 4 4 4\nTYPE F F F U F F F F\nCOUNT 1 1 1 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"

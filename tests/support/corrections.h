@@ -14,7 +14,7 @@ namespace merlin::test {
 
 inline constexpr int kWidth = 320, kHeight = 200;
 
-// RGBA.
+// A picture of random bytes, RGBA.
 inline std::vector<std::uint8_t> noise(int width, int height) {
   std::mt19937 random(1);
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(4 * width * height));
@@ -26,7 +26,7 @@ inline std::vector<std::uint8_t> grey(int width, int height, std::uint8_t level)
   return std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), level);
 }
 
-// A mesh with a barrel distortion, and a keystone.
+// Settings with moved corners (a keystone) and a mesh with barrel distortion.
 inline render::correct::CorrectionSettings bent(render::correct::MeshInterpolation between,
                                                 int columns = 5, int rows = 4) {
   render::correct::CorrectionSettings s;
@@ -45,7 +45,7 @@ inline render::correct::CorrectionSettings bent(render::correct::MeshInterpolati
   return s;
 }
 
-// All corrections at once.
+// Settings with every correction at once.
 inline render::correct::CorrectionSettings everything() {
   render::correct::CorrectionSettings s = bent(render::correct::MeshInterpolation::kBicubic);
   s.blend = {60, 40, 0, 30, 2.3};

@@ -1,5 +1,5 @@
-// DeviceBench: what a Device under test needs: an emulator (chosen by name) on a FakeStream, a
-// FakeClock and a sample sink.
+// DeviceBench: everything that a Device under test needs: an emulator (chosen by name) on a
+// FakeStream, a FakeClock and a sample sink.
 #pragma once
 
 #include <cassert>

@@ -14,7 +14,8 @@ namespace merlin::test {
 template <typename VirtualClock>
 class EmulatedConnection final : public ByteStream {
  public:
-  // `answer_time`: from the connection to its greeting, and from a command to its answer.
+  // `answer_time`: how long the greeting takes after the connection, and the answer after a
+  // command.
   EmulatedConnection(EmulatedProjector& device, VirtualClock& clock,
                      Duration answer_time = Duration::zero())
       : device_(device),

@@ -1,5 +1,5 @@
-// EmulatedProjector: a projector that speaks PJLink, with its warm-up and cool-down, as bytes in
-// and bytes out; and ProjectorServer, one at a TCP port that behaves as a test asks.
+// EmulatedProjector: a projector that speaks PJLink, with warm-up and cool-down, as a function from
+// bytes to bytes. ProjectorServer: such a projector at a TCP port, which misbehaves as a test asks.
 #pragma once
 
 #include <atomic>
@@ -24,21 +24,21 @@ class EmulatedProjector {
   explicit EmulatedProjector(std::string password = {}) : password_(std::move(password)) {}
 
   Duration warm_up = std::chrono::seconds(30), cool_down = std::chrono::seconds(90);
-  std::string refusal;  // "ERR3": the answer to every switching; empty: it obeys
-  std::string log;      // each switching that it was sent, "1" or "0"
+  std::string refusal;  // "ERR3": the answer to every command that switches; empty: it obeys
+  std::string log;      // each command that switched it, "1" or "0"
   std::string errors = "000000", lamps = "1234 1", name = "Epsilon";
-  std::string inputs;  // each input that was selected
+  std::string inputs;  // each input that was selected, in order
 
-  // Ends warming up or cooling down at once.
+  // Ends the warm-up or cool-down at once.
   void endPhase() { phase_until_ = {}; }
 
-  // The first bytes of a connection.
+  // The greeting, which is the first thing sent on a connection.
   std::string greet() {
     authenticated_ = password_.empty();
     return authenticated_ ? "PJLINK 0\r" : "PJLINK 1 498e4a67\r";
   }
 
-  // The answer to one line, without its end.
+  // The answer to one line; `line` has no line end.
   std::string answer(std::string line, Timestamp now) {
     if (!authenticated_) {
       const std::string digest = pjlink::md5Hex("498e4a67" + password_);
@@ -58,7 +58,7 @@ class EmulatedProjector {
     return line.substr(0, 6) + "=ERR1\r";
   }
 
-  // '0' off, '1' on, '2' cooling, '3' warming.
+  // The power state: '0' off, '1' on, '2' cooling, '3' warming.
   char power(Timestamp now) {
     if (now >= phase_until_ && power_ == '3') power_ = '1';
     if (now >= phase_until_ && power_ == '2') power_ = '0';
@@ -83,26 +83,27 @@ class EmulatedProjector {
   Timestamp phase_until_{};
 };
 
-// At 127.0.0.1, a port of its own; serves one connection after another.
+// Listens at 127.0.0.1 on a port of its own; serves one connection after another.
 class ProjectorServer {
  public:
   enum Manner {
     kPolite,
-    kSilent,     // says nothing, not even the greeting
+    kSilent,     // sends nothing, not even the greeting
     kHalf,       // closes in the middle of its first answer
     kJunk,       // sends bytes without end
     kOneAnswer,  // closes after each answer
-    kDripping,   // sends a byte of a greeting that never ends each time it is read
+    kDripping,   // sends one byte at a time of a greeting that never ends
   };
 
   explicit ProjectorServer(std::string password = {}) : projector(std::move(password)) { appear(); }
 
-  // Ends its connection and its thread, and refuses further ones, as if it had no mains.
+  // Ends the connection and the thread, and refuses further connections, as a projector without
+  // mains does.
   void vanish() {
     thread_ = {};
     listener_.reset();
   }
-  // Is there again, at the same port.
+  // Listens again, at the same port.
   void appear() {
     listener_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     const int yes = 1;
@@ -129,7 +130,7 @@ class ProjectorServer {
   std::string port;
   std::atomic<Manner> manner{kPolite};
   std::atomic<int> connections{0};
-  // Touched by its thread and by set(), under mutex_; by others only after vanish().
+  // The server's thread and set() use it under mutex_; others only after vanish().
   EmulatedProjector projector;
 
  private:

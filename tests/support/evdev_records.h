@@ -10,7 +10,7 @@
 
 namespace merlin::test {
 
-// `low`, `high` and `resolution`: of an axis that is described.
+// `low`, `high` and `resolution` matter only in the description of an axis.
 inline std::string evdevRecord(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
                                std::int32_t low = 0, std::int32_t high = 0,
                                std::int32_t resolution = 0) {
@@ -26,7 +26,7 @@ inline std::string evdevRecord(EvdevRecord::Kind kind, int code = 0, std::int32_
   return out;
 }
 
-// The name of the device, or of a key.
+// A record that gives the name of the device or of a key.
 inline std::string evdevNamed(EvdevRecord::Kind kind, int code, std::string_view text) {
   EvdevRecord r;
   r.kind = kind;

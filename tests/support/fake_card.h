@@ -1,4 +1,4 @@
-// FakeCard: a graphics card with two displays, and what its displays are sent.
+// FakeCard: a graphics card with two displays, which records what it is told to show.
 #pragma once
 
 #include <algorithm>
@@ -44,23 +44,24 @@ inline Connector projector(Id id, const std::string& name) {
           .crtcs = 0b11};
 }
 
-// What tests see and do to the fake card, which comes and goes with open().
+// The state of the fake card that tests read and change. It outlives the card, which open() makes
+// anew.
 struct Bench {
   std::vector<Connector> connectors{projector(11, "A-1"), projector(12, "A-2")};
   bool there = true, other_is_master = false, has_vblank = false, answers_flips = true;
   int probes = 0, cards = 0, most_alive = 0;
-  std::set<Id> refused;               // connectors
-  std::size_t most_at_once = 9;       // displays
-  Committed next = Committed::kDone;  // outcome of the next commit that is no test
+  std::set<Id> refused;               // connectors that the card refuses
+  std::size_t most_at_once = 9;       // displays that the card can light at once
+  Committed next = Committed::kDone;  // outcome of the next commit, except for test commits
   std::vector<std::vector<Lit>> commits;
   std::vector<Flip> flips;
   std::map<Id, std::vector<std::uint8_t>*> buffers;
   Timestamp flip_time{};
 
-  // First byte in the middle of what a CRTC shows: the picture's blue.
+  // For each CRTC, the first byte in the middle of the picture that it shows: its blue channel.
   std::map<Id, int> shown;
-  std::map<Id, ScannedOut> scanned;  // by CRTC, as the kernel would say
-  std::function<void()> on_read;     // called while a buffer is read
+  std::map<Id, ScannedOut> scanned;  // for each CRTC, what the kernel would report
+  std::function<void()> on_read;     // called each time a buffer is read
 };
 
 struct FakeBuffer final : Buffer {

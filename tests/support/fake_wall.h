@@ -1,5 +1,5 @@
-// A wall on a virtual clock: a painter that costs what a model of the renderer says, a feed that is
-// told what to say, and the loop between them.
+// A wall on a virtual clock: a painter whose frames take as long as a model of the renderer says, a
+// feed that delivers what the test sets, and the loop that connects them.
 #pragma once
 
 #include <functional>
@@ -23,8 +23,8 @@ inline const Duration kPeriod = fromSeconds(1.0 / 30);
 
 const Dendrogram& model();
 
-// 4 ms a frame and `per_triangle` each; full detail costs `slices` of 3 ms, any other step as many
-// as it takes.
+// A frame takes 4 ms plus `per_triangle` for each triangle. Full detail takes `slices` slices of 3
+// ms; any other step takes as many as its triangles need.
 class FakePainter final : public render::frame::FramePainter {
  public:
   FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
@@ -41,7 +41,7 @@ class FakePainter final : public render::frame::FramePainter {
   std::span<std::uint8_t> pixels() noexcept override { return pixels_; }
 
   static constexpr std::uint8_t kMoving = 0, kRefined = 90;
-  std::vector<std::uint8_t> pixels_;  // as many as a test wants
+  std::vector<std::uint8_t> pixels_;  // the size is set by the test
 
   void setCost(Duration per_triangle) { per_triangle_ = per_triangle; }
 
@@ -49,10 +49,10 @@ class FakePainter final : public render::frame::FramePainter {
   float furthest_seen_m = 50;
   std::function<void()> on_draw = [] {};
   bool gives_way = false;
-  // What its frames lack; data that have arrived are drawn in the next frame that is refined.
+  // What is missing in its frames. Data that have arrived are drawn in the next refined frame.
   render::content::Pending left_out = render::content::Pending::kNothing;
   render::content::Pending pending() const noexcept override { return left_out; }
-  int refined = 0;  // times that a frame of full detail was begun
+  int refined = 0;  // number of times that a frame of full detail was begun
   std::vector<Timestamp> drawn;
   std::vector<std::size_t> steps_drawn;
 
@@ -64,14 +64,14 @@ class FakePainter final : public render::frame::FramePainter {
   std::vector<render::frame::FrameStep> steps_;
 };
 
-// Pushes the ball while `pushed`; asks the loop to stop after `until`.
+// Pushes the ball while `pushed` is true; asks the loop to stop after `until`.
 class FakeFeed final : public InputFeed {
  public:
   WallInput read(Timestamp now) override;
   Duration age() const noexcept override { return milliseconds(7); }
 
   bool pushed = true;
-  WallInput actions;  // what is held, and what was asked for since the last read
+  WallInput actions;  // actions that are held, and those requested since the last read
   std::optional<TrackerSample> hand;
   std::function<void(Timestamp)> on_begin;
   std::vector<Timestamp> begins;
@@ -79,7 +79,7 @@ class FakeFeed final : public InputFeed {
 
 struct RecordedFrames {
   std::vector<render::out::FrameInfo> frames;
-  std::vector<std::uint8_t> firsts;  // of each frame, its first byte
+  std::vector<std::uint8_t> firsts;  // the first byte of each frame
 };
 
 class RecordingOutput final : public render::out::Output {
@@ -141,7 +141,7 @@ class FakeWall : public testing::Test {
   std::unique_ptr<shm::SeqSlot<shm::WallContent>> content_ =
       std::make_unique<shm::SeqSlot<shm::WallContent>>();
   std::stop_source stop_;
-  WallLoop* loop_ = nullptr;  // while it runs
+  WallLoop* loop_ = nullptr;  // null when the loop does not run
   bool calibrated_ = false;
   int fade_frames_ = 1;
   double return_after_s_ = 0;

@@ -1,11 +1,12 @@
-// A TCP port of this machine that nobody has. For tests that link merlin::net.
+// Finds a free TCP port of this machine, for tests that link merlin::net.
 #pragma once
 
 #include "daemon/net/connection_server.h"
 
 namespace merlin::test {
 
-// The system has just assigned it, and it was closed again. 0: there is none.
+// The number of a port that the system has just assigned and that is closed again; 0 if there is
+// none.
 inline int freePort() {
   const auto probe = net::listenTcp("127.0.0.1", 0);
   return probe ? net::portOf(probe->get()) : 0;

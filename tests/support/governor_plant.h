@@ -23,7 +23,7 @@ namespace merlin::test {
 
 inline constexpr double kPeriod_s = 1.0 / 30;
 inline constexpr std::size_t kFrames = 1200, kStep = 300, kRelease = 600;
-// Not counted: no control law knows the machine's speed yet.
+// The first second is not counted, since no control law knows the machine's speed yet.
 inline constexpr std::size_t kFirstSecond = 30;
 
 struct Load {
@@ -107,8 +107,8 @@ inline Outcome runOnGrid(render::governor::Governor& governor, const Plant& plan
   return out;
 }
 
-// Judges each frame alone: it is late when its own work exceeds the period. Milder than the grid,
-// where an overrun shortens the next frame.
+// Judges each frame alone: it is late when its own work exceeds the period. This is milder than the
+// grid, where an overrun shortens the next frame.
 inline Outcome runAlone(const std::function<double()>& triangles,
                         const std::function<void(double work_s)>& observe, const Plant& plant) {
   Outcome out;
@@ -142,8 +142,8 @@ inline double utilisation(const Outcome& o) {
   return sum / static_cast<double>(o.work_s.size() - kFirstSecond);
 }
 
-// Number of frames from `from` to the first of five consecutive frames for which `good` holds; end
-// - from if there are none.
+// Number of frames from `from` to the first of five consecutive frames for which `good` holds;
+// `end` - `from` if there are none.
 inline std::size_t framesUntil(std::size_t from, std::size_t end,
                                const std::function<bool(std::size_t)>& good) {
   std::size_t in_a_row = 0;
@@ -166,7 +166,7 @@ inline std::size_t framesToRecover(const Outcome& o) {
                      [&](std::size_t i) { return o.triangles[i] >= 0.9 * before; });
 }
 
-// (p95 - p5) / mean of the triangle counts in windows of 100 frames; the mean over the windows.
+// The mean of (p95 - p5) / mean over windows of 100 frames, computed from the triangle counts.
 inline double oscillation(const Outcome& o) {
   double sum = 0;
   std::size_t windows = 0;

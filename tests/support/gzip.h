@@ -1,4 +1,4 @@
-// Packs bytes as gzip does, for tests of what unpacks them.
+// Compresses bytes as gzip does, for tests of code that decompresses them.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,5 @@
-// HTTP by hand: what a browser or a program sends to the page, and what a hostile one does.
+// HTTP requests written by hand, as a browser, a program or a hostile client sends them to the
+// page.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,8 @@
 
 namespace merlin::test {
 
-// Not valid if nobody listens. A small buffer lets a server notice soon that nobody reads.
+// Connects to the page; the result is invalid if nobody listens. The receive buffer is small, so
+// that the server soon notices a client that does not read.
 inline UniqueFd connectToPage(int port) {
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const int small = 4096;
@@ -35,7 +37,7 @@ inline void sendText(const UniqueFd& fd, const std::string& text) {
   (void)!::send(fd.get(), text.data(), text.size(), MSG_NOSIGNAL);
 }
 
-// What the server sends until it closes the connection.
+// Everything that the server sends until it closes the connection.
 inline std::string receiveAll(const UniqueFd& fd) {
   std::string text;
   char buffer[8192];
@@ -45,7 +47,7 @@ inline std::string receiveAll(const UniqueFd& fd) {
 }
 
 struct HttpAnswer {
-  int status = 0;  // 0: there is no answer
+  int status = 0;  // 0: no answer came
   std::string head, body;
 };
 
@@ -59,12 +61,12 @@ inline HttpAnswer parseAnswer(const std::string& text) {
   return answer;
 }
 
-// A connection that asks again and again, as browsers do.
+// A connection that is kept for several requests, as browsers do.
 class KeptConnection {
  public:
   explicit KeptConnection(int port) : fd_(connectToPage(port)) {}
 
-  // The status of the answer; 0: the connection is gone.
+  // Sends a request; returns the status of the answer, or 0 if the connection is closed.
   int get(const std::string& path) {
     sendText(fd_, fmt::format("GET {} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", path));
     std::size_t head = 0;
@@ -102,7 +104,7 @@ inline HttpAnswer askPage(int port, const std::string& request) {
   return parseAnswer(receiveAll(fd));
 }
 
-// `more`: further header lines, each with its end.
+// `more`: further header lines, each with its line end.
 inline std::string getRequest(const std::string& path, const std::string& more = "") {
   return fmt::format("GET {} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n{}\r\n", path,
                      more);

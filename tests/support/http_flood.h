@@ -19,10 +19,10 @@ class HttpFlood {
       threads_.emplace_back([this](const std::stop_token& stop) { loop(stop); });
   }
 
-  // Answers that there are too many requests.
+  // Number of answers with the status "too many requests".
   std::uint64_t refused() const noexcept { return refused_; }
 
-  // Ends when the server has answered, or closed the connections.
+  // Stops the clients. Each ends once the server has answered it or closed its connection.
   void stop() { threads_.clear(); }
 
  private:

@@ -1,7 +1,7 @@
-// JsonSchema: checks documents against a JSON schema, as far as daemon/status/status.schema.json
-// uses the language: $ref into $defs, type, enum, properties, required, additionalProperties,
-// patternProperties, items, minItems, maxItems, anyOf. Stricter than the language: a member that is
-// not described is a fault.
+// JsonSchema: checks documents against a JSON schema, with the part of the schema language that
+// daemon/status/status.schema.json uses: $ref into $defs, type, enum, properties, required,
+// additionalProperties, patternProperties, items, minItems, maxItems, anyOf. It is stricter than
+// the language: a member that is not described is a fault.
 #pragma once
 
 #include <algorithm>
@@ -22,15 +22,16 @@ class JsonSchema {
 
   explicit JsonSchema(Json root) : root_(std::move(root)) {}
 
-  // What is wrong with the document, one sentence for each fault; empty: it is as `definition`, a
-  // member of $defs, says.
+  // The faults of the document, one sentence each; empty if the document conforms to `definition`,
+  // a member of $defs.
   std::vector<std::string> faults(const std::string& definition, const Json& document) const {
     std::vector<std::string> found;
     check(root_.at("$defs").at(definition), document, definition, found);
     return found;
   }
 
-  // Every member that the schema describes, with its type, as tests/data/status_promises.txt does.
+  // Every member that the schema describes, with its type, in the format of
+  // tests/data/status_promises.txt.
   std::vector<std::string> members() const {
     std::vector<std::string> lines;
     for (const auto& [name, schema] : root_.at("$defs").items()) list(name, schema, false, lines);
@@ -58,7 +59,7 @@ class JsonSchema {
 
   const Json& resolved(const Json& schema) const {
     if (!schema.contains("$ref")) return schema;
-    const std::string name = schema["$ref"].get<std::string>().substr(8);  // "#/$defs/"
+    const std::string name = schema["$ref"].get<std::string>().substr(8);  // after "#/$defs/"
     return root_.at("$defs").at(name);
   }
 
@@ -95,7 +96,7 @@ class JsonSchema {
     if (value.size() < schema.value("minItems", std::size_t{0}) ||
         value.size() > schema.value("maxItems", ~std::size_t{0}))
       found.push_back(fmt::format("{}: has {} items", at, value.size()));
-    if (!schema.contains("items")) return;  // of another type, which check() has told
+    if (!schema.contains("items")) return;  // not a list, which check() has reported
     for (const Json& item : value) check(schema["items"], item, at + "/#", found);
   }
 

@@ -1,5 +1,5 @@
-// LocalDevices: a devices' segment in plain memory, with its table of fields, and its slots as a
-// reader finds them.
+// LocalDevices: the devices' segment of the shared memory in the process's own memory, with its
+// table of fields, and its slots as a reader finds them.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace merlin::test {
 
-// Indices of the default configuration's devices, and of what else begins actions.
+// Indices of the default configuration's devices and of the control panel as sources of actions.
 inline constexpr std::size_t kGlove = 0, kTracker = 1, kBall = 2, kPanel = shm::kPanelSource;
 
-// The names of the default configuration.
+// The names and kinds of the default configuration's devices.
 inline shm::SlotNames defaultSlotNames() {
   return {{{"glove", SampleKind::kGlove},
            {"tracker", SampleKind::kTracker},

@@ -123,7 +123,7 @@ inline Mesh tube(std::uint32_t around, std::uint32_t high, bool cut) {
   return mesh;
 }
 
-// Both meshes in one, as two components, without features.
+// Returns both meshes in one mesh, as two components, without features.
 inline Mesh together(Mesh a, const Mesh& b) {
   const auto first = static_cast<std::uint32_t>(a.vertexCount());
   a.features.clear();

@@ -14,7 +14,7 @@
 
 namespace merlin::test {
 
-// An argument: its type tag is i, f, d or s.
+// An argument of a message; its type tag is i, f, d or s.
 using OscValue = std::variant<int, float, double, std::string>;
 
 inline std::string oscWord(std::uint32_t word) {
@@ -23,7 +23,7 @@ inline std::string oscWord(std::uint32_t word) {
   return bytes;
 }
 
-// Ended by 1 to 4 zeros, so that its length is a multiple of four.
+// A string as OSC packs it: 1 to 4 zeros at its end make its length a multiple of four.
 inline std::string oscText(std::string text) {
   text.append(4 - text.size() % 4, '\0');
   return text;
@@ -46,7 +46,7 @@ inline std::string oscMessage(const std::string& address, const std::vector<OscV
   return oscText(address) + oscText(tags) + bytes;
 }
 
-// With the time tag "at once".
+// A bundle with the time tag "immediately".
 inline std::string oscBundle(const std::vector<std::string>& elements) {
   std::string bytes = oscText("#bundle") + oscWord(0) + oscWord(1);
   for (const std::string& element : elements)
@@ -54,7 +54,7 @@ inline std::string oscBundle(const std::vector<std::string>& elements) {
   return bytes;
 }
 
-// The datagram as a record of the port udp:.
+// The datagram as a record of a port of kind udp:.
 inline std::string datagram(std::string_view bytes, std::uint32_t sender = 1) {
   std::string out;
   append({sender, std::as_bytes(std::span(bytes))}, out);
@@ -66,7 +66,7 @@ struct TuioContact {
   float x, y;
 };
 
-// A frame of fingers: those in `set` are alive too.
+// A TUIO frame of fingers. Those in `set` are alive too, besides `alive`.
 inline std::string tuioCursors(int frame, const std::vector<TuioContact>& set,
                                std::vector<int> alive = {}, const std::string& source = {}) {
   constexpr const char* kAddress = "/tuio/2Dcur";
@@ -83,7 +83,7 @@ inline std::string tuioCursors(int frame, const std::vector<TuioContact>& set,
   return oscBundle(elements);
 }
 
-// A frame with one marked object, of class 7 and turned by 1.5 rad.
+// A TUIO frame with one marked object, of class 7 and rotated by 1.5 rad.
 inline std::string tuioObject(int frame, const TuioContact& c) {
   constexpr const char* kAddress = "/tuio/2Dobj";
   return oscBundle({oscMessage(kAddress, {std::string("alive"), c.session}),

@@ -13,7 +13,7 @@
 
 namespace merlin::test {
 
-// Standard output and standard error go into one file, which output() reads. type() writes to
+// Standard output and standard error go into one file, which output() reads; type() writes to
 // standard input.
 class Process {
  public:
@@ -25,10 +25,10 @@ class Process {
 
   pid_t pid() const { return pid_; }
 
-  // Writes `text` to its standard input.
+  // Writes `text` to the program's standard input.
   void type(const std::string& text) const;
 
-  // Its output so far.
+  // The program's output so far.
   std::string output() const;
   bool saysEventually(const std::string& text);
 

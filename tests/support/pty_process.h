@@ -51,12 +51,12 @@ class PtyProcess {
   PtyProcess(const PtyProcess&) = delete;
   PtyProcess& operator=(const PtyProcess&) = delete;
 
-  // What the terminal shows now.
+  // The terminal's present content.
   const TerminalScreen& screen() {
     readAll();
     return screen_;
   }
-  // All bytes so far.
+  // All bytes of output so far.
   const std::string& output() {
     readAll();
     return output_;
@@ -67,7 +67,7 @@ class PtyProcess {
   void type(const std::string& text) const {
     EXPECT_EQ(::write(master_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  // As a window that is made larger or smaller: the program gets SIGWINCH.
+  // Resizes the terminal, as when its window is resized: the program gets SIGWINCH.
   void resize(int rows, int columns) {
     readAll();
     screen_ = TerminalScreen(rows, columns);

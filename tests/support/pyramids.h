@@ -39,7 +39,7 @@ struct PyramidSpec {
   std::function<Rgb(int, int)> colour = [](int x, int y) {
     return Rgb{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 128};
   };
-  bool subdirectories = false;  // the levels are subdirectories, else directories in a row
+  bool subdirectories = false;  // true: subdirectories of the first; false: one after another
   std::string description = "MERLIN picture";
 };
 
@@ -76,7 +76,7 @@ inline Pixels halved(const Pixels& whole) {
   return half;
 }
 
-// Appends a level's tiles; returns their offsets and sizes.
+// Appends the tiles of a level to the file; returns their offsets and sizes.
 inline std::vector<std::array<std::uint64_t, 2>> putTiles(std::string& file, const Pixels& level,
                                                           int tile) {
   std::vector<std::array<std::uint64_t, 2>> places;
@@ -99,7 +99,7 @@ inline std::vector<std::array<std::uint64_t, 2>> putTiles(std::string& file, con
   return places;
 }
 
-// A directory; `values` longer than 8 bytes are appended to the file before it.
+// Writes a directory. Values longer than 8 bytes are appended to the file before the directory.
 class DirectoryWriter {
  public:
   explicit DirectoryWriter(std::string& file) : file_(file) {}
@@ -126,7 +126,7 @@ class DirectoryWriter {
     }
     entries_.push_back(entry);
   }
-  // Returns the offset of the directory; that of its "next" field is 8 bytes before the file's end.
+  // Returns the offset of the directory. Its "next" field is then the last 8 bytes of the file.
   std::uint64_t write() {
     const std::uint64_t at = file_.size();
     put(file_, entries_.size(), 8);
@@ -186,7 +186,7 @@ inline std::string pyramidBytes(const PyramidSpec& spec = {}) {
     levels.push_back(detail::halved(levels.back()));
   std::string file = std::string("II\53\0\10\0\0\0", 8) + std::string(8, '\0');
   std::vector<std::uint64_t> subs;
-  std::size_t next = 8;  // where the offset of the next directory belongs
+  std::size_t next = 8;  // where the offset of the next directory has to be written
   const auto putLevel = [&](std::size_t i) {
     const std::uint64_t at =
         detail::putDirectory(file, levels[i], spec, i == 0 ? subs : decltype(subs){}, i == 0);

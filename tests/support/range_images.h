@@ -9,7 +9,7 @@
 
 namespace merlin::test {
 
-// All ranges are 1. kOrthogonal: 90 x 90 degrees. kElevation: cells of 1 x 1.
+// An image whose ranges are all 1. kOrthogonal: 90 x 90 degrees. kElevation: cells of 1 x 1.
 inline render::range::RangeImage flatImage(std::size_t width, std::size_t height,
                                            render::range::Scanner scanner) {
   render::range::RangeImage image;
@@ -21,7 +21,7 @@ inline render::range::RangeImage flatImage(std::size_t width, std::size_t height
   return image;
 }
 
-// A full turn in a cylinder of radius about 1.
+// A full turn of a scanner inside a cylinder of radius about 1.
 inline render::range::RangeImage ring(std::size_t width, std::size_t height) {
   render::range::RangeImage image = flatImage(width, height, render::range::Scanner::kSpinning);
   image.geometry.horizontal_rad = 2 * std::numbers::pi;
@@ -30,7 +30,7 @@ inline render::range::RangeImage ring(std::size_t width, std::size_t height) {
   return image;
 }
 
-// The plane z = -1 as rays from the origin; `mirrored`: its columns run to the left.
+// The plane z = -1, seen from the origin; if `mirrored`, its columns run to the left.
 inline render::range::RangeImage rays(std::size_t width, std::size_t height, bool mirrored) {
   render::range::RangeImage image = flatImage(width, height, render::range::Scanner::kRays);
   for (std::size_t p = 0; p < image.pixels(); ++p) {

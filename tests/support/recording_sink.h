@@ -24,7 +24,7 @@ struct RecordingSink final : SampleSink {
   std::vector<BallSample> ball;
   std::vector<TouchSample> touch;
   DeviceKeys keys;                      // of the device that was opened last
-  Timestamp due_at = Timestamp::max();  // to be set by the test
+  Timestamp due_at = Timestamp::max();  // set by the test
   std::vector<Timestamp> ticks;
 };
 

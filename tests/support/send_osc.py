@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Sends what a tracker sends, 50 times a second until it is ended, packed by the standard library alone.
+"""Sends OSC datagrams as a tracker does, 50 times a second until it is killed; uses the standard library alone.
 
-send_osc.py tuio PORT   two fingers that pinch, as frames of /tuio/2Dcur of the source "test@localhost"
-send_osc.py osc PORT    poses at /tracker/1/pose, that move along x; in millimetres, as bundles
+send_osc.py tuio PORT   two fingers that pinch, as frames of /tuio/2Dcur from the source "test@localhost"
+send_osc.py osc PORT    poses at /tracker/1/pose in millimetres that move along x, as bundles
 """
 import socket
 import struct
@@ -52,7 +52,7 @@ def main():
         count += 1
         try:
             sender.sendto(make(count), ("127.0.0.1", int(sys.argv[2])))
-        except ConnectionRefusedError:  # nobody receives yet
+        except ConnectionRefusedError:  # nobody receives the datagrams yet
             pass
         time.sleep(0.02)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes a sparse BigTIFF pyramid of any size in the form that MERLIN reads: levels of which every
-tile is left out, but for a few. For tests: a file of 10^11 pixels takes some kilobytes on the disk.
+"""Writes a sparse BigTIFF pyramid of any size in the form that MERLIN reads: all tiles but a few are missing
+in the file. For tests: a file of 10^11 pixels takes some kilobytes on the disk.
 
 usage: sparse_pyramid.py WIDTH HEIGHT OUT.tif
 """
@@ -46,7 +46,7 @@ def main():
             columns, rows = -(-w // TILE), -(-h // TILE)
             count = columns * rows
             offsets, sizes = out.tell(), out.tell() + 8 * count
-            # The first and the last tile of each level are there; the tables are holes otherwise.
+            # The file has the first and the last tile of each level; the tables are otherwise holes in it.
             for i in {0, count - 1, columns // 2 + columns * (rows // 2)}:
                 out.seek(offsets + 8 * i)
                 out.write(struct.pack("<Q", tile_at))

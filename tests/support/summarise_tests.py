@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Says of a CTest run what a green line hides: which tests were skipped and why, and the slowest.
+"""Prints what a successful CTest run does not show: the skipped tests with their reasons, and the slowest tests.
 
 usage: summarise_tests.py RESULTS.xml     (as ctest --output-junit writes it)
 """
@@ -11,7 +11,7 @@ SLOWEST = 10
 
 
 def skip_reason(case):
-    """The text of GTEST_SKIP(), or what CTest says."""
+    """The text of GTEST_SKIP(), or else CTest's own message."""
     output = case.findtext("system-out") or ""
     found = re.search(r": Skipped\n(.*?)\n(?:\[|$)", output, re.S)
     if found and found.group(1).strip():

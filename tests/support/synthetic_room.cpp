@@ -31,7 +31,7 @@ void Projector::zoom(double margin) {
 }
 
 Eigen::Vector3d Projector::target(const Eigen::Vector2d& pixel) const {
-  Eigen::Vector2d at = pixel;  // in the uncorrected picture, whose places are known
+  Eigen::Vector2d at = pixel;  // of the uncorrected picture, whose places are known
   for (int i = 0; i < 20; ++i) {
     const auto off = [&](double x, double y) { return lens.pixelOf(placeOf(x, y)); };
     const Eigen::Vector2d here = off(at.x(), at.y());
@@ -114,7 +114,7 @@ Light Photograph::seen(const Eigen::Vector2d& pixel, const std::vector<Panel>& p
 
 std::optional<double> findLine(const Photograph& photograph, const Eigen::Vector3d& place,
                                const Eigen::Vector3d& reach) {
-  constexpr int kSamples = 64;  // on each side
+  constexpr int kSamples = 64;  // samples on each side
   std::array<double, 2 * kSamples + 1> bright{};
   for (int i = -kSamples; i <= kSamples; ++i) {
     const Light light = photograph.at(place + reach * i / kSamples);

@@ -48,10 +48,10 @@ struct Lens {
   }
 };
 
-// Looks from `place` at `target`, turned by `roll_deg` about the line of sight.
+// A lens at `place` that is aimed at `target` and turned by `roll_deg` about the line of sight.
 Lens lensAt(const Eigen::Vector3d& place, const Eigen::Vector3d& target, double roll_deg);
 
-// A projector and the part of a panel on which its picture belongs.
+// A projector, and the part of a panel that its picture has to cover.
 struct Projector {
   Lens lens;
   int width = 0, height = 0;  // [px]
@@ -72,25 +72,26 @@ struct Projector {
   // pixels to spare.
   void zoom(double margin);
 
-  // The place in the room on which a point of the raster falls [px].
+  // The point in the room onto which a point of the raster [px] falls.
   Eigen::Vector3d target(const Eigen::Vector2d& pixel) const;
 
   Light lightOf(int x, int y) const;
-  // Light on a point of its panel: its pixels are lit evenly and a little out of focus.
+  // Light at a point of the projector's panel. Its pixels are evenly bright and slightly out of
+  // focus.
   Light lightAt(const Eigen::Vector3d& point) const;
 };
 
-// A photograph with a linear sensor.
+// A photograph of the room, taken with a linear sensor.
 class Photograph {
  public:
-  // Only projectors whose entry in `lit` is true throw light, as with a shutter before the others.
+  // Only projectors whose entry in `lit` is true throw light; the others are covered.
   Photograph(const Lens& camera, int width, int height, const std::vector<Panel>& panels,
              const std::vector<Projector>& projectors, const std::vector<bool>& lit);
 
-  // Light at a point of the room, between four pixels.
+  // Light at a point of the room, interpolated between the four nearest pixels.
   Light at(const Eigen::Vector3d& point) const;
 
-  // The photograph as a screen shows it (RGBA, gamma 2.2).
+  // The photograph for display on a screen (RGBA, gamma 2.2).
   std::vector<std::uint8_t> pixels() const;
 
  private:

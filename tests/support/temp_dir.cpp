@@ -13,12 +13,13 @@ namespace merlin::test {
 
 namespace {
 
-// merlind leaves its shared memory behind for its readers; of a test nobody reads it any more.
+// Removes the shared memory of a test. merlind leaves its shared memory behind for its readers, but
+// a test's has none any more.
 class PrivateNames {
  public:
   PrivateNames() : pid_(::getpid()), prefix_("merlin-test-" + std::to_string(pid_) + "-") {}
   ~PrivateNames() {
-    if (::getpid() != pid_) return;  // a forked child that ends
+    if (::getpid() != pid_) return;  // This is a child that was forked from the test.
     std::error_code error;
     std::vector<std::filesystem::path> left;
     for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", error)) {
@@ -45,7 +46,7 @@ TempDir::TempDir() {
 }
 
 TempDir::~TempDir() {
-  // A process that is ending may delete its own files at the same time: try again.
+  // A process that is ending may delete its own files at the same time, so try again.
   std::error_code error;
   do std::filesystem::remove_all(path_, error);
   while (error == std::errc::no_such_file_or_directory);

@@ -1,5 +1,5 @@
-// What one test may leave on the machine: a temporary folder, removed with the object, and shared
-// memory under a private name, removed with the process.
+// What a test may leave on the machine: a temporary folder, which is removed with the object, and
+// shared memory under a private name, which is removed at the process's end.
 #pragma once
 
 #include <string>

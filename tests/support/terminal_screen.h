@@ -1,5 +1,5 @@
-// TerminalScreen: what a terminal shows after a program's output, as far as ncurses uses a terminal
-// of the type xterm. Text and colours of the cells are not told apart from plain ones.
+// TerminalScreen: the characters that a terminal of the type xterm shows after a program's output,
+// as far as ncurses uses such a terminal. Colours and styles are ignored.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,8 @@ class TerminalScreen {
         columns_(static_cast<std::size_t>(columns)),
         cells_(rows_, std::vector<std::string>(columns_, " ")) {}
 
-  // Takes more output; a sequence or character that is cut at the end is kept for the next call.
+  // Takes more output. A sequence or character that is incomplete at the end is kept for the next
+  // call.
   void feed(std::string_view bytes) {
     held_ += bytes;
     std::string_view rest = held_;
@@ -43,7 +44,7 @@ class TerminalScreen {
   bool shows(const std::string& part) const { return text().find(part) != std::string::npos; }
 
  private:
-  // Takes one character or sequence off the front; false if it is not complete.
+  // Removes one character or sequence from the front and carries it out; false if it is incomplete.
   bool step(std::string_view& rest) {
     const auto first = static_cast<unsigned char>(rest[0]);
     if (first == 0x1B) return sequence(rest);
@@ -157,7 +158,7 @@ class TerminalScreen {
     row_ = std::min(row, rows_) - 1;
     column_ = std::min(column, columns_) - 1;
   }
-  // The rows that scroll, counted from 1; `last` 0: to the last one.
+  // Sets the rows that scroll, counted from 1. If `last` is 0, they extend to the last row.
   void scrollOnly(std::size_t first, std::size_t last) {
     bottom_ = last == 0 ? rows_ : std::min(last, rows_);
     top_ = std::min(first, bottom_) - 1;
@@ -176,8 +177,7 @@ class TerminalScreen {
     else if (row_ > 0)
       --row_;
   }
-  // Moves the rows from this one to the last that scrolls down or up; blank ones take the places
-  // that become free.
+  // Moves the rows from this one to the last scrolling row down or up; blank rows fill the gap.
   void moveRows(std::size_t from, std::size_t n, bool down) {
     const std::size_t count = std::min(n, bottom_ - from);
     const auto first = cells_.begin() + static_cast<std::ptrdiff_t>(from);
@@ -196,9 +196,9 @@ class TerminalScreen {
   }
 
   std::size_t rows_, columns_, row_ = 0, column_ = 0;
-  std::size_t top_ = 0, bottom_ = rows_;  // rows that scroll: from top_ to before bottom_
+  std::size_t top_ = 0, bottom_ = rows_;  // the rows that scroll are top_ to bottom_ - 1
   std::vector<std::vector<std::string>> cells_;
-  bool inserts_ = false;  // what is written pushes the rest of the row to the right
+  bool inserts_ = false;  // a character that is written moves the rest of the row to the right
   std::string held_, last_ = " ";
 };
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes synthetic models with several textures into a folder: room.obj, room.wrl and room.gltf.
 
-All three are the same scene: a floor whose tiles repeat 12 times, a wall with a picture of bricks,
-a board with a picture once, and a pillar without a picture. Nothing of it was measured.
+All three contain the same scene: a floor whose tiles repeat 12 times, a wall with a picture of bricks,
+a board that shows a picture once, and a pillar without a picture. No part of it was measured.
 """
 import base64
 import json
@@ -33,7 +33,7 @@ def brick(x, y):
 
 
 def board(x, y):
-    """A frame, and an arrow that points up: the picture's top is seen to be on top."""
+    """A frame, and an arrow that points up, by which a test sees that the picture is upright."""
     if min(x, y, 159 - x, 119 - y) < 6:
         return (250, 200, 0)
     arrow = abs(x - 80) < 8 and y > 40 or abs(x - 80) < (y - 20) < 30
@@ -90,7 +90,7 @@ def vrml():
 
 
 def gltf():
-    """glTF has v downwards."""
+    """The v coordinate for glTF, in which v increases downwards."""
     data, views, accessors, meshes, nodes, materials, images = b"", [], [], [], [], [], []
 
     def add(values, kind, component, form):

@@ -1,4 +1,4 @@
-// Events as sentences, to be compared in a test: "fault: output left failed: unplugged".
+// Events as sentences, for comparison in a test: "fault: output left failed: unplugged".
 #pragma once
 
 #include <string>

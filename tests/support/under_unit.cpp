@@ -45,8 +45,8 @@ std::string outputOf(const char* command) {
   return text;
 }
 
-// All values of `key`, from all files; an assignment without a value takes away those before it, as
-// systemd does where a key has a list.
+// All values of `key` from all files. An assignment without a value removes the values before it,
+// as systemd does for a key whose value is a list.
 Words valuesOf(const Words& units, const std::string& key) {
   Words values;
   for (const std::string& unit : units) {
@@ -64,8 +64,8 @@ Words valuesOf(const Words& units, const std::string& key) {
 
 bool isYes(const Words& values) { return !values.empty() && values.back() == "yes"; }
 
-// Like systemd, whose filters no process without privileges can have otherwise: systemd.exec(5),
-// NoNewPrivileges=.
+// Whether systemd would set no_new_privs: a process without privileges can install no filters
+// otherwise (systemd.exec(5), NoNewPrivileges=).
 bool hasNoNewPrivileges(const Words& units) {
   for (const char* const key :
        {"NoNewPrivileges", "RestrictRealtime", "RestrictSUIDSGID", "LockPersonality",
@@ -90,7 +90,7 @@ std::uint32_t familyOf(const std::string& name) {
   return found->second;
 }
 
-// Names of the system calls in `sets`, by systemd's own tables; empty where systemd is not
+// Names of the system calls in `sets`, taken from systemd's own tables; empty if systemd is not
 // installed.
 std::set<std::string> callsOf(const Words& sets) {
   std::map<std::string, Words> table;
@@ -183,7 +183,8 @@ void restrictCalls(const Words& sets, const Words& error) {
   install(code);
 }
 
-// LeakSanitizer inspects the ending program with ptrace, which a unit forbids; both would hang.
+// LeakSanitizer inspects the ending program with ptrace, which a unit forbids; then both processes
+// would hang.
 void doWithoutLeakSanitizer() {
   const char* const options = std::getenv("ASAN_OPTIONS");
   ::setenv("ASAN_OPTIONS", (std::string(options ? options : "") + ":detect_leaks=0").c_str(), 1);

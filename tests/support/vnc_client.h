@@ -23,7 +23,8 @@ class VncClient {
     client_->serverHost = ::strdup("127.0.0.1");
     client_->serverPort = port;
     client_->canHandleNewFBSize = TRUE;
-    client_->appData.encodingsString = "raw";  // exact; the others lose nothing that matters to us
+    // Raw pixels are exact, and these tests need no other encoding.
+    client_->appData.encodingsString = "raw";
     password_ = password;
     client_->GetPassword = [](rfbClient* c) {
       return ::strdup(
@@ -32,7 +33,7 @@ class VncClient {
     client_->FinishedFrameBufferUpdate = [](rfbClient* c) {
       ++static_cast<VncClient*>(rfbClientGetClientData(c, nullptr))->updates_;
     };
-    if (!rfbInitClient(client_, nullptr, nullptr)) client_ = nullptr;  // it was freed
+    if (!rfbInitClient(client_, nullptr, nullptr)) client_ = nullptr;  // was freed by the call
   }
   ~VncClient() {
     if (client_) rfbClientCleanup(client_);
@@ -44,8 +45,8 @@ class VncClient {
   std::string name() const { return client_->desktopName; }
   int updates() const { return updates_; }
 
-  // Takes what the server sends until `condition` is true; false after the deadline, or if it
-  // closes.
+  // Handles messages of the server until `condition` is true; false if the deadline passes or the
+  // server closes the connection.
   bool until(const std::function<bool()>& condition,
              std::chrono::seconds deadline = std::chrono::seconds(120)) {
     bool open = true;
@@ -56,8 +57,8 @@ class VncClient {
     };
     return eventually(take, deadline) && open;
   }
-  // Asks for the whole picture and waits until it is there: the server has then handled everything
-  // that was sent before.
+  // Requests the whole picture and waits until it has arrived: the server has then handled
+  // everything that was sent before.
   bool refresh() {
     const int before = updates_;
     SendFramebufferUpdateRequest(client_, 0, 0, client_->width, client_->height, FALSE);

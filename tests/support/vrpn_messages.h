@@ -17,7 +17,7 @@ inline std::string vrpnMessage(std::int32_t sender, std::int32_t type, std::stri
   appendVrpn(header, payload, bytes);
   return bytes;
 }
-// The descriptions of a sender and of a type.
+// Messages that describe a sender or a type.
 inline std::string vrpnSender(std::int32_t number, std::string_view name) {
   return vrpnMessage(number, kVrpnDescribeSender, vrpnName(name));
 }

@@ -1,5 +1,4 @@
-// VrpnSpeaker: a TCP server that says the same bytes to everybody who connects and then keeps
-// silent.
+// VrpnSpeaker: a TCP server that sends the same bytes to every client and then nothing more.
 #pragma once
 
 #include <string>

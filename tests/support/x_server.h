@@ -1,5 +1,5 @@
-// XServer: an X server without a screen (Xvfb), started by a test, and what a person does at it.
-// Each call has a connection of its own, since Xlib ends a process whose server goes away.
+// XServer: an X server without a screen (Xvfb), started by a test, and the actions of a person at
+// it. Each call has a connection of its own, since Xlib ends a process whose server goes away.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 #include <vector>
 
 // clang-format off
-#include <gtest/gtest.h>  // before Xlib, whose macros it does not bear
+#include <gtest/gtest.h>  // before Xlib, since Xlib's macros break this header
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/XTest.h>
@@ -26,11 +26,11 @@ class XServer {
  public:
   XServer() { start(); }
 
-  // ":99", to be the environment's DISPLAY.
+  // For example ":99"; the value of the environment variable DISPLAY.
   const std::string& display() const { return display_; }
   Process& process() { return *process_; }
 
-  // Starts it; after its end, with the same display.
+  // Starts the server; after it has ended, starts it again with the same display.
   void start() {
     process_ = std::make_unique<Process>(
         std::vector<std::string>{"Xvfb", display_, "-displayfd", "1", "-screen", "0",
@@ -75,7 +75,7 @@ class XServer {
     return x.open() && x.find(title);
   }
 
-  // What a window manager does when a person clicks on the window's close button.
+  // Closes the window as a window manager does when a person clicks on its close button.
   void close(const std::string& title) const {
     const Connection x(display_);
     const std::optional<Window> window = x.find(title);
@@ -147,8 +147,9 @@ class XServer {
     Display* display_;
   };
 
-  // The process's own: of a number that Xvfb finds free, another test's server takes hold while
-  // this one is down. Displays go up to 59535, the ports of TCP from 6000.
+  // A display number derived from the process id. If Xvfb chose a free number, another test's
+  // server could take it while this one is down. Displays may go up to 59535, since their TCP ports
+  // begin at 6000.
   std::string display_ = fmt::format(":{}", 1000 + getpid() % 50000);
   std::unique_ptr<Process> process_;
 };

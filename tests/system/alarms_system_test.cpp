@@ -1,5 +1,5 @@
-// merlind --role alarms beside a real merlind: a device that is lost, and a merlind that ends,
-// start the configured program.
+// merlind --role alarms beside a real merlind: the configured program starts when a device is lost
+// and when a merlind ends.
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// How often it was told until now.
+// How often the program was given such an event until now.
 int timesTold(const std::string& file, const std::string& role, const std::string& part) {
   int times = 0;
   for (const Json& event : told(file)) {
@@ -35,7 +35,7 @@ Process alarmsOf(const Merlind& merlind) {
   return Process({kMerlind, "--config", merlind.config(), "--role", "alarms"});
 }
 
-// Whether the role has published its events of the start, which it does 3 s after that.
+// Waits until the role has published the events of its start, which takes it 3 s.
 bool hasPublishedItsStart(Merlind& merlind) {
   return eventually([&] {
     const auto* const devices = merlind.devices();
@@ -59,7 +59,8 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
   ASSERT_TRUE(merlind.healthIs("ball", HealthState::kOk));
   Process alarms({kMerlind, "--config", merlind.config(), "--role", "alarms"});
   ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
-  // That it works is no alarm, so the ball is lost until that is seen.
+  // A device that works raises no alarm, so the ball is killed until an alarm shows that its loss
+  // was noticed.
   EXPECT_TRUE(eventually([&] {
     for (const pid_t pid : merlind.children("spaceball")) ::kill(pid, SIGKILL);
     return !told(file).empty();
@@ -83,7 +84,8 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
-// After a boot the alarms come last: what the devices said before is told, and once.
+// After a boot the alarms' process starts last: it has to report earlier faults of the devices, and
+// only once.
 TEST(Alarms, FaultsOfTheStartAreToldThoughTheAlarmsStartLater) {
   const TempDir dir;
   const std::string file = dir / "told";
@@ -122,7 +124,7 @@ TEST(Alarms, AContentThatWasMissingAtTheStartIsTold) {
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
-// It waits for a configuration with some, and takes that when it is told to.
+// The process waits for a configuration with alarms, and takes it over when it is told to reload.
 TEST(Alarms, AConfigurationWithoutAlarmsHasNothingToStart) {
   const TempDir dir;
   writeText(dir / "c.json", "{}");

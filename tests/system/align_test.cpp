@@ -1,5 +1,5 @@
-// Alignment by script, in the real daemon: the signal of an output moves by the right pixels, also
-// after undo, redo, a restart and a kill; and what the daemon keeps of it.
+// Alignment by script in the real daemon: the signal of an output moves by the right number of
+// pixels, also after undo, redo, a restart and a kill. And which alignments the daemon keeps.
 #include <filesystem>
 #include <string>
 
@@ -26,7 +26,7 @@ class Align : public testing::Test {
  protected:
   Align() { start(); }
 
-  // A wall that shows its background alone, also after a restart.
+  // Starts a wall that shows its background alone, with the state of an earlier start.
   void start() {
     wall_.reset();
     const json tile = json::array({{{"tile", "left"}}});
@@ -67,7 +67,7 @@ class Align : public testing::Test {
     return align({"--output", "left", "--corner", corner, "--by", x, y});
   }
 
-  // The output's signal now. Its background is white, and what it does not show is black.
+  // The output's present signal. The background is white; pixels that show nothing are black.
   render::image::ImageFile signal(const std::string& output = "left") const {
     const std::string file = dir_ / "signal.png";
     const Outcome taken = merlin({"snapshot", "--output", output, "-o", file});
@@ -76,9 +76,9 @@ class Align : public testing::Test {
     EXPECT_TRUE(read);
     return read ? *std::move(read) : render::image::ImageFile{};
   }
-  // A move is answered before the correction is built anew and swapped in: a test waits for it.
-  // Columns at the left of a row, and rows at the top of a column, of which less than half shows
-  // the picture.
+  // Number of columns at the left of a row, and of rows at the top of a column, of which less than
+  // half shows the picture. The daemon answers a move before the new correction is in use, so a
+  // test waits for it.
   int blackLeft(int row) const {
     const render::image::ImageFile picture = signal();
     int x = 0;
@@ -149,14 +149,15 @@ TEST_F(Align, TheConfiguredCorrectionIsTheBase) {
 
 class AlignedExport : public Align {
  protected:
-  // What is said of an export, and of the file's content.
+  // Exports the configuration; returns the command's output and the content of the file.
   std::pair<std::string, std::string> exported(const std::string& config) const {
     const std::string mpcdi = dir_ / "wall.mpcdi";
     const Outcome done = run({kMerlin, "wall", "mpcdi", "export", mpcdi, "-c", config});
     EXPECT_EQ(done.status, 0) << done.output;
     return {done.output, run({kMerlin, "wall", "mpcdi", "import", mpcdi}).output};
   }
-  // The wall's configuration with another correction; without `running` of another instance.
+  // The wall's configuration with another correction. Without `running` it is that of another
+  // instance.
   std::string changed(const json& correction, bool running) const {
     json config = json::parse(readText(wall_->config()));
     if (!running) config["instance"] = privateName("other");
@@ -167,7 +168,7 @@ class AlignedExport : public Align {
   }
 };
 
-// The file is the same as of a configuration with the corners where they were moved to.
+// The file equals that of a configuration in which the corners are where they were moved to.
 TEST_F(AlignedExport, HasMovedCorners) {
   EXPECT_EQ(moveCorner("top_left", "20", "12.5").status, 0);
   const auto [said, moved] = exported(wall_->config());
@@ -295,7 +296,7 @@ TEST_F(Align, APlaylistThatIsOffIsOffAfterARestartUntilOn) {
   EXPECT_NE(bare.output.find("on, off or next is required"), std::string::npos) << bare.output;
 }
 
-// The file is written with every step; the process is killed in the middle of that.
+// The state file is written at each step, and the process is killed during such a write.
 TEST_F(Align, AKillAmongManyWritesLeavesAStateThatIsRead) {
   for (int round = 0; round < 5; ++round) {
     const std::string script = fmt::format(
@@ -357,7 +358,7 @@ TEST_F(Align, AFileThatIsReadCannotBeTheStateFile) {
   }
 }
 
-// Blends are tuned by trying: the wall does not start again for them.
+// People tune blends by trial and error, so a change must not restart the wall.
 TEST_F(Align, AChangedCorrectionIsTakenByAReloadWhileTheWallRuns) {
   EXPECT_EQ(moveCorner("top_right", "-10", "0").status, 0);
   EXPECT_TRUE(eventually([&] { return at(signal(), 318, 100) < 128; }));
@@ -373,7 +374,7 @@ TEST_F(Align, AChangedCorrectionIsTakenByAReloadWhileTheWallRuns) {
   EXPECT_EQ(done.output.find("started again"), std::string::npos) << done.output;
 }
 
-// A wrong figure in the configuration costs nobody an alignment.
+// A wrong number in the configuration must not lose an alignment.
 TEST_F(Align, AnAlignmentIsSetAsideWhileItsOutputHasAnotherSizeAndComesBack) {
   EXPECT_EQ(moveCorner("top_left", "20", "0").status, 0);
   const std::string good = readText(wall_->config());
@@ -440,7 +441,7 @@ TEST_F(Align, ATestCardIsShownAndCorrected) {
       << wrong.output;
 }
 
-// A program on a terminal of its own.
+// A program that runs on a terminal of its own.
 class Terminal {
  public:
   explicit Terminal(std::vector<std::string> words) {
@@ -464,7 +465,7 @@ class Terminal {
   void type(const std::string& keys) const {
     EXPECT_EQ(::write(master_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
   }
-  // Whether this is shown by and by, after all that was shown before.
+  // Whether the terminal shows this text after all that earlier calls found, at once or later.
   bool shows(const std::string& text) {
     return eventually([&] {
       pollfd item{master_, POLLIN, 0};
@@ -480,7 +481,7 @@ class Terminal {
       return true;
     });
   }
-  // Whether keys are echoed and lines edited, as for a shell.
+  // Whether the terminal echoes keys and edits lines, as for a shell.
   bool isUsual() const {
     termios now{};
     ::tcgetattr(master_, &now);

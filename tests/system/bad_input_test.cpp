@@ -1,4 +1,4 @@
-// User errors: each gives one clear message and the right exit status, and leaves nothing behind.
+// User errors: each gives one clear message and the right exit status, and leaves no file behind.
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -287,7 +287,7 @@ TEST_F(BadInput, CommandsForADaemonThatIsNotThere) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "x.png"));
 }
 
-// The command that was given, the word that it did not know, and where help is.
+// The message repeats the command, names the unknown word, and says where help is.
 TEST_F(BadInput, ArgumentsThatNoCommandTakes) {
   const std::string scan = kSource + "/config/models/ankylosaurus.ply";
   expectOutcome(run({kMerlin}), 2, {"merlin: needs a command: status, watch, "});

@@ -44,7 +44,7 @@ class Bench : public testing::Test {
     for (const std::string& word : words)
       EXPECT_NE(s.message.find(word), std::string::npos) << word << " in: " << s.message;
   }
-  // The same for a command, run as it is and with --json.
+  // The same for a command, run without options and with --json.
   void expectNoFigures(std::vector<std::string> command, const std::string& bench,
                        const std::vector<std::string>& words) const {
     expectNoFigures(said(command), bench, words);
@@ -115,7 +115,7 @@ TEST_F(Bench, WallThatNeverMovesHasNoFigures) {
   expectNoFigures(s, "wall", {"the wall"});
 }
 
-// Without an X server there is no window; an output that shows nothing has no cost.
+// Without an X server there is no window, and an output that shows nothing has no cost to measure.
 TEST_F(Bench, OutputsWithoutAnXServerHaveNoFigures) {
   const std::string bench = kBin + "/outputs_bench";
   if (::access(bench.c_str(), X_OK) != 0) GTEST_SKIP() << "built without SDL2";
@@ -218,7 +218,7 @@ TEST_F(Bench, ADurationThatIsNoneIsBadUsage) {
   }
 }
 
-// Checks that there are figures; whether memory is steady is not known after some minutes.
+// Checks that there are figures. Whether memory is steady cannot be judged after some minutes.
 nlohmann::json soakOnVirtualTime(const Said& s) {
   const auto object = nlohmann::json::parse(s.output, nullptr, false);
   EXPECT_TRUE(object.is_object()) << s.output;
@@ -266,7 +266,7 @@ TEST_F(Bench, ReductionWithoutMerlinHasNoFigures) {
         dir_ / "reduction", "--quick"};
   };
   expectNoFigures(reduction("/nonexistent"), "reduction", {"/nonexistent/bench/bench_merlin"});
-  // Programs that exist but fail.
+  // The programs exist, but fail.
   const std::string bin = dir_ / "idle";
   for (const char* name : {"/bench/bench_merlin", "/bin/merlin"}) {
     std::filesystem::create_directories(std::filesystem::path(bin + name).parent_path());

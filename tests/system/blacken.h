@@ -1,4 +1,4 @@
-// What a program of the same user may do to the frame of a wall.
+// Overwrites a wall's frame in shared memory, as any program of the same user may do.
 #pragma once
 
 #include <cstring>

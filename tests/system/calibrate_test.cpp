@@ -1,5 +1,5 @@
-// merlin calibrate tracker and ball, the guided calibrations: a merlind reads an emulated device,
-// whose emulated person does each step when told.
+// merlin calibrate tracker and ball, the guided calibrations. A merlind reads an emulated device,
+// whose emulated person does each step when the test tells it to.
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -9,8 +9,8 @@ namespace {
 
 using nlohmann::json;
 
-// An emulated device that goes to the next phase of its motion script when told, and a merlind that
-// reads it.
+// An emulated device, which goes to the next phase of its motion script when told, and a merlind
+// that reads it.
 class Bench {
  public:
   Bench(const char* device, const char* role, const char* script)
@@ -21,7 +21,7 @@ class Bench {
     EXPECT_TRUE(device_.saysEventually(std::string(device) + " on")) << device_.output();
   }
 
-  // Starts a merlind with the device; `own`: the settings of its driver.
+  // Starts a merlind that reads the device; `own`: the settings of the device's driver.
   Merlind& start(const json& own = json::object()) {
     merlind_.reset();
     merlind_ = std::make_unique<Merlind>(
@@ -50,7 +50,7 @@ class Bench {
     return words;
   }
   std::string file() const { return dir_ / "merlin.json"; }
-  // The settings of the device's driver in the file.
+  // The settings of the device's driver that are in the configuration file.
   json saved() const {
     const json config = json::parse(readText(file()));
     for (const json& device : config["devices"]) {
@@ -118,7 +118,7 @@ TEST(CalibrateTracker, GoesThroughPlacesAndAPose) {
   EXPECT_EQ(json::parse(readText(bench.file()))["instance"], "kept");
   EXPECT_EQ(run({kMerlind, "--check-config", bench.file(), "--role", "devices"}).status, 0);
 
-  // With the saved calibration in force the pose is straight ahead; calibrating again with the same
+  // With the saved calibration the pose is straight ahead, and a second calibration at the same
   // positions gives the same result.
   const auto& merlind = bench.start(bench.saved());
   isAt(bench.merlind(), {15, 15, 0});

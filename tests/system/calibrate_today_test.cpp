@@ -1,5 +1,5 @@
-// merlin calibrate pad, touch and tracker with the devices of today, which the calibration opens
-// itself: an input device's records over a pseudo-terminal, and OSC.
+// merlin calibrate pad, touch and tracker with present-day devices, which the command opens itself:
+// records of an input device over a pseudo-terminal, and OSC.
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -25,15 +25,16 @@ using nlohmann::json;
 
 std::string moved(int code, int value) { return evdevRecord(EvdevRecord::kMoved, code, value); }
 
-// The other end of an input device's line.
+// The device's end of the line of an input device.
 class Line {
  public:
   explicit Line(const std::string& link) : line_(*io::PtyMaster::open(link)) {}
   void say(const std::string& bytes) const {
-    (void)!::write(line_.fd(), bytes.data(), bytes.size());  // nobody may have opened it yet
+    (void)!::write(line_.fd(), bytes.data(), bytes.size());  // perhaps nobody has opened it yet
   }
   void report(const std::string& events) const { say(events + evdevRecord(EvdevRecord::kReport)); }
-  // What was sent before it was opened was dropped: says the description until it was read.
+  // Sends the description until it has been read, since bytes sent before the line is opened are
+  // lost.
   bool describes(Process& calibrate, const std::string& description) const {
     return eventually([&] {
       if (calibrate.output().find("\nrest: ") != std::string::npos ||
@@ -68,7 +69,7 @@ json savedOf(const std::string& file, const std::string& driver) {
   return nullptr;
 }
 
-// For each step: its name, and what a person moves before Enter.
+// For each step: its name, and the events of what a person moves before pressing Enter.
 using Steps = std::vector<std::pair<const char*, std::string>>;
 
 void walk(Process& calibrate, const Line& line, const Steps& steps) {
@@ -84,7 +85,7 @@ TEST(CalibratePad, AsksForMovesAndWritesAxesThatMerlindTakes) {
   const TempDir dir;
   const Line line(dir / "pad");
   const std::string file = dir / "merlin.json";
-  // Without --device the gamepad is meant, though a ball stands before it.
+  // Without --device the command takes the gamepad, although the list has a ball before it.
   const json pad = deviceEntry("pad", "evdev", "pty:" + dir / "pad", {{"curve", 1.5}});
   writeText(file, json{{"devices", json::array({deviceEntry("ball", "spaceball"), pad})}}.dump());
   Process process(calibrate("pad", file));
@@ -142,7 +143,7 @@ TEST(CalibrateTouch, AsksForThreeCorners) {
   const TempDir dir;
   const Line line(dir / "frame");
   const std::string file = dir / "merlin.json";
-  // The present settings do not matter: corners are measured in the device's own axes.
+  // The present settings do not matter, since corners are measured in the device's own axes.
   writeText(file, onlyDevice(deviceEntry("frame", "touch", "pty:" + dir / "frame",
                                          {{"invert_y", true}, {"aspect", 1.5}}))
                       .dump());
@@ -155,7 +156,7 @@ TEST(CalibrateTouch, AsksForThreeCorners) {
     return moved(ABS_MT_SLOT, 0) + moved(ABS_MT_TRACKING_ID, id) + moved(ABS_MT_POSITION_X, x) +
            moved(ABS_MT_POSITION_Y, y);
   };
-  // A frame that was hung turned by a quarter.
+  // The frame was mounted with a quarter turn.
   walk(process, line,
        {{"top left", at(1, 980, 30)},
         {"top right", at(2, 970, 960)},
@@ -169,7 +170,7 @@ TEST(CalibrateTouch, AsksForThreeCorners) {
   EXPECT_EQ(savedOf(file, "touch")["mouse_counts"], 3000);
 }
 
-// Sends a station's pose again and again, as a tracking system does.
+// Sends the pose of a station repeatedly, as a tracking system does.
 class OscSender {
  public:
   OscSender() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -182,7 +183,7 @@ class OscSender {
     thread_ = std::jthread([this](const std::stop_token& stop) { send(stop); });
   }
   int port() const { return ntohs(address_.sin_port); }
-  // Returns once nothing of the place before is on its way.
+  // Returns when no pose of the previous place is on its way any more.
   void holdAt(float x, float y, float z) {
     {
       const std::lock_guard lock(mutex_);

@@ -1,4 +1,4 @@
-// Whatever merlind refuses to start with, --check-config refuses with the same messages.
+// Whatever merlind refuses to start with, --check-config has to refuse with the same messages.
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -91,7 +91,7 @@ TEST_F(CheckConfig, RefusesWallsThatCannotBeDrawn) {
                 "OSMesa draws in software");
 }
 
-// One that is put there later is no reason to refuse the others.
+// Such a program may be installed later, so it is no reason to refuse the other alarms.
 TEST_F(CheckConfig, SaysThatAnAlarmsProgramCannotBeExecuted) {
   writeText(dir_ / "plain", "#!/bin/sh\n");
   writeText(dir_ / "script", "#!/no/such/sh\n");
@@ -122,7 +122,7 @@ TEST_F(CheckConfig, ModelsThatCannotBeReadAreLeftOut) {
   expectAdjusted(model("none.mrm"), "/wall/model", "none.mrm: No such file or directory" + none);
   expectAdjusted(model("."), "/wall/model", "is not a regular file" + none);
   ASSERT_EQ(::mkfifo((dir_ / "pipe").c_str(), 0600), 0);
-  // Must not block on opening the pipe.
+  // The check must not block when it opens the pipe.
   expectAdjusted(model("pipe"), "/wall/model", "is not a regular file" + none);
   const json damaged = json::array({{{"model", "c.json"}}});
   expectAdjusted({{"wall", {{"model", ""}, {"contents", damaged}}}}, "/wall/contents/0/model",

@@ -1,4 +1,4 @@
-// The output of `merlin` commands that succeed, on which scripts rely. Mesh commands:
+// The output of `merlin` commands that succeed, which scripts rely on. Mesh commands:
 // mesh_cli_test.
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
-// `merlin mesh import` on Inventor and VRML files whose indices name what is not there, whose faces
-// are clockwise, or whose grids are coloured. All of them are made here.
+// `merlin mesh import` of Inventor and VRML files whose indices are out of range, whose faces are
+// clockwise, or whose grids are coloured. All files are made here.
 #include <bit>
 #include <filesystem>
 
@@ -25,7 +25,7 @@ std::string vrml97(const std::string& geometry) {
   return "#VRML V2.0 utf8\nShape { geometry " + geometry + " }\n";
 }
 
-// A square of VRML 97 with further fields.
+// A square in VRML 97; `fields` are added to it.
 std::string faceSet(const std::string& fields) {
   return vrml97("IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] } " +
                 fields + " }");
@@ -33,7 +33,7 @@ std::string faceSet(const std::string& fields) {
 
 struct Vertex {
   std::array<float, 3> at{}, normal{};
-  Colour colour{-1, -1, -1};  // -1: has none
+  Colour colour{-1, -1, -1};  // -1: the file has no colours
 };
 
 // The vertices of a binary PLY file as merlin writes it: float x y z, uchar red green blue if it
@@ -72,7 +72,8 @@ class CoinImport : public testing::Test {
     EXPECT_EQ(done.status, 0) << done.output << content;
     return done.status == 0 ? verticesOf(readText(out_)) : std::vector<Vertex>();
   }
-  // The colour at a place; {-2, ...} if no vertex or several of different colours lie there.
+  // The colour of the vertex at this place; {-2, ...} if there is none, or if several of different
+  // colours are there.
   static Colour colourAt(const std::vector<Vertex>& all, const std::array<float, 3>& at) {
     Colour colour{-2, -2, -2};
     for (const Vertex& v : all) {
@@ -180,7 +181,8 @@ TEST_F(CoinImport, AColourThatIsNotThereIsRefused) {
                   "its 2 faces");
 }
 
-// Coin draws them so. Memory behind the last material would give another colour at each run.
+// Coin draws such faces with the last material. A read beyond the materials in memory would give a
+// different colour at each run.
 TEST_F(CoinImport, FacesBeyondTheLastMaterialHaveIt) {
   const auto all = vertices(
       inventor("Material { diffuseColor [ 1 0 0, 0 0 1 ] } MaterialBinding { value PER_FACE }\n"

@@ -1,4 +1,4 @@
-// merlin config edit with editors that are scripts: what is saved, what is not, and who owns it.
+// merlin config edit, with scripts for editors: what is saved, what is not, and who owns the file.
 #include <filesystem>
 
 #include <fcntl.h>
@@ -18,13 +18,14 @@ class ConfigEdit : public testing::Test {
  protected:
   ConfigEdit() {
     writeText(file_, kOld);
-    // Other than this process's own, so that a replaced file would show it.
+    // A mode and an owner that differ from this process's defaults, so that a new file in its place
+    // would show.
     EXPECT_EQ(::chmod(file_.c_str(), 0640), 0);
     if (::geteuid() == 0) {
       EXPECT_EQ(::chown(file_.c_str(), 65534, 65533), 0);
     }
   }
-  // `script`: what the editor does with the file "$1".
+  // `script`: the commands that the editor runs on the file "$1".
   std::unique_ptr<Process> edit(const std::string& script, const std::string& variable = "EDITOR") {
     const std::string editor = dir_ / "editor";
     writeText(editor, "#!/bin/sh\n" + script + "\n");
@@ -73,7 +74,7 @@ TEST_F(ConfigEdit, AnInvalidOneIsEditedAgain) {
       << process->output();
   EXPECT_EQ(process->output().find(".merlin.edit"), std::string::npos) << process->output();
   EXPECT_EQ(readText(file_), kOld);
-  process->type("save\ns\ne\n");  // there is no such answer
+  process->type("save\ns\ne\n");  // "save" is not one of the answers
   EXPECT_EQ(process->wait(), 0) << process->output();
   expectSaved("{\"instance\": \"lab\"}\n");
 }

@@ -38,7 +38,7 @@ TEST_F(ConfigCommands, ShowSaysWhichFileAValueComesFrom) {
   expectHas(shown.output,
             "(changed while the wall ran: " + dir_.path() + "/state.json; default 30)");
   EXPECT_EQ(shown.output.find("/instance"), std::string::npos) << "it is the default";
-  std::filesystem::remove(dir_ / "state.json");  // a note about it would stand in the output too
+  std::filesystem::remove(dir_ / "state.json");  // its note would be in the output too
   const Outcome all = run({kMerlin, "config", "show", file_, "--json"});
   const json settings = json::parse(all.output, nullptr, false);
   ASSERT_TRUE(settings.is_array()) << all.output;

@@ -1,5 +1,5 @@
-// Correction of an output, from the configuration to the image file: given in the configuration
-// itself and by an MPCDI file.
+// Correction of an output, from the configuration to the image file. The correction is given in the
+// configuration itself, or by an MPCDI file.
 #include <cmath>
 #include <string>
 
@@ -17,8 +17,8 @@ using nlohmann::json;
 
 class Correction : public testing::Test {
  protected:
-  // Writes the configuration of a wall that shows only its background; its output "left" has this
-  // correction.
+  // Writes the configuration of a wall that shows only its background and has this correction on
+  // the output "left".
   std::string file(const std::string& name, const json& correction,
                    const std::string& place = "auto") {
     const json png = {{"kind", "png"},
@@ -37,7 +37,7 @@ class Correction : public testing::Test {
     return dir_ / (name + ".json");
   }
 
-  // The image that merlind wrote to the output "left".
+  // The image that merlind wrote for the output "left".
   render::image::ImageFile shown(const std::string& name, const json& correction,
                                  const std::string& place = "auto") {
     const std::string config = file(name, correction, place), picture = dir_ / (name + ".png");
@@ -105,7 +105,7 @@ TEST_F(Correction, WhatCannotBeUsedIsRefusedWithItsPlace) {
             std::string::npos);
 }
 
-// After a power cut one damaged file must not keep the wall dark.
+// One file that was damaged by a power cut must not keep the wall dark.
 TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
   writeText(mpcdi_, "PK\x03\x04 but no more");
   const Outcome checked =
@@ -120,7 +120,8 @@ TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
   EXPECT_EQ(cut.pixels, without.pixels);
 }
 
-// A region that is a part of its buffer, as others write it, and a warp that its tool never filled.
+// The region is a part of its buffer, as other programs write it; or the tool has never filled the
+// warp.
 TEST_F(Correction, WhatAnMpcdiFileHasThatShowsAnotherPictureIsSaid) {
   const auto imported = [&](const std::string& place, const std::string& cells) {
     using Entries = std::vector<std::pair<std::string, std::string>>;
@@ -180,7 +181,7 @@ TEST_F(Correction, AnMpcdiRegionThatIsNotThereCostsOneOutputItsCorrectionAndTheS
   EXPECT_EQ(wall.kill(SIGTERM), 0) << wall.output();
 }
 
-// It is used nevertheless: only a person can see whether it fits.
+// The region is used nevertheless, since only a person can see whether it fits.
 TEST_F(Correction, AnMpcdiRegionOfAnotherOutputIsUsedAndSaid) {
   const std::string config = file("by_hand", kCorrection);
   ASSERT_EQ(run({kMerlin, "wall", "mpcdi", "export", mpcdi_, "-c", config}).status, 0);

@@ -1,4 +1,4 @@
-// What a merlind that was killed leaves for whoever looks for the fault.
+// The traces that a killed merlind leaves for a person who looks for the cause.
 #include <filesystem>
 
 #include <fcntl.h>
@@ -10,7 +10,7 @@
 namespace merlin::test {
 namespace {
 
-// The name behind these words in a program's output.
+// The file name that follows these words in a program's output.
 std::string fileAfter(const Process& process, const std::string& words) {
   const std::string said = process.output();
   const std::size_t at = said.find(words);
@@ -49,7 +49,7 @@ TEST(Crash, LeavesTheLastBytesOfEachDeviceAndTheLastFrame) {
       << "the one before ended in order: " << third.output();
 }
 
-// The two roles as two processes, of which one is killed.
+// The two roles run as two processes, one of which is killed.
 class KilledRole : public testing::Test {
  protected:
   KilledRole() : model_(makeModel(dir_, 2)) {}
@@ -60,7 +60,7 @@ class KilledRole : public testing::Test {
                                         MerlindOptions{.role = role, .emulate = role == "devices"});
     ASSERT_TRUE(process->ready()) << process->process().output();
   }
-  // Returns once its heartbeat is late.
+  // Kills the process and returns once its heartbeat is overdue.
   static void killed(Merlind& merlind, const char* role) {
     merlind.process().kill(SIGKILL);
     const std::string name = shm::segmentName(merlind.instance(), role);

@@ -1,5 +1,5 @@
-// Every kind of alarm that the documents describe, raised for real once: a fault at a real merlind,
-// of which a real merlind --role alarms tells a program that is for that kind alone.
+// Raises each documented kind of alarm once for real. A fault happens at a real merlind, and a real
+// merlind --role alarms starts a program that is configured for that kind alone.
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -22,9 +22,9 @@ namespace {
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
 
-// merlind with what a fault needs beside it, and the alarms' process. What happened before that
-// process follows a role is not told, so a row's fault waits until a harmless change of the role
-// was told.
+// merlind, whatever else a fault needs, and the alarms' process. That process does not report what
+// happened before it follows a role, so the fault of a row waits until a harmless change of the
+// role has been reported.
 struct Stage {
   TempDir dir;
   ProjectorServer projector;
@@ -33,17 +33,17 @@ struct Stage {
   std::string model = dir / "model.mrm";
   std::unique_ptr<Merlind> merlind;
   std::unique_ptr<Process> alarms;
-  std::unique_ptr<Process> again;  // merlind, restarted
+  std::unique_ptr<Process> again;  // a restarted merlind
 
   std::string file(const std::string& name) const { return dir / name; }
 };
 
-// A kind of alarms and how it is raised. `act` is called again and again until it was told, and may
-// act anew each time.
+// A kind of alarm and how to raise it. `act` is called repeatedly until the alarm comes; it may do
+// something new each time.
 struct Row {
   const char* kind;
-  const char* says;  // part of the sentence
-  const char* role;  // of merlind, whose fault it is
+  const char* says;  // part of the alarm's sentence
+  const char* role;  // the role of merlind in which the fault is
   std::function<Json(Stage&)> also;
   std::function<void(Stage&)> act;
 };
@@ -56,7 +56,7 @@ Json outputs(const Json& list) { return {{"wall", {{"outputs", list}}}}; }
 
 Json checkedOutput(Stage&) { return outputs({{{"kind", "shared_memory"}, {"check_s", 0.2}}}); }
 
-// A picture that turns, so that files of it are written.
+// The picture turns, so that files of it are written.
 Json fileOutput(Stage& stage) {
   std::filesystem::create_directories(stage.file("png"));
   Json also = outputs({{{"kind", "png"}, {"path", stage.file("png/wall.png")}, {"interval_s", 1}}});
@@ -94,7 +94,7 @@ void reloadNonsense(Stage& stage) {
   ::kill(stage.merlind->process().pid(), SIGHUP);
 }
 
-// More clients than VRPN has places for.
+// Opens more connections than the VRPN server has places for.
 void crowdVrpn(Stage& stage) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -137,7 +137,7 @@ const std::vector<Row>& rows() {
 
 class EveryAlarm : public testing::TestWithParam<Row> {
  protected:
-  // The configuration with an alarm of this kind alone, and one for the harmless change.
+  // A configuration with one alarm of this kind, and one for the harmless change.
   Json alarmsFor(const Row& row) {
     const auto program = [this](const std::string& file) {
       return Json{"/bin/sh", "-c", "cat >> \"$0\"", stage_.file(file)};
@@ -161,8 +161,9 @@ class EveryAlarm : public testing::TestWithParam<Row> {
     ASSERT_TRUE(stage_.alarms->saysEventually("ready")) << stage_.alarms->output();
   }
 
-  // A configuration that is refused, and then is not, is two events of each role. They are waited
-  // for before the next two: the log leaves out what is repeated often, and reload() reads it.
+  // A configuration that is refused and then accepted is two events of each role. The test waits
+  // for them before it causes the next two, since the log suppresses frequent repetitions and
+  // reload() reads the log.
   bool followsRole() {
     const std::string good = readText(stage_.merlind->config());
     bool said = true;
@@ -174,7 +175,7 @@ class EveryAlarm : public testing::TestWithParam<Row> {
     return said && follows;
   }
 
-  // Has the configuration read again and waits until merlind says what becomes of it.
+  // Lets merlind read the configuration again, and waits until it reports the outcome.
   bool reload(const std::string& text, const std::string& says) {
     Process& merlind = stage_.merlind->process();
     const std::size_t before = merlind.output().size();
@@ -226,7 +227,7 @@ std::string kindOf(const testing::TestParamInfo<Row>& of) { return of.param.kind
 
 INSTANTIATE_TEST_SUITE_P(OfTheDocuments, EveryAlarm, testing::ValuesIn(rows()), kindOf);
 
-// The kinds that the alarms' page describes: the first column of its table.
+// The kinds that the alarms' documentation lists in the first column of its table.
 std::set<std::string> documented() {
   const std::string page = readText(kSource + "/daemon/alarms/README.md");
   std::istringstream lines(page.substr(page.find("## What each kind means")));

@@ -1,5 +1,5 @@
-// Gestures in time at a real merlind: the records of a Fastrak that a synthetic person wears are
-// replayed as its line, beside an emulated glove.
+// Gestures at a real merlind: the records of a Fastrak that a synthetic person wears are replayed
+// as its line, beside an emulated glove.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,13 +28,13 @@ std::string recordOf(const TrackerSample& sample) {
   return encode(record, fastrak::kDriverList, {});
 }
 
-// The line of a Fastrak that measured this, then a hand at rest for a minute: a transcript that has
-// ended is played again.
+// A transcript of a Fastrak that measured these samples, followed by a minute of a hand at rest,
+// since a transcript that has ended is played again.
 std::string transcriptOf(const std::vector<TrackerSample>& samples) {
   io::Transcript transcript =
       *io::readTranscript(kSource + "/tests/transcripts/fastrak/1-0-none.bytes");
   auto& chunks = transcript.chunks;
-  while (!chunks.back().to_device) chunks.pop_back();  // all but the dialogue
+  while (!chunks.back().to_device) chunks.pop_back();  // removes everything after the dialogue
   const Duration from = chunks.back().at + std::chrono::milliseconds(10);
   const std::int64_t first_ns = samples.front().received_ns;
   for (const TrackerSample& sample : samples)
@@ -45,7 +45,7 @@ std::string transcriptOf(const std::vector<TrackerSample>& samples) {
   return formatTranscript(transcript);
 }
 
-// What the person's tracker says around one gesture.
+// The tracker's samples around one gesture of the person.
 std::vector<TrackerSample> samplesOfAGesture() {
   const hand::Performance all = hand::makeGestures(hand::MovingPerson(7003), 1, 11);
   const auto made =
@@ -61,7 +61,7 @@ std::vector<TrackerSample> samplesOfAGesture() {
 
 class GestureInput : public testing::Test {
  protected:
-  // The tracker has no port yet.
+  // At first the tracker has no port.
   GestureInput() {
     EXPECT_TRUE(glove_.saysEventually("cyberglove on")) << glove_.output();
     merlind_.emplace(dir_, "", "gestures",
@@ -80,7 +80,7 @@ class GestureInput : public testing::Test {
               {{"input", std::string("hand.gesture.") + kGesture}, {"action", "next_mode"}},
               {{"input", "gesture.push"}, {"action", "reset_view"}}}}};
   }
-  // From now on, and from the beginning, the tracker's line is this one.
+  // Makes this recording the tracker's line, from its beginning.
   void play(const std::string& name, const std::vector<TrackerSample>& samples) {
     writeText(dir_ / name, transcriptOf(samples));
     written_.merge_patch(settings("replay:" + dir_ / name));
@@ -88,7 +88,7 @@ class GestureInput : public testing::Test {
     const Outcome done = run({kMerlin, "reload", "--instance", merlind_->instance()});
     ASSERT_EQ(done.status, 0) << done.output;
   }
-  // The emulated person makes a fist or opens it, and grab is held or not.
+  // The emulated person makes a fist or opens it; returns once the action grab begins or ends.
   void grab(bool holds) {
     glove_.type("\n");
     ASSERT_TRUE(eventually([&] {

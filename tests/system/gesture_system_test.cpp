@@ -1,4 +1,4 @@
-// merlin gesture, run as a person runs it: takes of an emulated hand, and of synthetic people.
+// merlin gesture, run as a person runs it: recordings of an emulated hand and of synthetic people.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ TEST(GestureRecord, TakesPosesOfALiveHandAndAppendsThem) {
   EXPECT_EQ(recording->labels, (std::vector<std::string>{"wave", "none"}));
   EXPECT_GT(recording->poses.size(), 50u);
   EXPECT_EQ(nn::sessionsOf(*recording).size(), 3u) << "a session for each take";
-  // The emulated hand is 0.6 m from the transmitter, to the right and above: z, -x, -y.
+  // The emulated hand is 0.6 m from the transmitter, to the right and above: along z, -x, -y.
   EXPECT_NEAR(recording->poses.back().pose.position_m[2], 0.6, 0.05);
   const Outcome wave = record("wave");
   EXPECT_EQ(wave.status, 2) << "a hand that rests makes no gesture: " << wave.output;
@@ -76,7 +76,7 @@ TEST(GestureRecord, KeepsTheTakesUntilASignalAndChecksItsFileBeforeTheFirst) {
   }
 }
 
-// Neither the hands nor their tracker have the names of the default configuration.
+// The hands and their tracker have other names than in the default configuration.
 TEST(GestureRecord, TakesTheFirstHandOrTheNamedOneWhateverTheyAreCalled) {
   using nlohmann::json;
   const TempDir dir;

@@ -1,5 +1,5 @@
-// `merlin mesh import` on glTF files that assimp alone would read wrongly, and on those that name
-// files beside them. All of them are made here.
+// `merlin mesh import` of glTF files that assimp alone would read wrongly, and of files that refer
+// to others. All files are made here.
 #include <bit>
 #include <filesystem>
 
@@ -32,7 +32,7 @@ std::string shorts(const std::vector<unsigned>& values) {
   return bytes;
 }
 
-// A triangle with texture coordinates, in floats; its buffer, of 80 bytes, is the file `buffer`.
+// A triangle with texture coordinates as floats. Its buffer of 80 bytes is the file `buffer`.
 const std::string kTriangle = floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + shorts({0, 1, 2, 0}) +
                               floats({0, 0, 1, 0, 0, 1}) + std::string(12, '\0');
 Json triangle(const std::string& buffer, const std::string& texture = {}) {
@@ -65,7 +65,7 @@ Json triangle(const std::string& buffer, const std::string& texture = {}) {
   return json;
 }
 
-// The same with its buffer inside.
+// The same triangle as a GLB file, with its buffer inside.
 std::string glb(Json json) {
   json["buffers"][0].erase("uri");
   std::string text = json.dump();
@@ -179,7 +179,7 @@ TEST_F(GltfImport, AMaterialsColourIsMultipliedWithItsTexture) {
   ADD_FAILURE() << said["features"];
 }
 
-// The greatest value of each colour, 0 to 255, of the only vertices' colour in a PLY file.
+// The largest red, green and blue of all vertices of a PLY file, 0 to 255; -1 if it has no colours.
 std::array<int, 3> colourOf(const std::string& ply) {
   const std::string kEnd = "end_header\n";
   if (ply.find("property uchar red") == std::string::npos) return {-1, -1, -1};
@@ -189,7 +189,7 @@ std::array<int, 3> colourOf(const std::string& ply) {
   return colour;
 }
 
-// The triangle with a colour of its vertices, whose floats are the first of the buffer.
+// The triangle with colours of its vertices, which are the first floats of the buffer.
 Json coloured(Json json, const Json& factor) {
   json["accessors"].push_back(
       {{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
@@ -200,7 +200,7 @@ Json coloured(Json json, const Json& factor) {
 }
 
 TEST_F(GltfImport, AMaterialsColourIsMultipliedWithThoseOfTheVertices) {
-  // White is written as colours of bytes, in the 12 bytes at the buffer's end.
+  // White, written as colours of bytes in the last 12 bytes of the buffer.
   std::string buffer = kTriangle;
   std::fill(buffer.end() - 12, buffer.end(), '\xff');
   writeText(dir_ / "white.bin", buffer);
@@ -248,7 +248,7 @@ TEST_F(GltfImport, TheDiffuseTextureOfSpecularGlossinessIsMultipliedWithItsColou
 }
 
 TEST_F(GltfImport, AnIndexOutOfRangeIsRefused) {
-  // Six indices at the buffer's end, of which the last is bad.
+  // Six indices at the end of the buffer; the last one is out of range.
   writeText(dir_ / "bad.bin", kTriangle.substr(0, 68) + shorts({0, 1, 2, 0, 1, 9}));
   Json json = triangle("bad.bin");
   json["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", 68}, {"byteLength", 12}};
@@ -297,7 +297,8 @@ TEST_F(GltfImport, ValuesThatGltfDoesNotDefineAreSaidToBeLeftOut) {
   EXPECT_NE(report(json.dump())["notes"].dump().find("_f, _g and 2 others)"), std::string::npos);
 }
 
-// Three triangles; at (1, 0, 0) two vertices of different heat, at (0, 1, 0) two that are alike.
+// Three triangles. At (1, 0, 0) are two vertices with different heat, at (0, 1, 0) two identical
+// ones.
 constexpr const char* kHot =
     "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float "
     "z\nproperty float heat\nproperty float confidence\nelement face 3\nproperty list uchar int "
@@ -335,7 +336,8 @@ TEST_F(GltfImport, ColoursThatMerlinWroteBesideATextureComeBack) {
   EXPECT_EQ(colourOf(readText(out_)), (std::array{0, 102, 255}));
 }
 
-// The triangle as a GLB with the attribute _heat, which is three floats of its texture coordinates.
+// The triangle as a GLB file with the attribute _heat; its values are three floats of the texture
+// coordinates.
 Json hotTriangle() {
   Json json = triangle("");
   json["meshes"][0]["primitives"][0]["attributes"]["_heat"] = 3;
@@ -453,7 +455,7 @@ TEST_F(GltfImport, ATransformOfTheTextureIsApplied) {
   const auto info = Json::parse(run({kMerlin, "mesh", "info", out_, "--json"}).output);
   for (const auto& feature : info["features"]) {
     if (feature["name"] != "texcoord") continue;
-    // u: 0.5 to 0.75; v, upwards: 0.75 to 1.
+    // u is 0.5 to 0.75; v, which is counted upwards, is 0.75 to 1.
     EXPECT_NEAR(feature["range"][0], 0.5, 1e-6);
     EXPECT_NEAR(feature["range"][1], 1, 1e-6);
     return;
@@ -461,7 +463,8 @@ TEST_F(GltfImport, ATransformOfTheTextureIsApplied) {
   FAIL() << info["features"];
 }
 
-// A mesh of a map is moved to its place by its node; floats of the sums would have steps of 0.5.
+// A node moves the mesh to the coordinates of a map; sums in floats would be rounded to steps of
+// 0.5.
 TEST_F(GltfImport, AMeshThatANodeMovesToAMapKeepsItsDigitsByAnOrigin) {
   Json json = triangle("a.bin");
   json["nodes"] = {{{"children", {1}}, {"translation", {500000, 0, 0}}},
@@ -469,14 +472,15 @@ TEST_F(GltfImport, AMeshThatANodeMovesToAMapKeepsItsDigitsByAnOrigin) {
   const auto said = report(json.dump());
   EXPECT_EQ(said["origin"], (Json{500000.0, 5200000.0, 0.0})) << said;
   EXPECT_EQ(said["origin_added"], true);
-  const Outcome again = run({kMerlin, "mesh", "info", out_, "--json"});  // after a note
+  const Outcome again = run({kMerlin, "mesh", "info", out_, "--json"});  // comes after a note
   const Json info = Json::parse(again.output.substr(again.output.find('{')));
   EXPECT_EQ(info["origin"], (Json{500000.0, 5200000.0, 0.0}));
   EXPECT_EQ(info["box"]["low"], (Json{0.125, 0.0, 0.0}));
   EXPECT_EQ(info["box"]["high"], (Json{0.375, 0.25, 0.0}));
 }
 
-// A map that merlin mesh export wrote is at the same place, with and without a round trip.
+// A map that merlin mesh export has written is imported at the same place, with and without a round
+// trip.
 TEST_F(GltfImport, AnExportOfAMapIsImportedAtTheSamePlace) {
   writeText(dir_ / "far.obj",
             "v 500000.125 5200000.25 10\nv 500002.125 5200000.25 10\nv 500002.125 5200002.25 "

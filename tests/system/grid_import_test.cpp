@@ -1,5 +1,5 @@
-// `merlin mesh import` on range images and elevation maps of other programs' formats: FITS, and
-// what GDAL reads. All files are synthetic; their bytes are written here.
+// `merlin mesh import` of range images and elevation maps in formats of other programs: FITS, and
+// formats that GDAL reads. All files are synthetic; their bytes are written here.
 #include <bit>
 #include <cmath>
 #include <filesystem>
@@ -38,7 +38,8 @@ std::string bigDoubles(const std::vector<double>& values) {
   return bytes;
 }
 
-// A FITS file of blocks of 2880 bytes. `cards`: "KEY = value" each, after those of the size.
+// A FITS file in blocks of 2880 bytes. `cards`: a "KEY = value" each, written after the cards of
+// the size.
 std::string fits(int bits, int width, int height, const std::vector<std::string>& cards,
                  const std::string& pixels) {
   std::vector<std::string> all = {
@@ -166,12 +167,13 @@ class GridImport : public testing::Test {
     return start == std::string::npos ? nlohmann::json()
                                       : nlohmann::json::parse(outcome.output.substr(start));
   }
-  // The box of the mesh that was written: low and high corner.
+  // The box of the mesh that was written: its low and its high corner.
   std::array<std::array<double, 3>, 2> box() {
     const auto info = nlohmann::json::parse(run({kMerlin, "mesh", "info", ply_, "--json"}).output);
     return {info["box"]["low"], info["box"]["high"]};
   }
-  // The message, whose one line names the file; nothing is left behind.
+  // The error message. Expects that it is one line with the file's name, and that no file is left
+  // behind.
   std::string refusal(const std::string& name, const std::string& bytes,
                       std::vector<std::string> options = {}) {
     const Outcome outcome = import(name, bytes, std::move(options));
@@ -269,7 +271,7 @@ TEST_F(GridImport, FaultsOfAFitsFileNameTheirCard) {
                 "card ALT2: is missing; there are 2 rows");
 }
 
-// A FITS file whose images are the primary one, without axes, and two extensions.
+// A FITS file with a primary image without axes and two extensions.
 std::string fitsOfTwo() {
   const auto extension = [](const std::string& name, int width, float range) {
     std::string bytes =
@@ -323,8 +325,8 @@ TEST_F(GridImport, AFitsFileThatIsCutOrTooLargeOrEmptyIsRefused) {
   expectRefusal("a.fits", fits(-32, 2, 2, kPinhole, bigFloats({0, 0, 0, 0})), "none of its 2 x 2");
 }
 
-// What `merlin mesh scan` writes, CFITSIO reads; the names of the images beside it are longer than
-// a card, one with a quote where the card ends.
+// CFITSIO has to read what `merlin mesh scan` writes. The names of the companion images are longer
+// than a card; one has a quote where its card ends.
 TEST_F(GridImport, AScanAsFitsComesBackWithItsCameraAndItsModalities) {
   const std::string stem = std::string(52, 'x') + "'s scan";
   const auto scanned = [&](const std::string& ending) {
@@ -449,7 +451,7 @@ TEST_F(GridImport, AUsgsDemIsReadFromItsProfiles) {
   EXPECT_EQ(json["origin"][1], 5100000);
 }
 
-// GTOPO30: the heights are one file, its description another of the same name.
+// GTOPO30: one file has the heights, another one of the same name their description.
 TEST_F(GridImport, GtopoIsReadWithTheHeaderBesideIt) {
   std::string heights;
   for (const int v : {10, 20, 30, 40, -9999, 60})
@@ -476,7 +478,8 @@ TEST_F(GridImport, MapsThatAreNoneAreRefused) {
   expectRefusal("a.dem", usgsDem().substr(0, 1100), "a.dem: ");
 }
 
-// What a map names is not read: neither by a reader for such maps, nor past the sandbox.
+// A map that refers to other files is refused: by merlin, which does not read the format, and by
+// merlin-import alone, which has no reader for it.
 TEST_F(GridImport, AFileThatNamesOthersIsNotFollowed) {
   writeText(dir_ / "secret.tif", Tiff().of(3, 2, Tiff::shorts({100, 110, 1, 120, 130, 140})));
   const std::string vrt =

@@ -1,4 +1,4 @@
-// The guide "From boxes to wall": its commands exist, its pieces of configuration are valid.
+// The guide "From boxes to wall": its commands exist, and its pieces of configuration are valid.
 #include <filesystem>
 #include <regex>
 #include <sstream>
@@ -23,7 +23,7 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-// The words of each line that runs `merlin`, without a comment behind it.
+// The words of each line that runs `merlin`, without a trailing comment.
 std::vector<std::vector<std::string>> commands() {
   std::vector<std::vector<std::string>> all;
   const std::regex command("    (# )?merlin ([^#]*)(#.*)?");
@@ -37,7 +37,7 @@ std::vector<std::vector<std::string>> commands() {
   return all;
 }
 
-// Each block between "```json" and "```".
+// The text of each block between "```json" and "```".
 std::vector<std::string> configurations() {
   std::vector<std::string> all;
   bool inside = false;
@@ -73,7 +73,7 @@ TEST(Guide, ItsConfigurationsAreValid) {
   }
 }
 
-// A reader follows the guide from a file to the next: none may be missing.
+// The guide sends its reader to these files, so none may be missing.
 TEST(Guide, TheFilesThatItNamesAreThere) {
   const std::regex named("`([a-z_/]+/README\\.md)`|/usr/share/merlin/([a-z0-9-]+\\.json)");
   const std::string text = readText(kGuide);

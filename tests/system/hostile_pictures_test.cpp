@@ -1,6 +1,6 @@
-// What a running wall says about pictures that lie, slides that change or vanish, and ports that
-// are taken, as a table of a message for each: `hostile_pictures_test` prints it. The wall shows
-// what it showed.
+// What a running wall reports about pictures with wrong contents, slides that change or vanish, and
+// ports that are in use. `hostile_pictures_test` prints a table with a message for each. The wall
+// must go on showing its content.
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -25,20 +25,21 @@ std::string plainPyramid(Rgb colour) {
       {.width = 300, .height = 200, .colour = [colour](int, int) { return colour; }});
 }
 
-// The pyramid with another value of a field of its first directory.
+// The pyramid with another value in a field of its first directory.
 std::string withField(std::string bytes, int tag, std::uint64_t value) {
   detail::putAt(bytes, fieldAt(bytes, directoriesOf(bytes)[0], tag), value);
   return bytes;
 }
 
-// Each level ends with the offset of the next one.
+// The pyramid whose last level points to a next directory; each level ends with such an offset.
 std::string withNextOfLast(std::string bytes, std::uint64_t next) {
   const std::size_t last = directoriesOf(bytes).back();
   detail::putAt(bytes, last + 8 + 20 * numberAt(bytes, last), next);
   return bytes;
 }
 
-// 400,000 x 250,000 pixels by the header, and as many tiles as the table of the file's form needs.
+// According to its header, the file has 400,000 x 250,000 pixels; it lists as many tiles as the
+// header implies if `with_places`.
 std::string gigapixels(bool with_places) {
   std::string bytes = withField(withField(pyramidBytes(), 256, 400'000), 257, 250'000);
   const std::size_t directory = directoriesOf(bytes)[0];
@@ -68,7 +69,7 @@ std::string withTilesOverOneAnother() {
 struct Case {
   std::string what;
   std::string bytes;
-  std::string said;  // part of the message; empty: it is shown
+  std::string said;  // part of the message; empty: the picture is shown
 };
 
 std::vector<Case> pictures() {
@@ -96,7 +97,7 @@ std::vector<Case> pictures() {
   };
 }
 
-// One wall for all cases; at the end the table is printed.
+// One wall serves all cases; the table is printed at the end.
 class HostilePictures : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -123,7 +124,7 @@ class HostilePictures : public testing::Test {
   }
 
   static std::string slide(const std::string& name) { return *dir_ / "slides/" + name + ".tif"; }
-  // A file of the content folder: what a client has put there by itself.
+  // A file of the content folder, put there by a client without merlin show.
   static std::string shared(const std::string& name) {
     return *dir_ / (m_->instance() + ".shown/" + name);
   }
@@ -142,14 +143,14 @@ class HostilePictures : public testing::Test {
     const auto content = m_->status()["content"];
     return fmt::format("{} {}", content.value("name", ""), content.value("slide", ""));
   }
-  // A row of the table. The folder's name is left out of the message.
+  // Adds a row to the table. The folder's path is removed from the message.
   static void row(const std::string& what, std::string said) {
     while (!said.empty() && said.back() == '\n') said.pop_back();
     for (std::size_t at = 0; (at = said.find(*dir_ / "")) != std::string::npos;)
       said.erase(at, dir_->path().size() + 1);
     table_ += fmt::format("{:40} {}\n", what, said);
   }
-  // The row of an event, which is awaited.
+  // Waits for an event and adds its row.
   static void rowOf(const std::string& what, const std::string& said) {
     EXPECT_TRUE(m_->process().saysEventually(said)) << m_->process().output();
     const std::string log = m_->process().output();
@@ -246,7 +247,7 @@ class BusyPort : public HostilePictures {
     taken_ = *std::move(taken);
     port_ = net::portOf(taken_.get());
   }
-  // A process of its own whose configuration has the port.
+  // The configuration of another process that uses the port.
   std::string config(const std::string& name, nlohmann::json settings) {
     settings["instance"] = privateName(name);
     settings["run_directory"] = dir_->path();

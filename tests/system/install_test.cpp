@@ -1,5 +1,5 @@
-// Runs the programs, configuration and unit that `cmake --install` installs, under the unit's
-// restrictions but without systemd.
+// Runs the installed programs, with the installed configuration and the restrictions of the
+// installed units, but without systemd.
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -25,10 +25,10 @@ using nlohmann::json;
 
 constexpr unsigned kNobody = 65534;  // the user to which under_unit changes from root
 
-// A socket at a free port of this machine alone.
+// A socket that is bound to a free port of the loopback interface.
 struct LocalSocket {
   UniqueFd fd{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
-  int port = 0;  // 0: there is none
+  int port = 0;  // 0: there is no free port
 
   LocalSocket() {
     sockaddr_in address{};
@@ -44,7 +44,7 @@ struct LocalSocket {
 
 int freePort() { return LocalSocket().port; }
 
-// Not valid if nobody listens.
+// Connects to the port; the result is invalid if nobody listens there.
 UniqueFd connected(int port) {
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
@@ -80,8 +80,8 @@ class Install : public testing::Test {
     return path;
   }
 
-  // The installed configuration with a model, names private to this test, and `patch` merged into
-  // it.
+  // The installed configuration, changed to show a model and to use names private to this test,
+  // with `patch` merged into it.
   std::string configuration(const json& patch) {
     const std::string model = makeModel(dir_, 5);
     json config = json::parse(readText(root_ + "/etc/merlin/merlin.json"));
@@ -196,7 +196,7 @@ TEST_F(Install, TheExampleInCppIsCompiledFromThePackage) {
   EXPECT_EQ(compiled.status, 0) << compiled.output;
 }
 
-// All texts that the first group of `pattern` matches.
+// The text that the first group of `pattern` has in each match.
 std::set<std::string> namedIn(const std::string& text, const char* pattern) {
   const std::regex named(pattern);
   std::set<std::string> names;
@@ -205,12 +205,12 @@ std::set<std::string> namedIn(const std::string& text, const char* pattern) {
   return names;
 }
 
-// Sources, tests and what is made of them are in the repository alone, as README.md says.
+// Sources, tests and build results exist in the repository only, as README.md says.
 bool isOfTheRepository(const std::string& name) {
   return name.starts_with("tests/") || name.starts_with("build/") || name == "CONTRIBUTING.md";
 }
 
-// A name is relative to the document's folder, or to the top of all documents.
+// A document names a file relative to its own folder, or to the top folder of all documents.
 bool isFile(const std::string& name, const fs::path& folder, const fs::path& top) {
   return fs::is_regular_file(folder / name) || fs::is_regular_file(top / name);
 }
@@ -225,7 +225,8 @@ TEST_F(Install, EveryLinkToAFileInAnInstalledDocumentResolves) {
     const fs::path source = fs::path(kSource) / folder.lexically_relative(top);
     const std::string text = readText(entry.path());
     for (const std::string& name : namedIn(text, "`([A-Za-z0-9_./-]+\\.(md|json|py|c|png))[`: ]")) {
-      // A name that is no file of ours is a file of another program, or one that a user makes.
+      // A name that is no file in the repository belongs to another program, or is a file that a
+      // user makes.
       if (isOfTheRepository(name) || !isFile(name, source, kSource)) continue;
       ++links;
       EXPECT_TRUE(isFile(name, folder, top)) << name << " in " << entry.path();
@@ -251,7 +252,7 @@ TEST_F(Install, EveryDocumentThatTheManualPagesNameIsInstalled) {
     EXPECT_TRUE(fs::is_regular_file(root_ + "/usr/share/doc/merlin/" + name)) << name;
 }
 
-// The page lets a reader copy an example before there is a model of his own.
+// The guide lets its reader copy an example before he has a model of his own.
 TEST_F(Install, EveryExampleThatTheGuideNamesIsValidWhenItIsCopied) {
   const auto examples =
       namedIn(readText(root_ + "/usr/share/doc/merlin/systemd/from-boxes-to-wall.md"),
@@ -270,7 +271,8 @@ TEST_F(Install, EveryExampleThatTheGuideNamesIsValidWhenItIsCopied) {
   }
 }
 
-// On a machine with no device and no display, it shows the demo's model, and nothing is amiss.
+// On a machine without devices and displays, the configuration shows the demo's model and raises no
+// alarm.
 TEST_F(Install, TheInstalledConfigurationShowsTheInstalledModelWithoutAnAlarm) {
   json config = json::parse(readText(root_ + "/etc/merlin/merlin.json"));
   EXPECT_EQ(config["wall"]["model"], "/usr/share/merlin/ankylosaurus.mrm");
@@ -278,7 +280,8 @@ TEST_F(Install, TheInstalledConfigurationShowsTheInstalledModelWithoutAnAlarm) {
   config["wall"]["model"] = root_ + "/usr/share/merlin/ankylosaurus.mrm";
   config["wall"]["playlist"]["after_s"] = 0.1;
   config["wall"]["rate"]["rate_hz"] = 10;
-  config["wall"]["outputs"][1]["kms"]["card"] = "/dev/dri/none";  // none of the tester's displays
+  // The displays of the machine on which the test runs must not be used.
+  config["wall"]["outputs"][1]["kms"]["card"] = "/dev/dri/none";
   config.merge_patch({{"instance", instance_},
                       {"run_directory", runDirectory()},
                       {"state_file", runDirectory() + "/state.json"}});
@@ -331,8 +334,8 @@ TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
   EXPECT_EQ(rfb.kill(SIGTERM), 0) << rfb.output();
 }
 
-// The alarms' process under its unit, with a device that is absent from the start and this program,
-// whose argument is a file that it may write.
+// The alarms' process under its unit's restrictions, with a device that is absent from the start.
+// The alarm starts `program` with a file name as an argument; the program may write that file.
 class InstalledAlarms : public Install {
  protected:
   void startWith(const std::string& program, const std::vector<std::string>& drop_ins = {}) {
@@ -366,19 +369,19 @@ TEST_F(InstalledAlarms, AProgramThatCallsWhatTheUnitForbidsGetsAnError) {
   EXPECT_TRUE(tells("ball: absent")) << readText(told_);
 }
 
-// A setuid sendmail is what it is only without any filter.
+// A setuid sendmail gains its privileges only if no system-call filter is installed.
 TEST_F(InstalledAlarms, WithTheDropInForMailAProgramMayGainPrivileges) {
   startWith("#!/bin/sh\ncat >>\"$1\"\ngrep -E 'NoNewPrivs|Seccomp:' /proc/self/status >>\"$1\"\n",
             {"mail.conf"});
   EXPECT_TRUE(tells("NoNewPrivs:\t0")) << readText(told_) << alarms_->output();
   EXPECT_TRUE(tells("ball: absent")) << readText(told_);
   const std::string seccomp = readText("/proc/self/status");
-  const auto at = seccomp.find("Seccomp:");  // a container may have a filter of its own
+  const auto at = seccomp.find("Seccomp:");  // a container may have installed a filter of its own
   ASSERT_NE(at, std::string::npos);
   EXPECT_TRUE(tells(seccomp.substr(at, seccomp.find('\n', at) - at))) << readText(told_);
 }
 
-// The program that daemon/alarms/README.md gives, with another address.
+// The program that daemon/alarms/README.md recommends, with another address.
 TEST_F(InstalledAlarms, TheProgramOfTheDocumentReachesAServerUnderTheUnit) {
   if (run({"which", "curl"}).status != 0) GTEST_SKIP() << "curl is not installed";
   const std::string document = readText(kSource + "/daemon/alarms/README.md");
@@ -404,7 +407,8 @@ TEST_F(InstalledAlarms, TheProgramOfTheDocumentReachesAServerUnderTheUnit) {
   EXPECT_NE(request.find("\"what\": \"ball: absent"), std::string::npos) << request;
 }
 
-// What a killed merlind leaves in shared memory, of any instance; others' files stay.
+// Objects that killed merlinds leave in shared memory are removed, whatever their instance; other
+// programs' files stay.
 TEST(Purge, TakesWhatAKilledMerlindLeftInSharedMemory) {
   const TempDir root;
   fs::create_directories(root / "etc");

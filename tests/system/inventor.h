@@ -1,4 +1,5 @@
-// A model exported by merlin, opened in a program that uses Coin and has no MERLIN headers.
+// A model that merlin exported, opened in a program that uses Coin and includes no header of
+// MERLIN.
 #pragma once
 
 #include <cmath>

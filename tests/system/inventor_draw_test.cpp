@@ -1,5 +1,5 @@
 // The program of inventor.h with an EGL context, which needs no screen: what the node draws, and
-// how it detects by itself that the view moves.
+// how it detects without the viewer's help that the view moves.
 #include <cstdint>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// The installed module in any Coin program: fields, files, picking, broken models, the frame rate.
+// The installed module in any Coin program: fields, files, picking, damaged models, the frame rate.
 #include "tests/system/inventor.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ TEST_F(Inventor, CoinLoadsTheNodeByItsName) {
   EXPECT_EQ(maximum, "800");
   EXPECT_LT(std::atoi(minimum.getString()), 50);
   const int nodes = static_cast<SoMFVec3f*>(field("vertex"))->getNum();
-  EXPECT_GT(nodes, 441);  // the mesh's vertices, and one node for each edge collapse
+  EXPECT_GT(nodes, 441);  // one node for each vertex of the mesh and for each edge collapse
   EXPECT_EQ(nodes, 441 + whole("parents").getNum());
   EXPECT_EQ(static_cast<SoMFVec3f*>(field("normal"))->getNum(), nodes);
   EXPECT_EQ(static_cast<SoMFColor*>(field("diffuseColor"))->getNum(), nodes);

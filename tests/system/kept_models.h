@@ -1,5 +1,5 @@
-// Models of the demo's scan, made once for all tests of a build and kept beside its programs:
-// under a sanitizer each takes seconds, and most tests with the real programs need one.
+// Models of the demo's scan, made once for all tests of a build and kept beside its programs. Most
+// tests with the real programs need one, and under a sanitizer each takes seconds to make.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,14 @@
 
 namespace merlin::test {
 
-// The kept file of this name, which ends in .mrm. If it is not there, or older than the program
-// merlin, `make` writes it, under another name first: tests run side by side.
+// The path of the kept file `name`, which ends in .mrm. If the file does not exist, or is older
+// than the program merlin, `make` writes it under a temporary name first, since tests run in
+// parallel.
 std::string keptModel(const std::string& name,
                       const std::function<Outcome(const std::string& path)>& make);
 
-// The demo's scan at all resolutions, as a copy of the test's own: FOLDER/full.mrm.
+// Copies the demo's scan at all resolutions into the test's folder; returns the path
+// FOLDER/full.mrm.
 std::string makeFullModel(const TempDir& dir);
 
 // Makes FOLDER/model.mrm with `percent` of the triangles, so few that a build with a sanitizer can

@@ -1,4 +1,4 @@
-// merlind --last-good with a configuration that somebody broke while it did not run.
+// merlind --last-good with a configuration file that was damaged while merlind was not running.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class LastGood : public testing::Test {
     return std::make_unique<Process>(
         arguments, std::map<std::string, std::string>{{"STATE_DIRECTORY", state_}});
   }
-  // The settings that a process has kept; empty if it has kept none.
+  // The last good settings that a process has stored; empty if there are none.
   std::string kept() const {
     for (const auto& entry : fs::directory_iterator(state_))
       if (entry.path().extension() == ".last-good") return readText(entry.path());
@@ -74,7 +74,7 @@ TEST_F(LastGood, IsStartedWithSaidAndLeftByTheNextReload) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
-// Somebody has to be told of the broken file.
+// Somebody has to learn that the file is damaged.
 TEST_F(LastGood, OfTheWallIsWhatThePageStartsWith) {
   json config = valid(7);
   config["page"] = {{"port", freePagePort()}};
@@ -93,7 +93,8 @@ TEST_F(LastGood, OfTheWallIsWhatThePageStartsWith) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
-// The last good settings are in another folder than the configuration, and name the same files.
+// The last good settings are stored in another folder than the configuration, but have to name the
+// same files.
 TEST_F(LastGood, NamesFilesThatTheConfigurationNamesFromItsFolder) {
   json config = valid(7);
   config["wall"]["model"] = fs::path(model_).filename();
@@ -112,7 +113,7 @@ TEST_F(LastGood, NamesFilesThatTheConfigurationNamesFromItsFolder) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
-// The kept settings may contain a token, among the arguments of an alarm's program.
+// The stored settings may contain a token among the arguments of an alarm's program.
 TEST_F(LastGood, IsReadableByNoMoreThanEachFileOfTheConfiguration) {
   const std::string more = dir_ / "conf.d/more.json";
   fs::create_directories(dir_ / "conf.d");
@@ -142,7 +143,7 @@ TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
   writeText(config_, "{");
   EXPECT_EQ(start({})->wait(), 2) << "a person at a terminal wants to hear of it";
-  // The file that it names is gone as well: the wall is shown without that content.
+  // The model that the file names is missing as well, so the wall is shown without it.
   fs::remove(model_);
   const auto bare = start();
   EXPECT_TRUE(bare->saysEventually("ready")) << bare->output();

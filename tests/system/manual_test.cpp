@@ -1,4 +1,4 @@
-// Manual pages and completion, as the programs print them; groff and bash judge.
+// The manual pages and completions that the programs print, checked by groff and bash.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(ManPage, HasEveryCommandWithItsOptions) {
     EXPECT_NE(page.find(line), std::string::npos) << line << "\n" << page;
 }
 
-// What bash offers after these words, of which the last one is being written.
+// The completions that bash offers for these words, the last of which is incomplete.
 std::string offered(const std::string& script, const std::string& words) {
   return run({"bash", "-c",
               script + "\nCOMP_WORDS=(" + words +

@@ -1,7 +1,6 @@
 // Several devices of each kind at one merlind, over pseudo-terminals: two gloves, a tracker with
-// two stations, two balls, a gamepad, and two hands; and a tracker of a VRPN server. Each has its
-// slots under its name, and none notices what happens to another; two people take turns at the
-// wall.
+// two stations, two balls, a gamepad and two hands; and a tracker of a VRPN server. Each device has
+// its slots under its name and is not affected by the others. Two people take turns at the wall.
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -29,7 +28,7 @@ constexpr std::size_t kNextMode = actionIndex("next_mode"), kResetView = actionI
 
 struct Emulated {
   std::string name, driver, script;
-  std::vector<std::string> more = {};  // options of merlin emulate
+  std::vector<std::string> more = {};  // further options of merlin emulate
 };
 
 // Emulated devices, each a process that can be killed alone.
@@ -50,7 +49,7 @@ class Emulators {
   }
   void kill(const std::string& name) { processes_.at(name)->kill(SIGKILL); }
 
-  // For an emulator with the option --step: its person goes on by `phases` phases of the script.
+  // For an emulator with the option --step: advances its person by `phases` phases of the script.
   void step(const std::string& name, int phases) {
     for (int i = 0; i < phases; ++i) {
       const std::size_t said = processes_.at(name)->output().size();
@@ -59,7 +58,7 @@ class Emulators {
     }
   }
 
-  // The configuration's list. `people`: whose device is whose.
+  // The devices as a list for the configuration. `people`: the person of each device.
   json list(const std::map<std::string, std::string>& people = {}) const {
     json all = json::array();
     for (const Emulated& device : all_) {
@@ -78,8 +77,8 @@ class Emulators {
   std::map<std::string, std::unique_ptr<Process>> processes_;
 };
 
-// A gamepad at the other end of a pseudo-terminal: a thread describes it and moves its stick, again
-// and again, so that it may be opened at any time.
+// A gamepad at the other end of a pseudo-terminal. A thread sends its description and moves its
+// stick repeatedly, so that merlind may open it at any time.
 class Gamepad {
  public:
   explicit Gamepad(const std::string& link)
@@ -132,7 +131,8 @@ struct Removable {
 
 class ManyDevices : public testing::Test {
  protected:
-  // Both hands make a fist and open in turn, at the same time. `more`: other devices.
+  // Starts merlind. Both hands make a fist and open it in turn, at the same time. `more`: further
+  // devices.
   void start(const std::string& script_of_near, const std::string& script_of_far,
              const json& more = json::array()) {
     emulators_.emplace(std::vector<Emulated>{{"left", "cyberglove", "grabbing"},
@@ -161,12 +161,12 @@ class ManyDevices : public testing::Test {
       ASSERT_TRUE(m_->healthIs(device.name, HealthState::kOk))
           << device.name << m_->process().output();
   }
-  // How often inputs of the device have begun the action with this index of kActions.
+  // How often inputs of the device have begun this action; `action` is an index of kActions.
   std::uint32_t begun(const std::string& device, std::size_t action) {
     const auto state = m_->actions(device);
     return state ? state->begun[action] : 0;
   }
-  // How many samples the device has sent.
+  // Number of samples that the device has sent.
   std::uint64_t count(const std::string& device) {
     const auto* const slots = m_->devices();
     if (const auto* const glove = slots->glove(device)) return glove->samples->count();
@@ -181,7 +181,7 @@ class ManyDevices : public testing::Test {
   std::optional<Merlind> m_;
 };
 
-// Whether one of the newest samples of the channel is what `is` looks for.
+// Whether `is` holds for one of the newest samples of the channel.
 template <typename T, typename Is>
 bool has(const shm::Channel<T>& channel, Is is) {
   const std::uint64_t count = channel.count();
@@ -193,7 +193,7 @@ bool has(const shm::Channel<T>& channel, Is is) {
   return false;
 }
 
-// Whether the hand's newest sample is made of this glove's joints and this station's record.
+// Whether the hand's newest sample combines this glove's joints with this station's record.
 bool isMadeOf(const shm::DeviceSlots& devices, const char* hand, const char* glove,
               std::size_t station) {
   const auto made = devices.hand(hand)->samples->newest();
@@ -231,7 +231,8 @@ TEST_F(ManyDevices, EachHasItsSlotsAndItsPlaceInTheStatusUnderItsName) {
   EXPECT_FALSE(fields.contains("glove.angle_rad")) << "no device has the default name";
 
   json status;
-  // All at once: on a busy machine one of them may be stale for a moment.
+  // All conditions have to hold at the same time; on a busy machine, a device may be stale for a
+  // moment.
   EXPECT_TRUE(eventually([&] {
     status = m_->status();
     return status["devices"].size() == 6 &&
@@ -356,7 +357,7 @@ TEST_F(ManyDevices, TheCommandsCalibrateAndRecordTheOneThatIsNamed) {
       << none.output;
 }
 
-// An old file is not half read, and what it says names the way to the new form.
+// A file in the old form is refused as a whole, and the message shows the way to the new form.
 TEST(ManyDevicesCommands, CalibratingAFileOfTheEarlierFormIsRefused) {
   const TempDir dir;
   const std::string old = "{\"devices\": {\"ball\": {\"dead_zone\": 4}}}";
@@ -370,8 +371,8 @@ TEST(ManyDevicesCommands, CalibratingAFileOfTheEarlierFormIsRefused) {
   EXPECT_EQ(readText(dir / "old.json"), old);
 }
 
-// Two people with a ball each. The script "panel": 0 button 3, 1 rest, 2 a push down, 3 rest,
-// 4 button 1, 5 rest.
+// Two people with a ball each. The phases of the script "panel": 0 button 3, 1 rest, 2 a push down,
+// 3 rest, 4 button 1, 5 rest.
 class TwoPeople : public testing::Test {
  protected:
   void SetUp() override {
@@ -402,7 +403,7 @@ class TwoPeople : public testing::Test {
       return sample && std::abs(sample->translation[1]) > 0.3F;
     });
   }
-  // The wall has read its input, and written what came of it, at least once from now on.
+  // Waits until the wall has read its input and published the effect at least once.
   void aFewPeriodsPass() {
     for (int i = 0; i < 4; ++i) {
       const std::int64_t updated = m_->wall().updated_ns;
@@ -422,7 +423,7 @@ TEST_F(TwoPeople, TakeTurnsAtTheWall) {
   emulators_->step("one", 1);
   ASSERT_TRUE(moves(false));
 
-  // It is still a's turn for a minute.
+  // For a minute, it is still the turn of person a.
   emulators_->step("two", 1);
   ASSERT_TRUE(isPushed("two"));
   aFewPeriodsPass();

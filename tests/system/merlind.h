@@ -1,5 +1,5 @@
-// Merlind: a real merlind process on emulated devices, with an instance name and a folder of its
-// own.
+// Merlind: a real merlind process with emulated devices, and with an instance name and a folder of
+// its own.
 #pragma once
 
 #include <map>
@@ -17,8 +17,8 @@
 
 namespace merlin::test {
 
-// Not for the initial values of other global constants: clang sets those of a precompiled header
-// last.
+// Do not use these to initialise other global constants: clang initialises those of a precompiled
+// header last.
 inline const std::string kMerlin = MERLIN_BIN_DIR "/merlin";
 inline const std::string kMerlind = MERLIN_BIN_DIR "/merlind";
 inline const std::string kSource = MERLIN_SOURCE_DIR;
@@ -31,11 +31,11 @@ struct MerlindOptions {
   nlohmann::json also = nlohmann::json::object();  // merged into the configuration
 };
 
-// An entry of the configuration's list of devices. `own`: the settings of its driver.
+// An entry for the configuration's list of devices. `own`: the settings of its driver.
 nlohmann::json deviceEntry(const std::string& name, const std::string& driver,
                            const std::string& port = {}, const nlohmann::json& own = nullptr);
 
-// A configuration's list with this one device.
+// A list of devices for the configuration that has this device only.
 nlohmann::json onlyDevice(const nlohmann::json& entry);
 
 class Merlind {
@@ -48,15 +48,16 @@ class Merlind {
   const std::string& config() const { return config_; }
   bool ready() { return process_->saysEventually("ready"); }
 
-  // Nothing before its shared memory is there.
+  // Null until the daemon's shared memory exists.
   const shm::DeviceSlots* devices();
   shm::WallStats wall();
-  // The last health of the device with this name; nothing before the first.
+  // The latest health of the device with this name; nothing before the first report.
   std::optional<DeviceHealth> health(const std::string& device);
-  // After a start of its own the daemon has other shared memory.
+  // To be called after a restart of the daemon, which then has new shared memory.
   void openAgain() { devices_.reset(); }
   bool healthIs(const std::string& device, HealthState state);
-  // The actions that the inputs of the device with this name have begun; nothing before the first.
+  // The actions that inputs of the device with this name have begun; nothing before the first
+  // report.
   std::optional<shm::ActionState> actions(const std::string& device);
   nlohmann::json status();
 

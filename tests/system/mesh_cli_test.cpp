@@ -211,7 +211,7 @@ TEST_F(MeshCli, ExportsToEveryFormatAndSaysWhatIsLeftOut) {
   EXPECT_EQ(infoOf(dir_ / "a.obj")["triangles"], 1000);
 }
 
-// Arguments that would lose data, or that a user cannot have meant.
+// Arguments that would lose data, or that a user cannot have intended.
 TEST_F(MeshCli, RefusesWhatWouldNotDoWhatItSays) {
   const std::string copy = dir_ / "scan.ply", model = dir_ / "a.mrm";
   std::filesystem::copy_file(scan_, copy);

@@ -1,5 +1,5 @@
-// `merlin mesh fuse` on scans that `merlin mesh scan` takes: the model comes back, and what is
-// refused is said.
+// `merlin mesh fuse` on scans made by `merlin mesh scan`: the result is near the model, and each
+// refusal has a message.
 #include <cmath>
 #include <filesystem>
 
@@ -25,7 +25,7 @@ class MeshFuse : public testing::Test {
                           ball.triangles[i + 2] + 1);
     writeText(model_, text);
   }
-  // Twelve scans around the model, four each at three heights.
+  // Twelve scans around the model: four at each of three heights.
   std::vector<std::string> scanned() {
     std::vector<std::string> files;
     for (int i = 0; i < 12; ++i) {

@@ -1,4 +1,4 @@
-// `merlin mesh import` on small synthetic files: what it makes, what it says, and what it refuses.
+// `merlin mesh import` of small synthetic files: the meshes, the messages and the refusals.
 #include <algorithm>
 #include <filesystem>
 
@@ -14,7 +14,7 @@ namespace {
 class MeshImport : public testing::Test {
  protected:
   MeshImport() {
-    // 8 x 6 pixels, 16 bits, 2 m away; the last pixel has no return.
+    // Range image of 8 x 6 pixels of 16 bits, 2 m away; the last pixel has no return.
     std::string pixels;
     for (int i = 0; i < 48; ++i) appendBe16(pixels, static_cast<std::uint16_t>(i < 47 ? 2000 : 0));
     writeText(scan_, kHeader + "8 6\n65535\n" + pixels);
@@ -36,7 +36,7 @@ class MeshImport : public testing::Test {
     return start == std::string::npos ? nlohmann::json()
                                       : nlohmann::json::parse(outcome.output.substr(start));
   }
-  // The message of an import that is refused, and that leaves nothing behind.
+  // The message of a refused import. Expects that no file is left behind.
   std::string refusal(std::vector<std::string> arguments) {
     const Outcome outcome = import(arguments);
     EXPECT_EQ(outcome.status, 2) << outcome.output;
@@ -200,7 +200,7 @@ TEST_F(MeshImport, AModelForTheWallIsSentToTheExport) {
                                          model + " -o OUT.ply makes a mesh of it");
 }
 
-// Where a map's coordinates are taken relative to an origin, all that is said of it agrees.
+// If a map's coordinates are stored relative to an origin, all reports have to agree about it.
 TEST_F(MeshImport, AMeshWithCoordinatesOfAMapKeepsItsOriginInReportModelAndScan) {
   const std::string far = dir_ / "far.obj", model = dir_ / "a.mrm";
   writeText(far,
@@ -265,7 +265,8 @@ TEST_F(MeshImport, AnExportPutsTheOriginBackUnlessItIsToBeLocal) {
   EXPECT_EQ(exported("e.ply"), "") << "nothing is said of a model without an origin";
 }
 
-// The mesh of an OBJ file in the coordinates of a map, whatever it passes through.
+// An OBJ file in the coordinates of a map; the mesh keeps them in each format that it is converted
+// to.
 TEST_F(MeshImport, AMeshLiesWhereItsFileDoesUnlessItIsToBeLocal) {
   const std::string far = dir_ / "far.obj", out = dir_ / "b.obj";
   writeText(far,
@@ -389,7 +390,7 @@ TEST_F(MeshImport, OptionsThatWouldDoNothingToARangeImageAreRefused) {
   }
 }
 
-// In the mesh's PLY file they would be read as something else, or not at all.
+// Features with such names would be read from the mesh's PLY file as something else, or not at all.
 TEST_F(MeshImport, NamesOfFeaturesThatAPlyFileCannotHoldAreRefused) {
   const auto refused = [&](const std::string& name, const std::string& why) {
     const std::string feature = name + "=" + (dir_ / "confidence.pgm");

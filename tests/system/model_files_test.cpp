@@ -1,5 +1,4 @@
-// What becomes of a wall whose model's file is overwritten, cut, replaced or removed while it
-// draws.
+// A wall whose model file is overwritten, cut, replaced or removed while the wall draws.
 #include <filesystem>
 #include <fstream>
 
@@ -22,7 +21,7 @@ class ModelFiles : public testing::Test {
   static void TearDownTestSuite() { delete dir_; }
   static std::string part(int percent) { return *dir_ / (std::to_string(percent) + ".mrm"); }
 
-  // In place, as cp does: the same inode.
+  // Overwrites the file in place, as cp does: the inode stays the same.
   static void overwrite(const std::string& path, const std::string& bytes) {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc);
     file << bytes;
@@ -40,7 +39,7 @@ class ModelFiles : public testing::Test {
       ++times;
     return times;
   }
-  // `change` is done, said, and the wall draws on.
+  // Makes the change; expects the sentence in the log, and that the wall goes on drawing.
   void expect(const std::string& sentence, const std::function<void()>& change) {
     const std::size_t before = said(sentence);
     change();
@@ -63,7 +62,7 @@ TEST_F(ModelFiles, WhateverHappensToThemTheWallDrawsOn) {
   ASSERT_TRUE(m_->ready()) << m_->process().output();
   const auto levels = m_->wall().detail_steps;
 
-  expect(shown, [&] { overwrite(live, readText(part(5))); });  // cp smaller.mrm live.mrm
+  expect(shown, [&] { overwrite(live, readText(part(5))); });  // as by cp smaller.mrm live.mrm
   EXPECT_TRUE(eventually([&] { return m_->wall().detail_steps < levels; })) << "it is the new one";
   const auto smaller = m_->wall().detail_steps;
   expect(refused, [&] { std::filesystem::resize_file(live, 0); });
@@ -84,8 +83,8 @@ TEST_F(ModelFiles, WhateverHappensToThemTheWallDrawsOn) {
   EXPECT_EQ(m_->process().kill(SIGTERM), 0) << m_->process().output();
 }
 
-// A file of the right size whose checksums are right, but whose indices are not, is one of the
-// damaged files of mrm_damage_test; here nobody moves, and the new model appears by itself.
+// mrm_damage_test covers files of the right size and with right checksums whose indices are wrong.
+// Here nothing moves, and the new model has to appear without any input.
 TEST_F(ModelFiles, AStillWallShowsTheNewOneByItself) {
   const std::string live = *dir_ / "still.mrm";
   std::filesystem::copy_file(part(5), live);

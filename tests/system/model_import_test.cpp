@@ -1,4 +1,4 @@
-// `merlin mesh import` on models of other programs' formats, which merlin-import reads. All of them
+// `merlin mesh import` of models in other programs' formats, which merlin-import reads. All files
 // are made here.
 #include <bit>
 #include <filesystem>
@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A square of side 2 in the plane z = 0, as two of the triangles' four corners name it.
+// An Inventor scene with a transform: a red square of side 2 in the plane z = 0, then a blue
+// triangle beside a degenerate one.
 const std::string kSquareIv =
     "#Inventor V2.1 ascii\nSeparator {\n Transform { translation 10 0 0 scaleFactor 1 3 1 }\n"
     " Material { diffuseColor 1 0 0 }\n Coordinate3 { point [ 0 0 0, 2 0 0, 2 2 0, 0 2 0 ] }\n"
@@ -33,7 +34,7 @@ const std::string kVrml97 =
     " geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }\n"
     "  coordIndex [ 0 1 2 3 -1 ] } } }\n";
 
-// Two instances of a square, one of them moved and doubled.
+// Two instances of a square; one of them is moved and enlarged to twice its size.
 std::string collada() {
   return R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -58,7 +59,7 @@ std::string collada() {
 )";
 }
 
-// A triangle; `root` is the outermost element's beginning.
+// A triangle as AMF; `root`: the start tag of the outermost element.
 std::string amf(const std::string& root, const std::string& colour) {
   std::string text = "<?xml version=\"1.0\"?>" + root + "<object id=\"0\"><mesh><vertices>";
   for (const char* at : {"<x>0</x><y>0</y>", "<x>1</x><y>0</y>", "<x>0</x><y>1</y>"})
@@ -68,7 +69,7 @@ std::string amf(const std::string& root, const std::string& colour) {
          "</object></amf>";
 }
 
-// The same triangle as 3MF; `attribute` of its outermost element.
+// The same triangle as 3MF; `attribute`: added to the outermost element.
 std::string threeMf(const std::string& attribute) {
   return *render::correct::zipBytes(
       {{"[Content_Types].xml",
@@ -122,7 +123,7 @@ std::string le(float x) {
   return bytes;
 }
 
-// The same with a picture, whose coordinates are to be scaled.
+// The same with a texture; its coordinates are scaled by `scale`.
 std::string threeDsWithPicture(float scale) {
   const std::string named("m\0", 2);
   const std::string material =
@@ -166,7 +167,8 @@ class ModelImport : public testing::Test {
     for (const auto& f : json["features"]) names += f["name"].get<std::string>() + " ";
     return names;
   }
-  // The file is refused by one line that names it and says `why`, and nothing is left of it.
+  // Expects that the file is refused by one line that names it and contains `why`, and that nothing
+  // is left of it.
   void expectRefused(const std::string& name, const std::string& content, const std::string& why,
                      const std::vector<std::string>& more = {}) {
     writeText(dir_ / name, content);
@@ -319,8 +321,8 @@ TEST_F(ModelImport, ATextureBesideTheModelIsKeptAndNoOtherFileIsRead) {
   EXPECT_NE(left["notes"].dump().find("this texture is left out"), std::string::npos) << left;
 }
 
-// The three files of a synthetic room (tests/support/textured_models.py): a floor whose picture
-// repeats, a wall, a board, and a pillar without a picture.
+// The synthetic room in the three formats of tests/support/textured_models.py: a floor whose
+// picture repeats, a wall, a board, and a pillar without a picture.
 class TexturedRoom : public ModelImport, public testing::WithParamInterface<const char*> {};
 
 TEST_P(TexturedRoom, HasOneTextureOfAllItsPictures) {
@@ -340,7 +342,7 @@ TEST_P(TexturedRoom, HasOneTextureOfAllItsPictures) {
   EXPECT_EQ(features(), "colour texcoord label normal ");
 }
 
-// The share of a picture's pixels that are like a colour, in percent.
+// The share of pixels that resemble a colour, in percent.
 double shareOf(const render::image::ImageFile& picture, const std::array<int, 3>& like) {
   std::size_t n = 0;
   for (std::size_t i = 0; i + 2 < picture.pixels.size(); i += 3) {
@@ -352,8 +354,8 @@ double shareOf(const render::image::ImageFile& picture, const std::array<int, 3>
   return 300.0 * static_cast<double>(n) / static_cast<double>(picture.pixels.size());
 }
 
-// Drawn by MERLIN from in front: the wall is red, the board has its yellow frame and its white
-// arrow, the pillar is green, the floor light and dark.
+// Seen from the front, the wall is red, the board has a yellow frame and a white arrow, the pillar
+// is green, and the floor is light and dark.
 TEST_P(TexturedRoom, LooksAsItsPicturesDo) {
   ASSERT_EQ(
       run({"python3", "-B", kSource + "/tests/support/textured_models.py", dir_.path()}).status, 0);
@@ -366,9 +368,9 @@ TEST_P(TexturedRoom, LooksAsItsPicturesDo) {
   struct Seen {
     const char* what;
     std::array<int, 3> colour;
-    double least, most;  // [%] of the picture
+    double least, most;  // [%] of the picture's pixels
   };
-  const bool linear = std::string_view(GetParam()) == "room.gltf";  // of its colours
+  const bool linear = std::string_view(GetParam()) == "room.gltf";  // of the picture's colours
   const Seen all[] = {
       {"bricks", {140, 60, 40}, 5, 20},
       {"the board's frame", {215, 170, 0}, 0.2, 1.5},
@@ -384,7 +386,7 @@ TEST_P(TexturedRoom, LooksAsItsPicturesDo) {
 
 INSTANTIATE_TEST_SUITE_P(Each, TexturedRoom, testing::Values("room.obj", "room.wrl", "room.gltf"));
 
-// Two squares side by side, of which each is a part.
+// Two squares side by side; each is a part of its own.
 TEST_F(ModelImport, PartsOfOneSurfaceAreWelded) {
   const auto square = [](int x) {
     return fmt::format(
@@ -421,7 +423,7 @@ TEST_F(ModelImport, InventorAndVrmlMayBePackedByGzip) {
     expectRefused(name, gzipped("ply\n"), "is packed by gzip; of packed files only Inventor");
   expectRefused("twice.gz", gzipped(packed), "is packed by gzip; of packed files only Inventor");
   std::string damaged = gzipped("ply\n");
-  damaged[10] = '\xff';  // the first byte behind the head
+  damaged[10] = '\xff';  // the first byte after the header
   for (const char* name : {"damaged.gz", "damaged.ply"})
     expectRefused(name, damaged, "gzip: is damaged at byte ");
 #if !defined(MERLIN_ANY_SANITIZER)
@@ -429,7 +431,7 @@ TEST_F(ModelImport, InventorAndVrmlMayBePackedByGzip) {
   const std::string member = gzipped(std::string(std::size_t{1} << 24, '#'));
   for (int i = 0; i < 64; ++i) bomb += member;
   expectRefused("bomb.iv", bomb, "gzip: unpacks to more than 1073741824 bytes",
-                {"--memory", "4G"});  // whatever this machine has free
+                {"--memory", "4G"});  // a fixed limit, whatever memory this machine has free
 #endif
 }
 
@@ -450,7 +452,8 @@ TEST_F(ModelImport, WhatIsWrongIsSaidInOneMessageThatNamesTheFile) {
 }
 
 TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
-#if !defined(MERLIN_ANY_SANITIZER)  // of which a crash would be a report, and which need terabytes
+// A sanitizer would report the crash, and it needs terabytes of address space.
+#if !defined(MERLIN_ANY_SANITIZER)
   std::string deep = "#Inventor V2.1 ascii\n";
   for (int i = 0; i < 200'000; ++i) deep += "Group {";
   expectRefused("deep.iv", deep, "the import ended by signal 11");

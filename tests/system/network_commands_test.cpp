@@ -1,4 +1,4 @@
-// Status and commands over a network: a real merlind, asked by merlin as from another machine.
+// Status and commands over a network: merlin asks a real merlind as from another machine.
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ class NetworkCommands : public testing::Test {
     writeText(dir_ / "server.public", key("server") + "\n");
     daemon_ = std::make_unique<Merlind>(
         dir_, makeModel(dir_, 5), "net",
-        MerlindOptions{.script = "still",  // a visitor would end the blank picture
+        MerlindOptions{.script = "still",  // the input of a visitor would end the black state
                        .also = {{"serve",
                                  {{"wall_endpoint", wall_},
                                   {"devices_endpoint", devices_},
@@ -98,7 +98,7 @@ TEST_F(NetworkCommands, AKeyThatIsNotListedGetsNoAnswer) {
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.output.find("does it list our public key?"), std::string::npos)
       << refused.output;
-  // Without encryption, and with the wrong server's key.
+  // A client without encryption, and one with the wrong key of the server.
   const status::KeyPair own = *status::readKeyPair(file("commander"));
   EXPECT_FALSE(status::ask(wall_, "status", seconds(1)));
   EXPECT_FALSE(status::ask({wall_, status::ClientKeys{own.public_key, own}}, "status", seconds(1)));
@@ -106,7 +106,7 @@ TEST_F(NetworkCommands, AKeyThatIsNotListedGetsNoAnswer) {
   EXPECT_EQ(merlin("commander", {"status"}).status, 0) << "others are still answered";
 }
 
-// The list keeps its name, so no setting changes.
+// The list's file name does not change, so the reload finds no changed setting.
 TEST_F(NetworkCommands, AKeyThatWasTakenOffTheListGetsNoAnswerAfterAReload) {
   ASSERT_EQ(merlin("commander", {"status"}).status, 0);
   writeText(dir_ / "commanders", readText(dir_ / "server.public"));
@@ -117,7 +117,7 @@ TEST_F(NetworkCommands, AKeyThatWasTakenOffTheListGetsNoAnswerAfterAReload) {
   EXPECT_EQ(merlin("reader", {"status"}).status, 0);
 }
 
-// Whatever a listed client sends, it gets its answer or none, and the next one gets its own.
+// Whatever a listed client sends, the server goes on and answers the next client.
 TEST_F(NetworkCommands, MessagesOfAnyFormDoNotHurt) {
   const status::KeyPair own = *status::readKeyPair(file("commander"));
   for (const std::size_t parts : {1U, 2U, 3U, 5U}) {
@@ -142,7 +142,8 @@ TEST_F(NetworkCommands, MessagesOfAnyFormDoNotHurt) {
   EXPECT_EQ(merlin("commander", {"status"}).status, 0);
 }
 
-// Whoever may read hears the wall's events as they come; nobody else hears anything.
+// A client whose key is listed receives the wall's events as they happen; other clients receive
+// nothing.
 TEST_F(NetworkCommands, TheWallsTopicsAreForListedKeys) {
   const auto hears = [&](const std::string& who, Duration patience) {
     zmq::context_t context;
@@ -196,8 +197,8 @@ TEST_F(NetworkCommands, AnAddressWithoutKeysIsRefusedByTheCheck) {
       << refused.output;
 }
 
-// The publisher's socket is bound to a local address and to an encrypted one; the local one must
-// not become encrypted when it is bound again.
+// The publisher's socket is bound to a local address and to an encrypted one. When the local one is
+// bound again, it must not become encrypted.
 TEST_F(NetworkCommands, ALocalSocketThatIsRemovedIsThereAgainAndNotEncrypted) {
   const std::string inner = dir_ / (daemon_->instance() + "-devices.status.inner");
   std::filesystem::remove(inner);

@@ -1,4 +1,5 @@
-// A daemon that runs for months: signals, disks that fill up and come back, unusual file names.
+// A daemon that runs for months: signals, disks that fill up and have room again, unusual file
+// names.
 #include <filesystem>
 #include <string>
 
@@ -32,7 +33,7 @@ TEST(Operation, SignalsThatAskForNothingEndNothing) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
-// Like a pager that was stopped, or a log reader that hangs.
+// A reader of the log that does not read, such as a stopped pager.
 TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
   const TempDir dir;
   const std::string fifo = dir / "log";
@@ -103,7 +104,8 @@ TEST(Operation, APictureThatCannotBeWrittenIsSaidAndSoIsItsReturn) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
-// As by an administrator's mistake, or by logind when an ordinary user logs out.
+// Objects may be removed by an administrator's mistake, or by logind when an ordinary user logs
+// out.
 TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
   const TempDir dir;
   Merlind m(dir, makeModel(dir, 2), "removed");
@@ -125,7 +127,7 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
   EXPECT_EQ(m.leftInSharedMemory().size(), 0u);
 }
 
-// One that the command takes.
+// An argument that the command accepts.
 std::string argumentFor(const CommandInfo& command) {
   if (command.name == "align") return "list";
   if (command.name == "reload") return "check";
@@ -147,7 +149,7 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
   ASSERT_TRUE(m.ready()) << m.process().output();
   std::filesystem::copy(dir / "model.mrm", dir / (m.instance() + ".shown/other.mrm"));
   for (const CommandInfo& command : kCommands) {
-    if (command.bindable == Bindable::kHeld) continue;  // takes effect only while its input is held
+    if (command.bindable == Bindable::kHeld) continue;  // needs a held input
     const bool by_wall = command.role == CommandOf::kWall;
     const std::string argument = argumentFor(command);
     const auto answer = status::ask(fmt::format("ipc://{}/{}-{}.command", dir.path(), m.instance(),

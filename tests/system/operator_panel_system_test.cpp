@@ -34,7 +34,7 @@ class OperatorPanelSystem : public testing::Test {
     wall_ = std::make_unique<Merlind>(dir_, makeModel(dir_, 5), "panel", options);
     ASSERT_TRUE(wall_->ready()) << wall_->process().output();
   }
-  // A VNC client that sees the operator's tile, and may work it.
+  // A VNC client that sees the operator's tile and may use it.
   VncClient& client() {
     if (client_) return *client_;
     rfb_ = std::make_unique<Process>(
@@ -60,8 +60,8 @@ class OperatorPanelSystem : public testing::Test {
     point(0, id);
   }
   using Condition = std::function<bool(const shm::WallStats&)>;
-  // Whether the wall is so after a click. A press that is not heard of for 1.5 s is let go without
-  // a click: a busy machine may need another one.
+  // Clicks until the condition holds. A press that the daemon has not received for 1.5 s is
+  // released without a click, so a busy machine may need another click.
   bool clickMakes(ControlId id, const Condition& condition) {
     const auto holds = [&] { return condition(wall_->wall()); };
     for (int tries = 0; tries < 4; ++tries) {
@@ -76,7 +76,7 @@ class OperatorPanelSystem : public testing::Test {
     const auto panel = opened ? (*opened)->panel.read() : std::nullopt;
     return panel && panel->by_ball == 1;
   }
-  // What is beside the panel, of a picture of the operator's tile or of the frame.
+  // The part beside the panel, cut out of a picture of the operator's tile or of the frame.
   static Image model(const Image& of) {
     const int left = of.width - 640, top = of.height - 480;
     Image part{layout().at.x, 480, {}};
@@ -86,7 +86,7 @@ class OperatorPanelSystem : public testing::Test {
     }
     return part;
   }
-  // The same of what `merlin snapshot` shows.
+  // The same part of what `merlin snapshot` shows.
   Image snapshot() {
     const std::string file = dir_ / "s.png";
     EXPECT_EQ(run({kMerlin, "snapshot", "--instance", wall_->instance(), "-o", file}).status, 0);
@@ -125,11 +125,11 @@ TEST_F(OperatorPanelSystem, AVncClientsMouseWorksItAndMovesNothingElse) {
   EXPECT_TRUE(
       clickMakes(ControlId::kMode, [](const auto& w) { return std::string(w.mode) == "object"; }));
 
-  // The model is where it was: beside the panel no pixel has changed.
+  // The model has not moved: no pixel beside the panel has changed.
   ASSERT_TRUE(isStill());
   EXPECT_TRUE(client().until(stands));
 
-  // A held arrow turns it, and stops when it is let go.
+  // A held arrow turns the model, which stops when the arrow is released.
   point(1, ControlId::kLeft);
   EXPECT_TRUE(
       client().until([&] { return differing(model(client().picture()), before, 8) > 1000; }));
@@ -152,12 +152,12 @@ TEST_F(OperatorPanelSystem, AClientThatDiesWithAnArrowHeldLetsGo) {
   EXPECT_TRUE(isStill());
 }
 
-// The emulated visitor enters with button 3, chooses the arrow down, holds it with button 1, and
-// leaves with button 3; between entering and leaving only the arrow moves the model.
+// The emulated visitor enters the panel with button 3, selects the arrow down, holds it with button
+// 1, and leaves with button 3. Between entering and leaving, only the arrow moves the model.
 TEST_F(OperatorPanelSystem, TheBallEntersWorksItAndLeaves) {
   start("panel", {{"bindings",
                    json::array({json{{"input", "ball.button.3"}, {"action", "operator_panel"}}})}});
-  // The visitor does it again every eight seconds; a busy machine may miss a button.
+  // The visitor repeats this every eight seconds; a busy machine may miss a button.
   constexpr std::chrono::minutes kPatience(2);
   EXPECT_TRUE(eventually([&] { return byBall() && wall_->wall().moving == 0; }, kPatience));
   EXPECT_TRUE(eventually([&] { return byBall() && wall_->wall().moving == 1; }, kPatience));

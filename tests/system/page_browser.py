@@ -1,10 +1,10 @@
 """A person at the operator's page, in a headless Chromium:
 python3 page_browser.py URL TOKEN STATUS FOLDER SIZE MODE_BUTTON WALL_PID
 
-URL: of the page; TOKEN: its token; STATUS: a command that prints `merlin status --json` of the same
-daemon; FOLDER: where the screenshots go; SIZE: desktop or phone; MODE_BUTTON: "X Y", a pixel of the
-frame on the button of the operator's panel that switches the mode; WALL_PID: the daemon's process,
-which is ended at last. Fails with a sentence.
+URL, TOKEN: the address of the page, and its token; STATUS: a command that prints `merlin status --json` of the
+same daemon; FOLDER: gets the screenshots; SIZE: desktop or phone; MODE_BUTTON: "X Y", a pixel of the frame on the
+button of the operator's panel that switches the mode; WALL_PID: the daemon's process, which is ended at last.
+If a check fails, the program ends with a sentence that says which one.
 """
 import json
 import os
@@ -18,7 +18,7 @@ import browser  # noqa: E402
 URL, TOKEN, STATUS, FOLDER, SIZE, MODE_BUTTON, WALL_PID = sys.argv[1:]
 PHONE = SIZE == "phone"
 POINTER = "touch" if PHONE else "mouse"
-# What a page may say in its console without being wrong: requests that were refused on purpose.
+# Messages of the console that are no fault: requests that the server had to refuse.
 EXPECTED = ("401 (Unauthorized)",)
 
 
@@ -32,7 +32,7 @@ def content():
 
 
 def pixels(driver):
-    """Mean brightness of the picture's columns, as the browser shows it."""
+    """Mean brightness of columns of the picture that the browser shows."""
     return driver.run("""
         const image = document.getElementById('picture'), canvas = document.createElement('canvas');
         if (!image.naturalWidth) return null;
@@ -141,7 +141,7 @@ def contents(driver):
 
 
 def refuse(driver, least, text):
-    """From now on the page's server refuses pictures of this width and more."""
+    """Lets the page's server refuse pictures of at least this width from now on."""
     driver.run("""const [least, error] = arguments;
         window.served = window.served || window.fetch;
         window.fetch = (url, options) => {
@@ -152,7 +152,7 @@ def refuse(driver, least, text):
 
 
 def refusals(driver):
-    """Others look at too many views and sizes; a thumbnail does not come."""
+    """The server refuses pictures because others look at too many views and sizes, and a thumbnail does not come."""
     fault = "return document.getElementById('picture-fault').hidden ? '' : document.getElementById('picture-fault').textContent"
     width = "return document.getElementById('picture').naturalWidth"
     driver.run("document.getElementById('screen').scrollIntoView({block: 'center'})")
@@ -185,7 +185,7 @@ def refusals(driver):
 
 
 def idle(driver):
-    """Playlist, black, frozen."""
+    """The page in the states playlist, black and frozen."""
     state = "return document.getElementById('playlist-state').textContent"
 
     def pressed(selector):
@@ -211,7 +211,7 @@ def idle(driver):
 
 
 def phone(driver):
-    """The code for a phone: on loopback the page says why there is none."""
+    """The page has no code for a phone, since the page listens on loopback only, and says so."""
     driver.run("document.getElementById('phone').click()")
     driver.until("the page says why a phone cannot reach it", lambda: "listens only at 127.0.0.1" in driver.run(
         "return document.getElementById('phone-why').textContent"))
@@ -221,7 +221,7 @@ def phone(driver):
 
 
 def labels(driver):
-    """What a screen reader would say nothing about."""
+    """No control may be without a text for screen readers and, on a phone, too small for a thumb."""
     nameless = driver.run("""return [...document.querySelectorAll('button, input, select, img, svg')]
         .filter(e => e.checkVisibility() && !e.closest('[aria-hidden=true]') && !(e.ariaLabel || e.alt === '' || e.alt ||
             e.textContent.trim() || (e.labels && e.labels.length)))
@@ -234,7 +234,7 @@ def labels(driver):
 
 
 def slides(driver):
-    """Not every browser gives a slider that is dragged the keyboard's focus."""
+    """A slider that is dragged keeps its value, although not every browser gives it the keyboard's focus."""
     driver.run("""document.activeElement.blur();
         const slider = document.getElementById('rate');
         slider.dispatchEvent(new PointerEvent('pointerdown'));
@@ -256,7 +256,7 @@ def slides(driver):
 
 
 def crowded(driver):
-    """Others flood the page's server."""
+    """The page says that its server is flooded by others."""
     banners = "return document.getElementById('banners').textContent"
     driver.run("""window.fetch = (url, options) => url === '/api/status' ?
         Promise.resolve(new Response(JSON.stringify({error: 'too many'}), {status: 429})) : window.served(url, options);""")
@@ -266,7 +266,7 @@ def crowded(driver):
 
 
 def stands(driver):
-    """The picture in which nothing moves any more."""
+    """Waits until the wall and the page's picture stand still; returns that picture."""
     driver.click("#command-reset_view")
     driver.until("the wall stands still", lambda: status()["full_detail"])
     seen = []
@@ -304,7 +304,7 @@ def moves(driver):
 
 
 def operator_panel(driver):
-    """The buttons of the operator's panel, where the page shows them."""
+    """The buttons of the operator's panel work where the page shows them."""
     mode, side = status()["mode"], "return [picture.naturalWidth, picture.naturalHeight]"
     driver.click("[data-view=operator]")
     driver.until("the operator's tile is shown", lambda: (lambda w, h: 3 * w == 4 * h)(*driver.run(side)))
@@ -324,7 +324,7 @@ def operator_panel(driver):
 
 
 def down(driver):
-    """Nothing of a wall that is gone is shown as present."""
+    """When the wall is gone, the page shows nothing of it as present."""
     text = "return document.getElementById(arguments[0]).textContent"
     os.kill(int(WALL_PID), signal.SIGTERM)
     driver.until("the page says that the wall is gone", lambda: "The role wall does not run" in driver.run(text, "banners"))
@@ -348,7 +348,7 @@ def aligns(driver):
     driver.drag("circle[data-corner=top_right]", -20, 15, POINTER)
     driver.until("a corner is dragged", lambda: "top right moved by -" in driver.run(state))
     driver.until("the wall has moved it", settled)
-    while "0 to undo" not in driver.run(state):  # two steps, where a busy machine let the drag rest on its way
+    while "0 to undo" not in driver.run(state):  # two steps, if a busy machine let the drag rest on its way
         driver.click("#align-undo")
         driver.until("a step is undone", settled)
     assert "moved by 0.00, 0.00" in driver.run(state), "undone, but: " + driver.run(state)

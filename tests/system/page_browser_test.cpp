@@ -15,7 +15,8 @@
 namespace merlin::test {
 namespace {
 
-// A pixel of the frame: the operator's tile is the lower right one of the default wall.
+// The pixel of the mode button in the frame; the operator's tile is the lower right one of the
+// default wall.
 std::string modeButton() {
   const auto layout = *render::panel::layOutPanel(640, 480, 13, {});
   const render::text::Rect r = layout.find(render::panel::ControlId::kMode)->at;
@@ -63,7 +64,8 @@ TEST_P(Browser, ShowsTheWallAndSendsWhatAPersonDoes) {
   EXPECT_EQ(page.process().kill(SIGTERM), 0) << page.process().output();
 }
 
-#ifdef MERLIN_ANY_SANITIZER  // Chromium is not instrumented, and merlin-page does the same for both
+// Chromium is not instrumented, and merlin-page does the same for both sizes.
+#ifdef MERLIN_ANY_SANITIZER
 const auto kSizes = testing::Values("phone");
 #else
 const auto kSizes = testing::Values("desktop", "phone");

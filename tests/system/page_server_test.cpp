@@ -1,5 +1,5 @@
-// `merlind --role page` beside a real merlind: what it shows and sends, and what hostile clients
-// reach.
+// `merlind --role page` beside a real merlind: what it shows and sends, and how far hostile clients
+// get.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -39,8 +39,8 @@ class PageTest : public testing::Test {
     ASSERT_TRUE(page_->ready()) << page_->process().output();
   }
   std::string events() const { return page_->get("/api/events").body; }
-  // 204 means that there was none within a second: the thread that makes pictures gives way to
-  // everything else on the machine.
+  // Asks for a picture until there is one. 204: there was none within a second, since the thread
+  // that makes pictures gives way to everything else on the machine.
   HttpAnswer picture(const std::string& path) const {
     HttpAnswer answer;
     eventually([&] { return (answer = page_->get(path)).status != 204; });
@@ -60,7 +60,7 @@ TEST_F(PageTest, ShowsBothRolesTheirEventsTheFramesAndThePicture) {
   start();
   ASSERT_TRUE(eventually([&] { return page_->runs("wall") && page_->runs("devices"); }));
   Json status;
-  // On a busy machine the emulated ball may be silent for so long that it is stale for a moment.
+  // On a busy machine, the emulated ball may be silent for so long that it is stale for a moment.
   EXPECT_TRUE(eventually([&] {
     status = page_->json("/api/status");
     return status["roles"]["devices"]["status"]["devices"]["ball"]["health"] == "ok";
@@ -128,7 +128,7 @@ TEST_F(PageTest, CommandsReachTheirRoleAndOnlyWithTheToken) {
   const HttpAnswer refused = page_->send("rate", "1000");
   EXPECT_EQ(refused.status, 400);
   EXPECT_NE(refused.body.find("1 to 240"), std::string::npos) << refused.body;
-  const HttpAnswer panel = page_->send("lamp_on");  // there is no panel
+  const HttpAnswer panel = page_->send("lamp_on");  // this wall has no control panel
   EXPECT_EQ(panel.status, 400) << panel.body;
   EXPECT_EQ(page_->send("align", "list").status, 200);
   EXPECT_TRUE(tells("refused; the last: POST /api/command: status"));
@@ -177,7 +177,7 @@ TEST_F(PageTest, SaysWhatThePlaylistDoesAndWhatCoversThePicture) {
   const std::int64_t asked_ns = wall_->wall().updated_ns;
   EXPECT_TRUE(eventually([&] { return wall_->wall().updated_ns > asked_ns + 500'000'000; }));
   EXPECT_EQ(wall_->status()["shown"], "blank") << "reading is no touch";
-  // A busy machine may take longer for the card than the page waits.
+  // On a busy machine the card may take longer than the page waits.
   EXPECT_TRUE(eventually([&] { return page_->send("testcard", "grid").status == 200; }));
   EXPECT_TRUE(eventually([&] { return wall()["testcard"] == true; }));
   EXPECT_EQ(page_->send("playlist", "sometimes").status, 400);
@@ -251,7 +251,7 @@ TEST_F(PageTest, StaysWithMetricsAloneAndWaitsWithNothingToServe) {
   EXPECT_EQ(run({kMerlind, "--check-config", dir_ / "none.json", "--role", "wall"}).status, 0);
 }
 
-// Without a wall, and on a configuration of its own.
+// The page without a wall, with a configuration of its own.
 class PageAlone : public testing::Test {
  protected:
   std::string config(const std::string& name, const Json& page) {
@@ -265,7 +265,7 @@ class PageAlone : public testing::Test {
   std::string instance_ = privateName("page");
 };
 
-// The process serves nothing, whatever it served before, until the page is switched on again.
+// The process serves nothing until the page is switched on again, whatever it served before.
 TEST_F(PageAlone, SwitchedOffItWaitsForAConfigurationWithAPage) {
   Process page({kMerlind, "--last-good", "--config",
                 config("page.json", {{"enabled", false}, {"metrics", false}}), "--role", "page"});
@@ -299,7 +299,7 @@ TEST_F(PageAlone, AtANetworksAddressReadingNeedsTheTokenToo) {
   EXPECT_EQ(page.get("/").status, 200);
   for (const char* path : {"/api/status", "/picture.jpg", "/metrics", "/api/events"}) {
     EXPECT_EQ(page.get(path).status, 401) << path;
-    // 204: no picture yet
+    // 204: there is no picture yet
     const int status = page.get(path, "Authorization: Bearer " + page.token() + "\r\n").status;
     EXPECT_TRUE(status == 200 || status == 204) << path << ": " << status;
   }
@@ -326,7 +326,7 @@ TEST_F(PageAlone, ListsContentsAndReadsTheirPicturesFromTheirFiles) {
   writeText(bad, "II no pyramid");
   std::filesystem::create_directory(slides);
   writeText(slides + "/2.tif", pyramidBytes());
-  writeText(slides + "/1.tif", "cut");  // is left out
+  writeText(slides + "/1.tif", "cut");  // this file is left out
   const std::string file = config("page.json", Json::object());
   Json settings = Json::parse(readText(file));
   settings["wall"]["contents"] = {{{"picture", good}},
@@ -411,16 +411,16 @@ constexpr std::size_t kMostMemory_kb = 1'000'000;
 constexpr std::size_t kMostMemory_kb = 100'000;
 #endif
 
-// While two clients ask without a pause, and others of all sorts misbehave, one that behaves is
-// answered, and the wall goes on.
+// Two clients send requests without a pause, and others misbehave in many ways. A client that
+// behaves is answered, and the wall goes on.
 TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
   start();
   ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
   const pid_t pid = page_->process().pid();
-  ASSERT_EQ(page_->send("align", "list").status, 200);  // from now on all threads run
+  ASSERT_EQ(page_->send("align", "list").status, 200);  // all threads have been started by now
   const std::size_t threads_before = threads(pid);
   HttpFlood flood(port_, 2);
-  // Ten requests within a second.
+  // Sends ten requests within a second, and expects that they are answered.
   const auto modest = [&](const char* when) {
     const std::uint64_t refused_before = flood.refused();
     EXPECT_TRUE(eventually([&] { return flood.refused() > refused_before + 500; })) << when;
@@ -467,8 +467,8 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
         std::string("\x16\x03\x01\x02\x00\x01", 6)})
     join(bytes);
   good("garbage");
-  // Returns the status of the answer once a place is free: without one the answer is 429, or the
-  // connection is closed (0).
+  // Sends the request until a place is free, and returns the answer's status. Without a free place
+  // the answer is 429, or the connection is closed (0).
   const auto statusOf = [&](const std::string& request) {
     int status = 0;
     const auto answered = [&] {

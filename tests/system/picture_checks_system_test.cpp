@@ -1,4 +1,5 @@
-// A real merlind whose output shows something else than what it was sent: found, said, mended.
+// A real merlind whose output shows something other than what it was sent: the fault is found,
+// reported and repaired.
 #include <gtest/gtest.h>
 
 #include "tests/system/blacken.h"

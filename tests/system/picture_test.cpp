@@ -1,5 +1,5 @@
-// Pictures from a file of another program to the wall: import, show, slides, and what becomes of
-// files that lie, change or vanish.
+// Pictures on their way from a file to the wall: import, show, slides, and files that are damaged,
+// change or vanish.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A binary PPM whose pixels `colour` computes.
+// A binary PPM file with the colours that `colour` computes.
 template <typename Colour>
 void writePpm(const std::string& path, int width, int height, const Colour& colour) {
   std::ofstream out(path, std::ios::binary);
@@ -43,7 +43,7 @@ Outcome import(const std::string& in, const std::string& out, std::vector<std::s
   return run(command);
 }
 
-// Files of the folder, hidden ones too.
+// Number of files in the folder, including hidden ones.
 std::size_t filesIn(const std::string& folder) {
   return static_cast<std::size_t>(
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
@@ -120,7 +120,7 @@ TEST(ImageImport, MeasuredValuesAreShownByTheirRangeWhichIsSaid) {
     EXPECT_TRUE(pyramid) << pyramid.error().what;
     std::vector<std::uint8_t> rgba(render::image::kTileBytes);
     EXPECT_TRUE(render::image::PyramidReader(*pyramid).readTile({}, rgba));
-    std::vector<int> first;  // of each pixel
+    std::vector<int> first;  // size of each pixel
     for (int x = 0; x < json["width"]; ++x) first.push_back(rgba[4 * static_cast<std::size_t>(x)]);
     return std::pair(first, json["notes"].dump());
   };
@@ -158,11 +158,12 @@ TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
   expectRefused(dir / "film.mp4", 2, "film.mp4: is a video; MERLIN shows models, pictures");
   writeText(dir / "cut.tif", std::string("II\x2b\0\x08\0\0\0", 8));
   expectRefused(dir / "cut.tif", 2, "cut.tif: cannot be read as a picture: it is damaged or cut");
-  // A header of 10^10 pixels, and hardly any of them.
+  // The header declares 10^10 pixels; the file has very few of them.
   writeText(dir / "lies.ppm", "P6\n100000 100000\n255\n" + std::string(1000, 'x'));
   expectRefused(dir / "lies.ppm", 2, "it is cut short: it has fewer bytes than its header says");
   writePpm(dir / "good.ppm", 600, 400, [](int x, int) { return plain(x % 256, 0, 0); });
-#if !defined(MERLIN_ADDRESS_SANITIZER)  // it reserves terabytes, so that there is no limit
+// The sanitizer reserves terabytes of address space, so no limit is set.
+#if !defined(MERLIN_ADDRESS_SANITIZER)
   expectRefused(dir / "good.ppm", 2, "", {"--memory", "30M"});
 #endif
   EXPECT_EQ(import(dir / "good.ppm", dir / "out.png").status, 2) << "it must end in .tif";
@@ -197,7 +198,7 @@ TEST(ImageImport, CtrlCLeavesNoHalfFile) {
   EXPECT_EQ(filesIn(dir.path()), 1U) << "the input";
 }
 
-// A wall that shows what `contents` of the configuration are.
+// A wall that shows the `contents` of the configuration.
 class PictureWall : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -232,7 +233,7 @@ class PictureWall : public testing::Test {
   Outcome show(const std::string& what) {
     return run({kMerlin, "show", what, "--instance", m_->instance()});
   }
-  // A file of the content folder.
+  // The path of a file in the content folder.
   std::string shared(const std::string& name) const {
     return *dir_ / (m_->instance() + ".shown/" + name);
   }
@@ -244,7 +245,7 @@ class PictureWall : public testing::Test {
       return content["name"] == name && content["kind"] == kind && content["slide"] == slide;
     });
   }
-  // The middle of the wall's middle tile, once all of the picture is there.
+  // Whether the middle of the wall's middle tile has this colour, once the picture has full detail.
   bool isColoured(const std::array<int, 3>& rgb) {
     return eventually([&] {
       if (!m_->status()["full_detail"]) return false;
@@ -307,7 +308,7 @@ TEST_F(PictureWall, ShowsAModelThatIsNotInTheConfiguration) {
   EXPECT_TRUE(isShown("red", "picture"));
 }
 
-// What merlin image import makes of them lies in the content folder; the wall shows that.
+// merlin image import puts its results into the content folder, and the wall shows those.
 TEST_F(PictureWall, ShowsPicturesOfAnyFormatAndFoldersOfThemAsSlides) {
   writePpm(*dir_ / "violet.ppm", 300, 200, [](int, int) { return plain(140, 0, 250); });
   const Outcome picture = show(*dir_ / "violet.ppm");
@@ -363,7 +364,7 @@ TEST_F(PictureWall, OpensAPictureOf100Gigapixels) {
   const Outcome shown = show(huge);
   EXPECT_EQ(shown.status, 0) << shown.output;
   EXPECT_TRUE(isShown("huge", "picture"));
-  // Zooms in as far as possible: one pixel of the picture is as large as eight of the wall.
+  // At the limit of the zoom, one pixel of the picture covers eight by eight pixels of the wall.
   run({kMerlin, "wall", "--move=0 0 10 0 0 0", "--instance", m_->instance()});
   EXPECT_TRUE(eventually([&] { return m_->status()["full_detail"] == true; }));
 }
@@ -382,7 +383,7 @@ TEST_F(PictureWall, FilesThatChangeOrVanishAreSaidAndTheWallStaysUp) {
   fs::remove(live);
   EXPECT_TRUE(m_->process().saysEventually("is gone or is no longer a regular file"));
   EXPECT_TRUE(isColoured({0, 250, 0})) << "what was read stays";
-  // A folder of slides that vanishes while one of them is shown.
+  // This folder of slides vanishes while one of them is shown.
   fs::create_directory(going);
   fs::copy_file(*dir_ / "red.tif", going + "/a.tif");
   fs::copy_file(*dir_ / "sky.tif", going + "/b.tif");
@@ -395,7 +396,7 @@ TEST_F(PictureWall, FilesThatChangeOrVanishAreSaidAndTheWallStaysUp) {
   EXPECT_TRUE(isShown("the sky", "panorama")) << "no further slide: the next content";
 }
 
-// A file server that is mounted later than the wall starts.
+// As with a file server that is mounted after the wall has started.
 TEST_F(PictureWall, WhatIsNotThereAtTheStartIsLeftOutUntilItIs) {
   const auto hide = [](const char* name) { fs::rename(*dir_ / name, *dir_ / name + ".away"); };
   const auto bring = [](const char* name) { fs::rename(*dir_ / name + ".away", *dir_ / name); };
@@ -415,7 +416,7 @@ TEST_F(PictureWall, WhatIsNotThereAtTheStartIsLeftOutUntilItIs) {
   next();
   EXPECT_TRUE(isShown("red", "picture")) << "there is no other";
   ASSERT_EQ(m_->process().kill(SIGTERM), 0);
-  start();  // and what was shown last is remembered all the same
+  start();  // the content that was shown last is nevertheless remembered
   bring("sky.tif");
   bring("slides");
   EXPECT_TRUE(m_->process().saysEventually("sky.tif can be read now"));

@@ -1,4 +1,5 @@
-// `merlin mesh import` of point clouds: a surface by Open3D in the sandbox of merlin-import.
+// `merlin mesh import` of point clouds: Open3D makes a surface of them in the sandbox of
+// merlin-import.
 #include <cmath>
 #include <filesystem>
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr int kPoints = 800;
 
-// The unit sphere, red where z > 0 and blue below, its centre moved by `x`.
+// The unit sphere with its centre moved by `x`; red where z > 0 and blue below.
 std::string colouredSphere(double x = 0) {
   std::string text;
   for (const auto& p : sphere(kPoints))
@@ -54,7 +55,7 @@ class PointsImport : public testing::Test {
   std::string ply_ = dir_ / "out.ply";
 };
 
-// Six times the signed volume of the surface: of a closed one that faces outwards, above 0.
+// Six times the signed volume of the surface; positive if it is closed and faces outwards.
 double volume(const render::mesh::Mesh& mesh) {
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
@@ -165,9 +166,9 @@ TEST_F(PointsImport, AProjectionStaysInTheModel) {
   EXPECT_NE(about.find("map.projection=" + wkt + "\n"), std::string::npos) << about;
 }
 
-#if !defined(MERLIN_ANY_SANITIZER)  // which need terabytes
+#if !defined(MERLIN_ANY_SANITIZER)  // a sanitizer needs terabytes of address space
 TEST_F(PointsImport, TooLittleMemoryIsSaidWithTheWayOut) {
-  // A file of as many bytes as may be used, of which none are there.
+  // A sparse file that is larger than the memory that may be used.
   writeText(dir_ / "large.las", "LASF");
   std::filesystem::resize_file(dir_ / "large.las", std::size_t{101} << 20);
   const Outcome outcome =

@@ -101,7 +101,7 @@ TEST(PostureCollect, KeepsTheHandsUntilASignal) {
   EXPECT_GT(handsOf(*recording, "open"), 10u);
 }
 
-// What cannot be recorded is said before the person is asked to hold the posture.
+// A fault that prevents the recording is reported before the person is asked to hold the posture.
 TEST(PostureCollect, ChecksItsFileAndTheGloveBeforeThePersonHoldsThePosture) {
   const TempDir dir;
   Merlind merlind(dir, "", "checked", {.script = "still", .role = "devices"});

@@ -1,5 +1,5 @@
 // A real merlind and emulated projectors that speak PJLink at TCP ports of this machine: commands,
-// schedule, warm-up, a wrong password, a projector that vanishes, and restarts.
+// the schedule, warm-up, a wrong password, a projector that vanishes, and restarts.
 #include <memory>
 
 #include <fcntl.h>
@@ -18,7 +18,7 @@ using json = nlohmann::json;
 
 class ProjectorSwitching : public testing::Test {
  protected:
-  // Times of the emulated projectors: short, as nobody is to wait for them.
+  // The emulated projectors warm up and cool down quickly, so that the test is short.
   ProjectorSwitching() {
     for (ProjectorServer* server : {&left_, &right_})
       server->set([](auto& p) { p.warm_up = p.cool_down = std::chrono::seconds(1); });
@@ -42,7 +42,7 @@ class ProjectorSwitching : public testing::Test {
                ? status["projectors"].value(name, json::object())
                : json::object();
   }
-  // Waits until the projector is what it was to be.
+  // Waits until the projector is in the expected state.
   bool is(const std::string& name, const std::string& power) {
     return eventually([&] {
       const json p = projector(name);
@@ -101,7 +101,7 @@ TEST_F(ProjectorSwitching, ThePanelOfAWallInAnotherProcessSwitchesThem) {
   };
   press(render::panel::ControlId::kProjectorsOn);
   EXPECT_TRUE(is("left", "on") && is("right", "on")) << wall.output();
-  // Nobody answers: the panel says so, and the wall goes on.
+  // The devices' process has ended, so nobody answers: the panel reports it, and the wall goes on.
   EXPECT_EQ(m_->process().kill(SIGTERM), 0);
   const auto shown =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(m_->instance(), "wall"));
@@ -147,7 +147,7 @@ TEST_F(ProjectorSwitching, AWrongPasswordIsSaidAndTheRightOneFromThenOnUsed) {
   EXPECT_TRUE(is("right", "on")) << "the other one is switched all the same";
   EXPECT_EQ(m_->process().output().find("guess"), std::string::npos) << "in no log";
   writeText(dir_ / "password", "JBMIAProjectorLink\n");
-  merlin("projector_on");  // tried at once
+  merlin("projector_on");  // the command is tried at once
   EXPECT_TRUE(is("left", "on"));
 }
 
@@ -170,7 +170,7 @@ TEST_F(ProjectorSwitching, OneThatVanishesIsSwitchedWhenItIsBack) {
   EXPECT_TRUE(hasHealth("left", "ok"));
 }
 
-// On at any time of any day: the test needs no clock of its own.
+// The schedule is on at all times, so the test needs no particular time of day.
 json alwaysOn() {
   return {{"projector_schedule",
            {{{"on", "00:00"}, {"off", "12:00"}}, {{"on", "12:00"}, {"off", "00:00"}}}}};

@@ -156,7 +156,7 @@ TEST(Calibrate, WritesIntoAConfigurationThatTheDaemonAccepts) {
   EXPECT_EQ(readText(config), before);
 }
 
-// A glove that never answers, on whose line it is seen what it was asked, and how fast.
+// A glove that never answers. The bytes on its line show what it was asked, and at which speed.
 TEST(CalibrateGlove, SpeaksToTheGloveAsTheConfigurationsEntrySays) {
   const TempDir dir;
   const std::string config = dir / "merlin.json";

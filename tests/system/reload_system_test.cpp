@@ -1,4 +1,4 @@
-// merlin reload and SIGHUP with the real programs: what changed is swapped and nothing else, or
+// merlin reload and SIGHUP with the real programs: either exactly what changed is swapped, or
 // everything stays as it was.
 #include <algorithm>
 #include <cstdlib>
@@ -27,8 +27,8 @@ json bindings(const std::string& fist) {
                       {{"input", "ball.button.2"}, {"action", "next_mode"}}});
 }
 
-// The default devices, of which the one with this name has these settings of its driver, or another
-// member of its entry.
+// The default devices. The one with this name gets these settings of its driver, and further
+// members of its entry.
 json devicesWith(const std::string& name, const json& own, const json& members = json::object()) {
   json list = json::array({deviceEntry("glove", "cyberglove"), deviceEntry("tracker", "fastrak"),
                            deviceEntry("ball", "spaceball")});
@@ -47,7 +47,7 @@ json both(json first, const json& second) {
   return first;
 }
 
-// How often the process has waited for something.
+// Number of times that the process has waited for something.
 int timesSlept(pid_t pid) {
   const std::string status = readText(fmt::format("/proc/{}/status", pid));
   const std::string name = "\nvoluntary_ctxt_switches:";
@@ -56,7 +56,7 @@ int timesSlept(pid_t pid) {
 
 class Reload : public testing::Test {
  protected:
-  // The devices' process, whose emulated person makes a fist and opens it in turn.
+  // The devices' process. Its emulated person makes a fist and opens it in turn.
   void start(const json& also = {{"bindings", bindings("grab")}}) {
     merlind_.emplace(dir_, "", "reload",
                      MerlindOptions{.script = "grabbing", .role = "devices", .also = also});
@@ -82,7 +82,7 @@ class Reload : public testing::Test {
     return all;
   }
   // Whether a reload of other bindings leaves every line open. On a busy machine an emulator may be
-  // silent for so long that its line is opened again meanwhile: to be asked more than once.
+  // silent for so long that its line is reopened meanwhile, so the test asks more than once.
   bool reloadLeavesLines(const std::string& fist) {
     auto before = healths();
     write({{"bindings", bindings(fist)}});
@@ -113,7 +113,7 @@ class Reload : public testing::Test {
   json written_;
 };
 
-// The state of a line has lasted since before: it was not closed for a moment.
+// The health of each line has not changed since before the reload, so no line was closed.
 TEST_F(Reload, AChangedBindingActsAndNoLineIsClosed) {
   start();
   ASSERT_TRUE(eventually([&] { return begun("grab") > 0; }));
@@ -159,7 +159,7 @@ TEST_F(Reload, ADeviceIsMadeAnewAloneAndItsCountersGoOn) {
       << "a device that was stopped on purpose has not failed";
 }
 
-// With the same words as a check of the file, and as an event that a good one ends.
+// The refusal has the words of --check-config, and is an event that ends with a good reload.
 TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
   start();
   const std::string good = written_.dump(2);
@@ -174,7 +174,7 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
        {wanted.substr(0, wanted.size() / 2), broken(devicesWith("ball", nullptr, {{"bau", 9600}})),
         broken(devicesWith("ball", nullptr, {{"baud", 12345}})),
         broken({{"postures", {{"file", "none.json"}}}}),
-        broken({{"postures", {{"hold_s", 99}}}}),  // a start would adjust it
+        broken({{"postures", {{"hold_s", 99}}}}),  // at a start, merlind would adjust this value
         broken(both(devicesWith("glove", nullptr, {{"port", "serial"}}),
                     {{"wall", {{"outputs", 3}}}}))}) {
     writeText(merlind_->config(), text);
@@ -205,7 +205,7 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
   EXPECT_FALSE(merlind_->process().ended());
 }
 
-// In the same process, and whoever asks is told once it is back.
+// merlind starts again in the same process, and answers the command once it is ready.
 TEST_F(Reload, ForWhatOnlyAStartTakesItStartsAgainWithAllTheRest) {
   start();
   write({{"state_file", dir_ / "a.json"}, {"bindings", bindings("fly")}});
@@ -287,7 +287,7 @@ TEST_F(Reload, AnAlarmHasOneLineHoweverManyOfItsSettingsChanged) {
       << start.output;
 }
 
-// Good ones and bad ones in a random order, always the same one, while the hand moves.
+// Good and bad reloads in a random order (with a fixed seed), while the hand moves.
 TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
   start();
   const json good[] = {
@@ -304,7 +304,8 @@ TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
                       {{"script", "still"}, {"hands", 1}},
                       {{"postures", {{"file", "none"}}}},
                       devicesWith("ball", nullptr, {{"name", "glove"}})};
-  // Before any client is connected: its place is free some time after it has gone.
+  // Counted before any client is connected, since a client's place becomes free only some time
+  // after it has gone.
   const std::size_t descriptors = entriesOf("fd"), threads = entriesOf("task");
   std::mt19937 random(5);
   std::uint64_t samples = health("glove").samples;
@@ -320,7 +321,7 @@ TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
   }
   for (const char* device : kDevices)
     EXPECT_TRUE(merlind_->healthIs(device, HealthState::kOk)) << device;
-  // It was never closed by a reload; on a busy machine its emulator may have been silent.
+  // No reload has closed it; on a busy machine its emulator may have been silent.
   EXPECT_LT(health("glove").reconnects, 10u);
   EXPECT_TRUE(eventually([&] { return entriesOf("fd") == descriptors; }))
       << entriesOf("fd") << " descriptors instead of " << descriptors;
@@ -329,7 +330,7 @@ TEST_F(Reload, FiftyInARowLeaveNothingBehind) {
   EXPECT_EQ(merlind_->process().kill(SIGTERM), 0);
 }
 
-// The wall in a process of its own.
+// The wall runs in a process of its own.
 class ReloadOfTwo : public Reload {
  protected:
   void SetUp() override {
@@ -386,7 +387,8 @@ TEST_F(ReloadOfTwo, TheWallAloneStartsAgainForItsContents) {
     EXPECT_EQ(health(device).reconnects, before[device].reconnects) << device;
 }
 
-// Another request may have had it do so, as when systemd reloads two units in turn.
+// Another request may have made the process start again, as when systemd reloads two units one
+// after the other.
 TEST_F(ReloadOfTwo, OneThatStartsAgainIsWaitedFor) {
   write({{"wall", {{"snapshots", dir_ / "snapshots"}}}});
   ASSERT_EQ(::kill(wall_->pid(), SIGHUP), 0);

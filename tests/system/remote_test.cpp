@@ -1,5 +1,5 @@
-// Two machines: one daemon reads the devices, and another draws a wall from its samples, sent
-// encrypted over TCP. Both real programs run on this machine.
+// Two machines: one daemon reads the devices, another one draws a wall from their samples, which
+// are sent encrypted over TCP. Both real programs run on this machine.
 #include <filesystem>
 
 #include <fcntl.h>
@@ -21,18 +21,18 @@ std::string keys(const std::string& path) {
   return made.output.substr(0, 40);
 }
 
-// Counts how often a file is read, from now on.
+// Counts how often a file is read after the object was made.
 class ReadsOf {
  public:
   explicit ReadsOf(const std::string& file) : events_(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
     EXPECT_GE(::inotify_add_watch(events_.get(), file.c_str(), IN_CLOSE_NOWRITE), 0) << file;
   }
-  // Whether it has been read `times` times, for which it waits 10 s.
+  // Waits up to 10 s until the file has been read `times` times.
   bool reach(int times) {
     while (count_ < times) {
       pollfd waits{events_.get(), POLLIN, 0};
       if (::poll(&waits, 1, 10'000) != 1) return false;
-      inotify_event event{};  // without a name, since a file is watched
+      inotify_event event{};  // the event has no name, since a single file is watched
       while (count_ < times && ::read(events_.get(), &event, sizeof event) == sizeof event)
         ++count_;
     }
@@ -107,7 +107,7 @@ TEST_F(TwoMachines, TheWallMovesWithTheOtherMachinesBallAndOutlivesIt) {
     const auto health = (*mirror)->ball()->health->read();
     return health ? health->state : HealthState::kAbsent;
   };
-  ASSERT_TRUE(eventually([&] { return !moving(); }));  // the other daemon does not run yet
+  ASSERT_TRUE(eventually([&] { return !moving(); }));  // the other daemon is not running yet
   for (int times = 0; times < 2; ++times) {
     auto there = devices();
     ASSERT_TRUE(eventually([&] { return ball() == HealthState::kOk; })) << wall.output();
@@ -134,7 +134,7 @@ TEST_F(TwoMachines, AWallWithoutKeysIsRefusedWithTheWayOut) {
   EXPECT_NE(both.output.find("run it with --role wall"), std::string::npos) << both.output;
 }
 
-// The first time it is checked, the second time compared or used.
+// The first read is the check, the second one the comparison or the use.
 TEST_F(TwoMachines, AKeyThatIsReplacedWhileTheWallStartsIsTakenByTheNextReload) {
   const std::string key = dir / "wall.keys", other = dir / "other.keys";
   keys(other);

@@ -1,4 +1,4 @@
-// merlin report: the file that is sent to somebody who is to help, of a wall that runs and of one
+// merlin report: the archive for a person who is to help, made from a wall that runs and from one
 // that does not.
 #include <algorithm>
 #include <filesystem>
@@ -17,7 +17,7 @@ using nlohmann::json;
 constexpr const char* kPassword = "hunter-twenty-two";
 constexpr const char* kToken = "TOKEN0123456789TOKEN0123456789xy";
 
-// The archive's files, by name, read by another program; names begin with the archive's folder.
+// The archive's files by name, read by another program. The names begin with the archive's folder.
 std::map<std::string, std::string> unpack(const TempDir& dir, const std::string& archive) {
   const std::string out = dir / "unpacked.json";
   const std::string script =
@@ -32,7 +32,7 @@ std::map<std::string, std::string> unpack(const TempDir& dir, const std::string&
                            : std::map<std::string, std::string>{};
 }
 
-// The secret key of a new key pair.
+// Makes a key pair; returns the secret key.
 std::string makeKeys(const std::string& path) {
   EXPECT_EQ(run({kMerlin, "keys", "-o", path}).status, 0);
   const std::string text = readText(path);
@@ -63,7 +63,7 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
       {"projectors",
        {{{"name", "left"}, {"address", "127.0.0.1:1"}, {"password_file", "left.password"}}}},
       {"alarms", {{{"run", {"/usr/bin/tell", std::string("--token=") + kToken}}}}},
-      // Somebody has written the password where everybody sees it.
+      // A password in a setting that is not secret.
       {"wall", {{"contents", {{{"model", model}, {"name", kPassword}}}}}}};
   Merlind wall(dir, model, "report", options);
   ASSERT_TRUE(wall.ready()) << wall.process().output();
@@ -126,7 +126,7 @@ TEST(Report, OfAWallThatDoesNotRunSaysSoAndQuotesNoFile) {
   expectNowhere(files, kPassword);
 }
 
-// merlind runs with what it has kept, and a token that the broken file lost is still one.
+// merlind runs with the last good settings; a token that only those contain is still a secret.
 TEST(Report, OfABrokenConfigurationHasTheLastGoodOne) {
   const TempDir dir;
   MerlindOptions options;

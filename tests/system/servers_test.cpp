@@ -1,5 +1,5 @@
-// Servers for other programs in a real merlind: a server that cannot start does not stop the wall
-// from running; a client cannot exhaust merlind's memory or keep it from stopping.
+// Servers for other programs in a real merlind. A server that cannot start does not stop the wall,
+// and a client can neither exhaust merlind's memory nor prevent its end.
 #include <chrono>
 #include <filesystem>
 #include <sstream>
@@ -66,7 +66,7 @@ TEST(Servers, OneWhosePortIsTakenIsToldAndServesOnceItIsFree) {
   const TempDir dir;
   auto taken = net::listenTcp("127.0.0.1", 0);
   ASSERT_TRUE(taken);
-  auto forgotten = net::listenLocal(dir / "spnav.sock", 0600);  // like a spacenavd's
+  auto forgotten = net::listenLocal(dir / "spnav.sock", 0600);  // like that of a spacenavd
   ASSERT_TRUE(forgotten);
   Merlind merlind(dir, "", "servers",
                   devicesThatServe({{"vrpn_port", net::portOf(taken->get())},
@@ -100,7 +100,7 @@ TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
   ASSERT_TRUE(simple.saysEventually("protocol version: 1")) << simple.output();
   ASSERT_TRUE(simple.saysEventually("Device: Spaceball")) << simple.output();
   ASSERT_TRUE(simple.saysEventually("motion event: t(")) << simple.output();
-  // The ball turns about one axis, so some event is not all zero.
+  // The ball turns about one axis, so at least one event has a value other than zero.
   EXPECT_TRUE(eventually([&] {
     std::istringstream lines(simple.output());
     for (std::string line; std::getline(lines, line);) {
@@ -200,8 +200,8 @@ TEST(Servers, AMessageThatDoesNotEndIsClosed) {
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   const UniqueFd fd = zmqClient(dir / (merlind.instance() + "-devices.command"));
   ASSERT_TRUE(fd.valid());
-  // Message parts that each announce another one, with heartbeats whose time-out of 0 keeps libzmq
-  // from closing the connection.
+  // Message parts that each announce another one, and heartbeats with a time-out of 0, with which
+  // libzmq does not close the connection.
   for (int i = 0; i < 4; ++i) (void)::send(fd.get(), "\1\1x\4\7\4PING\0\0", 12, MSG_NOSIGNAL);
   char bytes[256];
   ssize_t n = 1;
@@ -209,7 +209,7 @@ TEST(Servers, AMessageThatDoesNotEndIsClosed) {
   EXPECT_TRUE(n == 0 || errno == ECONNRESET || errno == EPIPE) << "it is still open";
 }
 
-// Sends `bytes` again and again for three seconds, at most 40 MB. Returns the number of bytes sent.
+// Sends `bytes` repeatedly for three seconds, at most 40 MB; returns the number of bytes sent.
 std::size_t flood(const UniqueFd& fd, const std::string& bytes) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
   timeval limit{0, 50'000};

@@ -1,5 +1,5 @@
-// merlin show FILE: from a range image with colour on the disk to the wall in one command, what is
-// left of one that was stopped, and that merlind opens no path that a client names.
+// merlin show FILE: one command from a range image with colour on the disk to the wall; the files
+// that a stopped command leaves; and that merlind opens no path that a client names.
 #include <filesystem>
 
 #include <fcntl.h>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One wall for all, which shows its model at the beginning of each.
+// One wall serves all tests; it shows its model at the beginning of each.
 class ShowFile : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -40,7 +40,7 @@ class ShowFile : public testing::Test {
     all.insert(all.end(), words.begin(), words.end());
     return all;
   }
-  // What is in the content folder, hidden ones too.
+  // The names of all files in the content folder, including hidden ones.
   std::vector<std::string> there() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder()))
@@ -52,7 +52,7 @@ class ShowFile : public testing::Test {
         shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(wall_->instance(), "wall"));
     return wall ? (*wall)->content.read().value_or(shm::WallContent{}) : shm::WallContent{};
   }
-  // Mean red, green and blue of what is not background.
+  // Mean red, green and blue of all pixels that are not background.
   std::array<double, 3> colour() const {
     const std::string path = *dir_ / "frame.png";
     run({kMerlin, "snapshot", "-o", path, "--instance", wall_->instance()});
@@ -67,21 +67,21 @@ class ShowFile : public testing::Test {
     for (double& s : sum) s /= std::max(count, 1.0);
     return sum;
   }
-  // The answer of the wall's socket, or why there is none.
+  // The answer from the wall's command socket, or the error.
   std::string asked(const std::string& name, const std::string& argument) const {
     const auto answer =
         status::ask(fmt::format("ipc://{}/{}-wall.command", dir_->path(), wall_->instance()), name,
                     std::chrono::seconds(10), argument);
     return answer ? *answer : answer.error().what;
   }
-  // A flat square of side x side returns, all of one colour.
+  // Writes the scan of a flat square with side x side returns of one colour.
   void writeScan(const std::string& name, int side, const std::string& rgb) const {
     const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     const std::string size = fmt::format("{0} {0}\n", side);
     std::string ranges, colours;
     for (std::size_t i = 0; i < pixels; ++i) {
       ranges += '\x08';
-      ranges += static_cast<char>(i * 31 % 8);  // rough, so that reduction takes its time
+      ranges += static_cast<char>(i * 31 % 8);  // a rough surface, whose reduction takes some time
       colours += rgb;
     }
     writeText(*dir_ / (name + ".pgm"), "P5\n" + size + "65535\n" + ranges);
@@ -112,7 +112,7 @@ TEST_F(ShowFile, ARangeImageWithColourIsOnTheWallAfterOneCommand) {
       << "blue";
 }
 
-// While it stays in the content folder.
+// It can be shown by its name as long as it is in the content folder.
 TEST_F(ShowFile, AFileThatWasShownIsShownAgainByItsName) {
   writeScan("hill", 40, "\x10\x10\xF0");
   writeScan("model", 40, "\x10\x10\xF0");
@@ -243,7 +243,7 @@ TEST_F(ShowFile, PanoramaIsRefusedForWhatIsNoPictureThatIsImported) {
 TEST_F(ShowFile, ThePicturesImportHasTheMemoryThatIsGiven) {
   if (!fs::exists(MERLIN_BIN_DIR "/merlin-import")) GTEST_SKIP() << "this build has no imports";
   writeText(*dir_ / "small.ppm", "P6\n64 32\n255\n" + std::string(64 * 32 * 3, '\x90'));
-#if !defined(MERLIN_ANY_SANITIZER)  // which reserve terabytes, so that there is no limit
+#if !defined(MERLIN_ANY_SANITIZER)  // these reserve terabytes of address space, so no limit is set
   const Outcome shown = run(command({*dir_ / "small.ppm", "--memory", "1M"}));
   EXPECT_NE(shown.status, 0);
   EXPECT_NE(shown.output.find("needs more memory"), std::string::npos) << shown.output;

@@ -1,4 +1,5 @@
-// The space-mouse socket of MERLIN, tested with Debian's libspnav and, byte by byte, its protocol.
+// The space-mouse socket of MERLIN, tested with Debian's libspnav and, byte by byte, with its
+// protocol.
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -31,7 +32,7 @@ BallSample pushed(std::array<std::int16_t, 6> raw, std::uint32_t buttons = 0) {
   return s;
 }
 
-std::string bytesOf(const std::string& text) {  // hex, blanks ignored
+std::string bytesOf(const std::string& text) {  // `text`: hexadecimal digits; blanks are ignored
   std::string bytes;
   for (std::size_t i = 0; i + 1 < text.size();) {
     if (text[i] == ' ') {
@@ -297,7 +298,7 @@ TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
   EXPECT_TRUE(rests()) << event[0];
 }
 
-// Like programs from before 2021, which connect and read without sending anything.
+// Programs from before 2021 connect and read without sending anything.
 TEST_F(Served, AClientOfVersionZeroIsToldWithoutAWord) {
   const UniqueFd fd = connectedTo(path);
   const MovingBall moving(*segment);

@@ -1,5 +1,5 @@
-// What merlind publishes and answers is as daemon/status/status.schema.json says, and that only
-// grows: programs of others rely on it.
+// What merlind publishes and answers conforms to daemon/status/status.schema.json. The schema may
+// only grow, since other people's programs rely on it.
 #include <algorithm>
 #include <map>
 #include <set>

@@ -1,5 +1,5 @@
-// Stereo from the configuration to the image files: the pictures of both eyes, and what an output
-// makes of them.
+// Stereo from the configuration to the image files: the pictures of both eyes, and how an output
+// combines them.
 #include <string>
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ using nlohmann::json;
 
 class Stereo : public testing::Test {
  protected:
-  // An output with one tile.
+  // The settings of an output with one tile.
   json output(const std::string& name, const std::string& tile) {
     return {{"kind", "png"},
             {"name", name},
@@ -29,7 +29,7 @@ class Stereo : public testing::Test {
     writeText(dir_ / "wall.json", config.dump(1));
     return dir_ / "wall.json";
   }
-  // Runs merlind until the last of the images is there.
+  // Runs merlind until the last of the images exists.
   void show(const std::string& config, const std::string& last) const {
     run({"/bin/sh", "-c",
          fmt::format("{} --config {} & pid=$!; for i in $(seq 300); do [ -e {} ] && break; sleep "
@@ -67,7 +67,7 @@ TEST_F(Stereo, AnOutputsAnaglyphIsMadeOfBothEyesPictures) {
   }
 }
 
-// The picture of the pair is as large as the tile, and each half is that eye's.
+// The combined picture is as large as the tile; each half shows one eye's picture.
 TEST_F(Stereo, SideBySideIsTheLeftEyesPictureOnTheLeft) {
   show(file({{"mode", "side_by_side"}, {"eye_separation_m", 0.2}},
             {{{"kind", "shared_memory"}}, output("left", "centre.L"), output("both", "centre")}),

@@ -1,7 +1,7 @@
-// Correction of real signals in a synthetic room: the daemon's signals are thrown by known
-// projectors, photographed by a known camera, and measured. The correction is set from the room's
-// truth by the configuration and by an MPCDI file, and once by `merlin wall align` alone, from what
-// the camera sees. Prints the figures before and after.
+// Correction of real signals in a synthetic room: known projectors throw the daemon's signals, a
+// known camera photographs them, and the photographs are measured. The correction follows from the
+// known room (through the configuration, and through an MPCDI file), and once from the camera's
+// view alone (through `merlin wall align`). The test prints the figures before and after.
 //
 // MERLIN_PICTURES=FOLDER writes the photographs.
 #include "tests/support/synthetic_room.h"
@@ -25,25 +25,28 @@ namespace {
 using Eigen::Vector2d, Eigen::Vector3d;
 using nlohmann::json;
 
-// The test card "grid" has a line at every 40th pixel of tiles of this size.
+// The test card "grid" has a line at every 40th pixel of a tile of this size.
 constexpr int kWidth = 641, kHeight = 481, kSpacing = 40, kColumns = 16, kRows = 12;
-constexpr int kOverlap = 161;      // px: four cells and a line, so that lines coincide
-constexpr double kPixel = 0.0025;  // m
+constexpr int kOverlap = 161;  // [px]; four cells and a line, so that lines of both tiles coincide
+constexpr double kPixel = 0.0025;  // [m]
 constexpr int kCameraWidth = 1800, kCameraHeight = 860;
-constexpr double kLowest = 0.8, kDistance = -3;  // the wall's lower edge and its place along z [m]
+constexpr double kLowest = 0.8, kDistance = -3;  // height of the wall's lower edge, and its z [m]
 
-// Lines of the card that are measured: not the outermost ones, which the ramps make dark.
+// A crossing of lines that is measured. The outermost lines are left out, since the blend ramps
+// make them dark.
 struct Crossing {
   int column, row;
   Vector2d pixel() const { return {column * kSpacing + 0.5, row * kSpacing + 0.5}; }
 };
 
-// The place of a line is the mean over points this far from a crossing, since a line one pixel wide
-// moves by up to 0.2 pixels with its phase: the signal is filtered before its gamma [px].
+// The place of a line is the mean over points at these distances from a crossing [px]: the signal
+// is filtered before its gamma is applied, so a line one pixel wide moves by up to 0.2 pixels with
+// its phase.
 constexpr double kAsides[] = {-20, -17.5, -15, -12.5, -10, 10, 12.5, 15, 17.5, 20};
-constexpr double kReach = 8;  // to each side of a line [px]
+constexpr double kReach = 8;  // search range on each side of a line [px]
 
-// Whether a diagonal of the card is near the points at which the lines of a crossing are measured.
+// Whether a diagonal of the card is near the points at which the lines of the crossing are
+// measured.
 bool isOnDiagonal(const Vector2d& at) {
   const double slope = 1.0 * (kHeight - 1) / (kWidth - 1);
   for (const double turn : {1.0, -1.0}) {
@@ -59,7 +62,7 @@ bool isOnDiagonal(const Vector2d& at) {
   return false;
 }
 
-// Whether something else of the card is near: a circle, the name in the middle, or the mark of the
+// Whether another part of the card is near: a circle, the name in the middle, or the mark of the
 // corner that is being moved.
 bool isDisturbed(const Crossing& c) {
   const Vector2d at = c.pixel(), middle(kWidth / 2.0, kHeight / 2.0);
@@ -83,7 +86,8 @@ std::vector<Crossing> crossings() {
 }
 
 struct Geometry {
-  double most = 0, seam = 0;  // errors [px]: of any crossing, and between both sides of the seam
+  // Largest error of any crossing, and largest difference across the seam [px].
+  double most = 0, seam = 0;
   std::size_t found = 0;
 };
 
@@ -105,12 +109,13 @@ Eigen::Matrix3d fitHomography(const std::vector<std::pair<Vector2d, Vector2d>>& 
 
 class SyntheticRoom : public testing::Test {
  protected:
-  // Two projectors on a plane screen, or one on each of two panels that meet at 160 degrees.
+  // Sets up two projectors on a plane screen or, if `hinged`, one on each of two panels that meet
+  // at 160 degrees.
   void build(bool hinged, double distortion) {
     hinged_ = hinged;
     const double width = kWidth * kPixel, height = kHeight * kPixel;
     const double overlap = hinged ? 0 : kOverlap * kPixel;
-    const double margin = hinged ? 0 : 0.2;  // of the screen beyond the wall's picture
+    const double margin = hinged ? 0 : 0.2;  // of the part of the screen around the wall's picture
     const double turn = hinged ? 10 * std::numbers::pi / 180 : 0;
     const Vector3d middle(0, kLowest + height, kDistance), down(0, -1, 0);
     for (const int side : {-1, 1}) {
@@ -142,7 +147,7 @@ class SyntheticRoom : public testing::Test {
     camera_.centre = {kCameraWidth / 2.0, kCameraHeight / 2.0};
   }
 
-  // Starts the wall. `corrections`: one for each projector; null for none.
+  // Starts the wall. `corrections`: one for each projector; null: no correction.
   void start(const std::vector<json>& corrections) {
     wall_.reset();
     json panels = json::array(), displays = json::array(), outputs = json::array();
@@ -192,7 +197,7 @@ class SyntheticRoom : public testing::Test {
   }
   void show(const std::string& card) const { merlin({"wall", "testcard", card}); }
 
-  // Throws the signals that the wall sends now and takes a photograph.
+  // Takes a photograph of the signals that the wall sends now.
   Photograph photograph(const std::vector<bool>& lit = {true, true}) {
     for (std::size_t i = 0; i < 2; ++i) {
       const std::string file = dir_ / "signal.png";
@@ -205,7 +210,8 @@ class SyntheticRoom : public testing::Test {
   }
   static std::vector<bool> only(std::size_t projector) { return {projector == 0, projector == 1}; }
 
-  // Where the camera sees a crossing of grid lines [m on the panel]; `guess` is within 8 pixels.
+  // The place of a crossing of grid lines as the camera sees it [m on the panel]. `guess` has to be
+  // within 8 pixels of it.
   std::optional<Vector2d> find(const Photograph& photo, std::size_t projector,
                                Vector2d guess) const {
     const Panel& panel = projectors_[projector].panel;
@@ -232,7 +238,7 @@ class SyntheticRoom : public testing::Test {
     return onPanel(projector, projectors_[projector].placeOf(pixel.x(), pixel.y()));
   }
 
-  // Errors of the grid's crossings. The grid has to be shown.
+  // Measures the errors of the grid's crossings while the wall shows the card "grid".
   Geometry measureGrid(bool corrected) {
     Geometry result;
     std::map<std::pair<int, int>, Vector2d> beside_seam[2];
@@ -246,7 +252,7 @@ class SyntheticRoom : public testing::Test {
         ++result.found;
         const Vector2d error = (*found - wanted) / kPixel;
         result.most = std::max(result.most, error.norm());
-        // Lines that coincide in the overlap, or those nearest to the hinge.
+        // Compares lines that coincide in the overlap, or the lines nearest to the hinge.
         const int first = hinged_ ? kColumns - 2 : kColumns - kOverlap / kSpacing;
         const int column = i == 0 ? c.column - first : c.column;
         if (column >= 1 && column <= kColumns - 1 - first) beside_seam[i][{column, c.row}] = error;
@@ -261,8 +267,8 @@ class SyntheticRoom : public testing::Test {
     return result;
   }
 
-  // Largest difference of the luminance from its mean over blocks of 8 x 8 pixels [%]. The
-  // background has to be shown.
+  // Largest deviation of the luminance from its mean, over blocks of 8 x 8 pixels [%], while the
+  // wall shows its background.
   double measureLight() {
     const Photograph photo = photograph();
     write(photo, "light");
@@ -308,7 +314,7 @@ class SyntheticRoom : public testing::Test {
     EXPECT_LE(f.light, 1);
   }
 
-  // What a person would measure of each projector and write into the configuration.
+  // The settings that a person would find by measuring each projector's light.
   json light(std::size_t i) const {
     const Projector& p = projectors_[i];
     const Light least = projectors_[0].full.min(projectors_[1].full);
@@ -379,23 +385,23 @@ TEST_F(SyntheticRoom, IsRightByTheConfigurationOnAPlaneScreen) {
   expectRight(measure("plane corners blend colour", true));
 }
 
-// Aligns as a script would that sees nothing but photographs: first by the coloured corners of the
-// card "edges", then by the lines of "grid".
+// Aligns as a script would that has nothing but photographs: first by the coloured corners of the
+// card "edges", then by the lines of the card "grid".
 class AlignedRoom : public SyntheticRoom {
  protected:
-  // Centre of each corner's mark from the corner [px]; the mark has two arms of 60 x 6 pixels.
+  // Distance of a mark's centre from its corner [px]; the mark has two arms of 60 x 6 pixels.
   static constexpr double kMark = (360 * 31 + 360 * 4 - 36 * 4) / 684.0;
 
-  // Homography from pixels of the picture to metres on the panel, as the marks show it.
+  // Homography from pixels of the picture to metres on the panel, fitted to the corners' marks.
   Eigen::Matrix3d fitMarks(std::size_t projector) {
     const Photograph photo = photograph(only(projector));
     const Panel& panel = projectors_[projector].panel;
-    std::array<Vector3d, 4> sums{};  // of place and weight
+    std::array<Vector3d, 4> sums{};  // of weighted places, and of weights
     sums.fill(Vector3d::Zero());
     for (double y = 0; y < panel.height; y += kPixel) {
       for (double x = 0; x < panel.width; x += kPixel) {
         const Light l = photo.at(panel.at(x, y));
-        // The orange mark of the corner that is being moved is none of them.
+        // Excludes the mark of the corner that is being moved, which is orange.
         const std::array<double, 4> purity = {
             l[0] - 8 * std::max(l[1], l[2]), l[1] - std::max(l[0], l[2]),
             l[2] - std::max(l[0], l[1]), std::min(l[0], l[1]) - l[2]};
@@ -414,7 +420,8 @@ class AlignedRoom : public SyntheticRoom {
     }
     return fitHomography(pairs);
   }
-  // The same by all lines of the grid; `about` says where they are, within some pixels.
+  // The homography fitted to all lines of the grid; `about` is its estimate, with an error of some
+  // pixels.
   Eigen::Matrix3d fitGrid(std::size_t projector, const Eigen::Matrix3d& about) {
     const Photograph photo = photograph(only(projector));
     std::vector<std::pair<Vector2d, Vector2d>> pairs;
@@ -425,7 +432,7 @@ class AlignedRoom : public SyntheticRoom {
     EXPECT_GT(pairs.size(), crossings().size() / 2);
     return fitHomography(pairs);
   }
-  // Moves each corner by as much as it is beside its place. Returns the largest error [px].
+  // Moves each corner by its present error. Returns the largest error [px].
   double moveCorners(std::size_t projector, const Eigen::Matrix3d& seen) {
     constexpr const char* kCorners[] = {"top_left", "top_right", "bottom_left", "bottom_right"};
     double most = 0;
@@ -456,7 +463,7 @@ TEST_F(AlignedRoom, IsRightByAlignAloneAndAfterARestart) {
     const double first = moveCorners(i, seen);
     EXPECT_GT(first, 5);
     fmt::print("align {}: {:.2f}", kNames[i], first);
-    // Now the picture is nearly where it belongs.
+    // By now the picture is nearly where it belongs.
     seen = fitHomography({{{0, 0}, truth(i, {0, 0})},
                           {{kWidth, 0}, truth(i, {kWidth, 0})},
                           {{0, kHeight}, truth(i, {0, kHeight})},
@@ -470,7 +477,7 @@ TEST_F(AlignedRoom, IsRightByAlignAloneAndAfterARestart) {
     fmt::print(" px\n");
     EXPECT_LE(most, 0.1);
   }
-  // The light is set in the configuration; the corners are still those of the daemon's state.
+  // The configuration sets the light; the corners come from the daemon's state.
   start({light(0), light(1)});
   expectRight(measure("plane by align alone", true));
 }

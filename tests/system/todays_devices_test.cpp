@@ -1,6 +1,6 @@
-// The devices of today at a real merlind: a space mouse through the real spacenavd, a gamepad whose
+// Present-day devices at a real merlind: a space mouse through the real spacenavd, a gamepad whose
 // records come over a pseudo-terminal, and the tracker of a VRPN server, which is another merlind.
-// That the kernel's own devices give a gamepad's records is seen in the virtual machine (tests/vm).
+// That the kernel gives such records for real devices is tested in the virtual machine (tests/vm).
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -32,7 +32,7 @@ std::optional<BallSample> ballOf(Merlind& merlind) {
   return devices ? devices->ball()->samples->newest() : std::nullopt;
 }
 
-// spacenavd on a ball's line, in a folder of its own.
+// spacenavd with a ball at this line, in a folder of its own.
 class Spacenavd {
  public:
   Spacenavd(const TempDir& dir, const std::string& line) : dir_(dir.path()) {
@@ -66,7 +66,7 @@ TEST(TodaysDevices, ASpaceMouseOfSpacenavdIsTheBallAndComesBackWithIt) {
   Merlind merlind(dir, "", "mouse", options);
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   // The visitor turns the model now and then. spacenavd gives up on a ball that does not answer in
-  // time, as happens on a busy machine; the test then starts it again, as a service manager would.
+  // time, as happens on a busy machine; then the test starts it again, as a service manager would.
   const auto turns = [&] {
     for (int attempt = 0; attempt < 6; ++attempt) {
       const auto seen = [&] {
@@ -89,7 +89,7 @@ TEST(TodaysDevices, ASpaceMouseOfSpacenavdIsTheBallAndComesBackWithIt) {
   EXPECT_GE(merlind.health("ball")->reconnects, 1u);
 }
 
-// A gamepad at the other end of a pseudo-terminal, which merlind opens as soon as it is there.
+// A gamepad at the other end of a pseudo-terminal, which merlind opens once it exists.
 class Gamepad {
  public:
   explicit Gamepad(const std::string& link) : line_(*io::PtyMaster::open(link)) {}
@@ -99,7 +99,7 @@ class Gamepad {
       text += evdevRecord(EvdevRecord::kAxis, code, 0, -32768, 32767);
     text += evdevNamed(EvdevRecord::kKey, BTN_SOUTH, "SOUTH");
     text += evdevRecord(EvdevRecord::kReady);
-    (void)!::write(line_.fd(), text.data(), text.size());  // nobody may have opened it yet
+    (void)!::write(line_.fd(), text.data(), text.size());  // perhaps nobody has opened the line yet
   }
   void report(const std::string& events) {
     const std::string bytes = events + evdevRecord(EvdevRecord::kReport);
@@ -110,8 +110,8 @@ class Gamepad {
   io::PtyMaster line_;
 };
 
-// A line that says nothing is opened again and again. It is described once for each time, when it
-// is open: what was sent before is dropped then, from some byte on.
+// merlind reopens a line that sends nothing. The test sends the description once after each
+// opening, since bytes sent before are lost from some byte on.
 bool isConnected(Merlind& merlind, Gamepad& pad, const std::string& name = "ball") {
   std::int64_t opened_ns = 0;
   return eventually([&] {
@@ -136,7 +136,7 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
   pad.report(evdevRecord(EvdevRecord::kMoved, ABS_RX, 32767));
   EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 1; }));
   EXPECT_FLOAT_EQ(ballOf(merlind)->rotation[1], 1);
-  // The stick is held, without another event: the model goes on turning.
+  // The stick is held and sends no further event; the model goes on turning.
   const std::uint32_t counter = ballOf(merlind)->counter;
   EXPECT_TRUE(eventually([&] { return ballOf(merlind)->counter > counter + 20; }));
   EXPECT_EQ(merlind.wall().moving, 1u);
@@ -190,7 +190,7 @@ MerlindOptions vrpnClient(int port) {
   return options;
 }
 
-// Whether station 1 of the server measured what is now station 2 of the client.
+// Whether station 1 of the server and station 2 of the client have the same sample.
 bool agree(Merlind& server, Merlind& client) {
   const auto *from = server.devices(), *to = client.devices();
   const auto got = to ? to->tracker()->stations[1]->newest() : std::nullopt;
@@ -234,7 +234,7 @@ TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
   EXPECT_EQ(client.health("tracker")->reconnects, 1u);
 }
 
-// A server with a tracker, which is emulated, and a gamepad, which this test holds.
+// A server with an emulated tracker, and a gamepad that the test controls.
 MerlindOptions wandServer(int port, const std::string& pad) {
   MerlindOptions options = vrpnServer(port);
   options.also["devices"] = nlohmann::json::array(
@@ -242,7 +242,7 @@ MerlindOptions wandServer(int port, const std::string& pad) {
   return options;
 }
 
-// Both of it are read, by two connections.
+// A client that reads both devices over two connections.
 MerlindOptions wandClient(int port) {
   const std::string server = fmt::format("tcp://127.0.0.1:{}", port);
   MerlindOptions options;
@@ -260,7 +260,7 @@ TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAn
   const int port = freePort();
   Gamepad pad(dir / "pad");
   Merlind server(dir, "", "server", wandServer(port, dir / "pad"));
-  ASSERT_TRUE(server.ready()) << server.process().output();  // its segment has all names
+  ASSERT_TRUE(server.ready()) << server.process().output();  // its segment has all names now
   ASSERT_TRUE(isConnected(server, pad, "pad")) << server.process().output();
   Merlind client(dir, makeModel(dir, 5), "client", wandClient(port));
   ASSERT_TRUE(client.ready()) << client.process().output();
@@ -289,7 +289,8 @@ TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAn
   EXPECT_TRUE(client.healthIs("wand", HealthState::kAbsent));
 }
 
-// What `merlin devices --json` says about the VRPN server at this port, with these options besides.
+// The entry of `merlin devices --json` for the VRPN server at this port; `options` are added to the
+// command.
 nlohmann::json vrpnServerAt(int port, std::vector<std::string> options = {}) {
   const std::string host = fmt::format("127.0.0.1:{}", port);
   options.insert(options.begin(), {kMerlin, "devices", "--json", "--vrpn", host});
@@ -300,7 +301,7 @@ nlohmann::json vrpnServerAt(int port, std::vector<std::string> options = {}) {
   return {};
 }
 
-// The entry by which the driver reads the server's device; null if there is none.
+// The configuration entry with which this driver reads the server's device; null if there is none.
 nlohmann::json entryFor(const nlohmann::json& server, const std::string& device,
                         const std::string& driver) {
   for (const auto& one : server.value("devices", nlohmann::json::array())) {
@@ -317,7 +318,7 @@ TEST(TodaysDevices, AVrpnServersDevicesAreListedWithTheEntryThatMakesThemDevices
   Merlind server(dir, "", "server", vrpnServer(port));
   ASSERT_TRUE(server.ready()) << server.process().output();
   nlohmann::json listed, entry;
-  // A busy machine may take longer than the half second that a server has.
+  // The test tries again, since on a busy machine a server may take longer than its half second.
   ASSERT_TRUE(eventually([&] {
     listed = vrpnServerAt(port);
     entry = entryFor(listed, "Tracker0", "vrpn");
@@ -338,7 +339,7 @@ TEST(TodaysDevices, AVrpnServersDevicesAreListedWithTheEntryThatMakesThemDevices
   }));
   EXPECT_TRUE(entryFor(listed, "Tracker0", "vrpn").is_null()) << "it is configured now";
   EXPECT_FALSE(entryFor(listed, "Ball0", "vrpn_pad").is_null());
-  // The running one says what it reads, and which servers are asked.
+  // The running merlind reports what it reads and which servers to ask.
   nlohmann::json read_by;
   EXPECT_TRUE(eventually([&] {
     const auto all = nlohmann::json::parse(

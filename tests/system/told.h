@@ -1,4 +1,4 @@
-// What the program of an alarm wrote into a file.
+// The events that the program of an alarm has written into a file.
 #pragma once
 
 #include <sstream>

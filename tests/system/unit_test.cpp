@@ -18,8 +18,8 @@ class Unit : public testing::TestWithParam<const char*> {
   void SetUp() override {
     if (!installed("systemd-analyze")) GTEST_SKIP() << "systemd is not installed";
   }
-  // A copy of the unit in which the path of the installed program is replaced by this build's
-  // merlind, which is always there, and that of merlin by this build's.
+  // A copy of the unit with the paths of this build's merlin and merlind, which exist, instead of
+  // the installed programs' paths.
   std::string localCopy() const {
     const std::string name = GetParam();
     std::string unit = readText(kUnits + name);
@@ -47,7 +47,7 @@ TEST_P(Unit, SystemdFindsNoFault) {
 }
 
 TEST_P(Unit, IsExposedLittle) {
-  // In tenths. merlin-rfb listens on the network.
+  // The limit in tenths. merlin-rfb listens on the network, so its limit is higher.
   const char* const most = std::string(GetParam()) == "merlin-rfb.service" ? "16" : "15";
   const Outcome judged = run({"systemd-analyze", "security", "--offline=true",
                               std::string("--threshold=") + most, localCopy()});
@@ -82,7 +82,7 @@ TEST(DaemonsUnits, SayWhatTheDaemonReliesOn) {
       << "llvmpipe dies with it";
 }
 
-// Programs of others run under it, and they are to hear of faults of the start.
+// Other people's programs run under this unit, and it has to report faults of the start.
 TEST(AlarmsUnit, GivesItsProgramsAnErrorAndWaitsForTheNetworkAlone) {
   const std::string unit = readText(kUnits + "merlin-alarms.service");
   EXPECT_NE(unit.find("\nSystemCallErrorNumber=EPERM\n"), std::string::npos)

@@ -1,4 +1,4 @@
-// merlin-rfb with real VNC clients: what they see, what they may do, and what hostile ones reach.
+// merlin-rfb with real VNC clients: what they see, what they may do, and how far hostile ones get.
 #include <charconv>
 #include <memory>
 #include <sstream>
@@ -24,7 +24,7 @@ namespace {
 const std::string kRfb = MERLIN_BIN_DIR "/merlin-rfb";
 using Arguments = std::vector<std::string>;
 
-// A merlin-rfb at a free port.
+// A merlin-rfb process at a free port.
 class Rfb {
  public:
   explicit Rfb(const std::string& instance, const Arguments& more = {}) {
@@ -42,7 +42,7 @@ class Rfb {
 
   struct Child {
     pid_t pid = 0;
-    std::size_t memory_kb = 0;  // without what is shared with the wall
+    std::size_t memory_kb = 0;  // excluding memory that is shared with the wall
   };
   std::vector<Child> children() const {
     std::vector<Child> found;
@@ -70,7 +70,7 @@ class RfbTest : public testing::Test {
     EXPECT_TRUE(wall->ready()) << wall->process().output();
     return wall;
   }
-  // What `merlin snapshot` shows, once the wall shows full detail.
+  // The picture of `merlin snapshot`, once the wall shows full detail.
   Image snapshot(Merlind& wall, bool whole_frame = false) {
     EXPECT_TRUE(eventually([&] { return wall.wall().full_detail == 1; }));
     Arguments command = {kMerlin, "snapshot", "--instance", wall.instance(), "-o", dir_ / "s.png"};
@@ -219,7 +219,8 @@ TEST(RfbStart, APasswordIsAskedFor) {
 
 UniqueFd connectTo(int port) {
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const int small = 4096;  // so that a server notices soon that nobody reads
+  // With a small buffer the server soon notices a client that does not read.
+  const int small = 4096;
   ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -233,7 +234,7 @@ void sendBytes(const UniqueFd& fd, const std::string& bytes) {
   (void)!::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-// The handshake of RFB 3.8 without a password, and requests for the whole picture; reads nothing.
+// A handshake of RFB 3.8 without a password, then `count` requests for the whole picture.
 std::string requests(int count) {
   std::string all = "RFB 003.008\n\x01\x01";
   for (int i = 0; i < count; ++i)
@@ -241,15 +242,16 @@ std::string requests(int count) {
   return all;
 }
 
-// A picture of 3.7 MB, a frame of 4.9 MB and the library. The address sanitizer keeps what was
-// freed.
+// A picture takes 3.7 MB, a frame 4.9 MB, and the library some more. The address sanitizer keeps
+// freed memory.
 #if defined(MERLIN_ANY_SANITIZER)
 constexpr std::size_t kMostMemory_kb = 1'000'000;
 #else
 constexpr std::size_t kMostMemory_kb = 50'000;
 #endif
 
-// While clients of all sorts misbehave, one that behaves sees every change, and no process grows.
+// While several clients misbehave in different ways, one that behaves sees every change, and no
+// process grows.
 TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
   const auto wall = start("visit");
   Rfb rfb(wall->instance(), {"--clients", "6", "--allow-input"});
@@ -262,7 +264,7 @@ TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
     hostile.push_back(connectTo(rfb.port()));
     sendBytes(hostile.back(), bytes);
   };
-  join(requests(1000));  // never reads
+  join(requests(1000));  // this client never reads
   ASSERT_TRUE(rfb.process().saysEventually("2 of 6 places are taken"));
   const auto sees = [&](int more) {
     const int before = good.updates();
@@ -275,7 +277,7 @@ TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
   join(std::string(100'000, '\xFF'));
   join("GET / HTTP/1.1\r\n\r\n");
   join("RFB 003.008\n\x01\x01" + std::string(100'000, '\xA5'));
-  // A clipboard of 4 GiB, a file transfer, encodings without end
+  // a clipboard of 4 GiB, a file transfer, encodings without end
   join(requests(0) + std::string("\x06\x00\x00\x00\xFF\xFF\xFF\xFF", 8));
   join(requests(0) + std::string("\x07\x03\x00\x00\x00\x00\x00\x00\x00\x00\x00\x01/", 13));
   join(requests(0) + std::string("\x02\x00\xFF\xFF", 4) + std::string(70'000, '\x01'));
@@ -284,7 +286,7 @@ TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
   EXPECT_TRUE(sees(10)) << "half handshakes";
   EXPECT_LE(rfb.children().size(), 6U);
 
-  // The one that never reads is disconnected, and the places are there for others.
+  // The client that never reads is disconnected, and all places are free for others.
   const auto left = [&] { return rfb.children().size() == 1; };
   EXPECT_TRUE(good.until(left)) << rfb.process().output();
   hostile.clear();

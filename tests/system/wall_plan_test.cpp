@@ -24,7 +24,7 @@ class WallPlan : public testing::Test {
   TempDir dir_;
 };
 
-// How often `part` occurs in `text`.
+// Number of occurrences of `part` in `text`.
 int countOf(const std::string& part, const std::string& text) {
   int count = 0;
   for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;

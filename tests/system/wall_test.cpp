@@ -1,4 +1,4 @@
-// The whole of it: real merlind, real emulators on ptys, real ZeroMQ, real EGL.
+// The whole system: real merlind, real emulators on ptys, real ZeroMQ, real EGL.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 class Wall : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    dir_ = new TempDir;  // for all tests of the suite
+    dir_ = new TempDir;  // shared by all tests of the suite
     model_ = makeModel(*dir_);
   }
   static void TearDownTestSuite() { delete dir_; }
@@ -44,7 +44,7 @@ TEST_F(Wall, RunsOnEmulatedDevicesAndEndsClean) {
   }));
 
   nlohmann::json status;
-  // All at once: on a busy machine one of them may be stale for a moment.
+  // All devices have to be ok at the same time; on a busy machine, one may be stale for a moment.
   EXPECT_TRUE(eventually([&] {
     status = m.status();
     return std::ranges::all_of(std::array{"glove", "tracker", "ball"}, [&](const char* name) {
@@ -90,7 +90,7 @@ TEST_F(Wall, AFistWithTheTrackerGrabs) {
   EXPECT_TRUE(eventually([&] { return m.wall().grabbed == 0; }));
 }
 
-// The emulated person makes a fist and opens the hand in turn.
+// The emulated person makes a fist and opens it in turn.
 TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
   const std::string folder = *dir_ / "taken";
   const nlohmann::json bindings = {
@@ -115,7 +115,7 @@ TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
   EXPECT_GE(m.status()["snapshots"], 1);
 }
 
-// Since `from` samples came, and of the newest of them none is missing.
+// Expects that samples have come since `from`, and that none of the newest ones is missing.
 template <typename T>
 void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const char* what) {
   const std::uint64_t to = channel.count();
@@ -143,7 +143,7 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
   std::vector<std::unique_ptr<Process>> restarted;
 
   for (const auto& victim : kDevices) {
-    // The document is made anew once in a while, the segment at once.
+    // The status document is updated only now and then, the shared memory at once.
     const auto status_says = [&](const char* health) {
       return m.status()["devices"][victim.name]["health"] == health;
     };
@@ -162,7 +162,8 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
                                  *dir_ / fmt::format("{}-{}.pty", m.instance(), victim.name)}));
     EXPECT_TRUE(m.healthIs(victim.name, HealthState::kOk)) << victim.name;
     EXPECT_TRUE(eventually([&] { return status_says("ok"); })) << victim.name;
-    // On a busy machine a new emulator's first record may come too late, once more.
+    // At least once: on a busy machine, a new emulator's first record may come too late and cause
+    // another one.
     EXPECT_GE(m.health(victim.name)->reconnects, 1u);
     EXPECT_GT(m.wall().updated_ns, drawn) << "the wall never stops";
 
@@ -174,7 +175,7 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
-// Black is what the outputs get, and so what a snapshot shows.
+// The outputs get black, so a snapshot shows black too.
 TEST_F(Wall, BlankMakesEverythingBlackUntilSomebodyMovesIt) {
   Merlind m(*dir_, model_, "blank", {.script = "still"});
   ASSERT_TRUE(m.ready()) << m.process().output();
@@ -234,7 +235,7 @@ TEST_F(Wall, SharedMemoryIsReadByItsDumpAndByPython) {
     fields = dump["/" + m.instance() + "-devices"];
     return fields["glove.health.state"]["value"] == 2;
   };
-  // On a busy machine the emulated glove may just be silent for too long.
+  // On a busy machine, the emulated glove may be silent for too long just now.
   EXPECT_TRUE(eventually(dumped)) << fields["glove.health.state"];
   EXPECT_EQ(fields["glove.angle_rad"]["value"].size(), 23u);
   EXPECT_EQ(fields["glove.angle_rad"]["unit"], "rad");
@@ -254,7 +255,7 @@ TEST_F(Wall, TheTwoRolesRunAsTwoProcesses) {
   EXPECT_TRUE(eventually([&] { return wall.wall().moving == 1 && wall.wall().frames > 20; }))
       << "the ball is twisted";
   EXPECT_EQ(devices.status()["roles"].size(), 2u);
-  // The wall outlives the devices' process, and finds them again.
+  // The wall goes on without the devices' process, and finds the next one.
   EXPECT_EQ(devices.process().kill(SIGKILL), 128 + SIGKILL);
   EXPECT_TRUE(eventually([&] { return wall.wall().moving == 0; }));
   Merlind again(*dir_, model_, "roles", {.script = "turning", .role = "devices"});
@@ -288,7 +289,7 @@ TEST_F(Wall, StartsAgainAfterAKill) {
   EXPECT_TRUE(next.leftInSharedMemory().empty());
 }
 
-// What systemd would hear on its socket.
+// The receiving end of systemd's notification socket.
 class NotifySocket {
  public:
   explicit NotifySocket(const std::string& path)

@@ -1,4 +1,5 @@
-// merlin watch on a real terminal: the table, keys, another size, a daemon that is restarted.
+// merlin watch on a real terminal: the table, its keys, a change of the terminal's size, and a
+// daemon that is restarted.
 #include <gtest/gtest.h>
 
 #include "tests/support/pty_process.h"
@@ -10,7 +11,7 @@ namespace {
 class Watch : public testing::Test {
  protected:
   void start() {
-    daemon_.reset();  // its addresses are free again
+    daemon_.reset();  // frees the daemon's addresses
     daemon_ =
         std::make_unique<Merlind>(dir_, model_, "watched", MerlindOptions{.script = "turning"});
     ASSERT_TRUE(daemon_->ready()) << daemon_->process().output();
@@ -82,7 +83,7 @@ TEST_F(Watch, SaysThatARoleWasKilled) {
 
 TEST_F(Watch, LinesStayWhereTheyAreAskedForOrTheTerminalCannotPlaceText) {
   start();
-  // A document comes once a second, and a busy machine is late.
+  // A status document comes once a second, and later on a busy machine.
   const std::vector<std::string> words = {kMerlin, "watch",      "--for",
                                           "8",     "--instance", daemon_->instance()};
   auto lines = words, json = words;

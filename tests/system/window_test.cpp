@@ -1,5 +1,5 @@
-// Outputs of kind window, at a real X server: what the window shows, what a person does there, and
-// what remains of the wall when the display fails.
+// Outputs of kind window at a real X server: what the window shows, what a person does there, and
+// how the wall goes on when the display fails.
 #include <filesystem>
 #include <string>
 
@@ -61,20 +61,20 @@ class WindowOutput : public testing::Test {
   bool isWell() {
     return eventually([&] { return output("window").value("health", "") == "ok"; });
   }
-  // Waits until its upper left corner shows the frame's background. Its health is "ok" before it is
-  // opened as well.
+  // Waits until the window's upper left corner shows the frame's background. The output's health
+  // alone does not tell, since it is "ok" before the window is open.
   bool isThere() {
     return eventually([&] {
       const Image screen = x_.screenshot();
       return screen.width > 0 && screen.at(1, 1) != Rgba{0, 0, 0, 255};
     });
   }
-  // Waits until its health says why it shows nothing.
+  // Waits until the output's health gives this reason for showing nothing.
   bool saysWhy(const std::string& why) {
     return eventually(
         [&] { return output("window").value("reason", "").find(why) != std::string::npos; });
   }
-  // Whether the wall draws on, and its other output is well.
+  // Whether the wall goes on drawing and its other output works.
   bool wallGoesOn() {
     const auto before = wall_->wall().frames;
     return eventually([&] { return wall_->wall().frames > before + 5; }) &&
@@ -92,7 +92,7 @@ class WindowOutput : public testing::Test {
     }
     return image;
   }
-  // The part of the screen at (x, y) that is as large as the frame.
+  // The part of the screen at (x, y) with the size of the frame.
   Image shownAt(int x, int y) const {
     const Image screen = x_.screenshot();
     Image part{2 * kWidth, 2 * kHeight, {}};
@@ -159,7 +159,8 @@ TEST_F(WindowOutput, TheWallGoesOnWithoutItsXServerAndTheWindowComesBackWithIt) 
   EXPECT_TRUE(isThere());
 }
 
-// Its health changes though no frame is drawn, and the window shows the last one when it is back.
+// The output's health is reported though no frame is drawn. When the display is back, the window
+// shows the last frame.
 TEST_F(WindowOutput, AWallAtRestTellsAsWell) {
   show();
   ASSERT_TRUE(isThere());
@@ -244,7 +245,7 @@ TEST_F(WindowOutput, KeysAreCommandsUnlessTheyAreOff) {
   show({{"input", false}});
   ASSERT_TRUE(isThere());
   x_.key("wall", XK_m);
-  x_.close("wall");  // what comes after the key has happened when the key has
+  x_.close("wall");  // the key's effect is complete before the event that follows it
   ASSERT_TRUE(saysWhy("a person closed"));
   EXPECT_EQ(mode(), before);
 }
@@ -260,7 +261,7 @@ TEST_F(WindowOutput, DraggingTurnsTheModel) {
   EXPECT_TRUE(showsTheFrameAt(0, 0));
 }
 
-// On the default wall, whose operator's tile is the frame's lower right quarter.
+// Uses the default wall, whose operator's tile is the lower right quarter of the frame.
 TEST_F(WindowOutput, TheMouseWorksTheOperatorsPanel) {
   start(
       {{"operator", {{"panel", true}}},
@@ -276,7 +277,8 @@ TEST_F(WindowOutput, TheMouseWorksTheOperatorsPanel) {
     x_.drag(1, {640 + panel->at.x + r.x + r.width / 2, 480 + panel->at.y + r.y + r.height / 2}, {});
   };
   const double before = asked();
-  // A press that is not heard of for 1.5 s is let go without a click: a busy machine may need two.
+  // A press that the daemon has not received for 1.5 s is released without a click, so a busy
+  // machine may need two.
   for (int tries = 0; tries < 3 && asked() == before; ++tries) {
     click(render::panel::ControlId::kRateLess);
     (void)eventually([&] { return asked() < before; }, std::chrono::seconds(10));
@@ -285,7 +287,7 @@ TEST_F(WindowOutput, TheMouseWorksTheOperatorsPanel) {
   EXPECT_EQ(wall_->wall().moving, 0) << "the model is not dragged";
 }
 
-// As where MERLIN was built without SDL2: the program is not beside merlind.
+// As in a build without SDL2: the program is not in the folder of merlind.
 TEST_F(WindowOutput, TheCheckOfAConfigurationSaysThatItIsNotBuilt) {
   std::filesystem::copy_file(kMerlind, dir_ / "merlind");
   const std::string config = dir_ / "wall.json";

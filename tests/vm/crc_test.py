@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What the kernel itself says a display shows, beside what the wall meant, in a virtual machine: ./dev test-vm
+"""Compares what the kernel itself says a display shows with what the wall meant, in a virtual machine: ./dev test-vm
 
 The display is the kernel's vkms, which has vertical blanks at 60 Hz and a CRC of each picture that it
-scans out (debugfs). The CRC of what `merlin snapshot --output` says can be computed here, so that it
-judges the displays and the wall's own check of them without using anything of either.
+scans out (debugfs). The test computes the same CRC of the picture from `merlin snapshot --output`, so it
+judges the displays, and the wall's own check of them, independently of both.
 """
 import re
 import unittest
@@ -19,7 +19,7 @@ NAME = "centre"
 DEBUG = "/sys/kernel/debug/dri/1"
 CONNECTOR = None
 CARD = "/dev/dri/card1"
-FRAMES = 10  # of which the CRCs of a still picture are compared
+FRAMES = 10  # number of frames of a still picture whose CRCs are compared
 
 
 def setUpModule():
@@ -42,17 +42,18 @@ def tearDownModule():
 
 
 def crcs(count=1):
-    """CRCs of the next frames that the display scans out."""
-    # Each read is a frame: its number and its CRC.
+    """The CRCs of the next frames that the display scans out."""
+    # Each read returns one frame: its number and its CRC.
     said = wall.MACHINE.run(f"dd if={DEBUG}/crtc-0/crc/data bs=64 count={count} status=none")
     return [int(crc, 16) for crc in re.findall(r"0x[0-9a-f]{8} (0x[0-9a-f]{8})", said)]
 
 
 def crc_of(image):
-    """What vkms computes of a picture: a CRC-32 from 0 on, of alpha, red, green and blue with 16 bits each."""
+    """The value that vkms computes of a picture: a CRC-32 with start value 0 of alpha, red, green and blue, 16
+    bits each."""
     pixels = bytearray(b"\xff" * (image[0] * image[1] * 8))
     for channel in range(3):
-        for byte in range(2):  # 8 bits times 257
+        for byte in range(2):  # 8 bits times 257 are 16 bits
             pixels[2 + 2 * channel + byte::8] = image[2][channel::3]
     return zlib.crc32(pixels, 0xFFFFFFFF) ^ 0xFFFFFFFF
 
@@ -63,7 +64,7 @@ class Crc(unittest.TestCase):
         until(picture.stands_still, "nothing is drawn any more")
 
     def shown(self):
-        """The CRC of a still picture, which has to be that of the output's signal."""
+        """Waits for a still picture, whose CRC has to be that of the output's signal; returns the CRC."""
         signal = crc_of(wall.signal(NAME))
         until(lambda: crcs() == [signal], f"the kernel's CRC is {signal:#x}, that of the output's signal")
         self.assertEqual(set(crcs(FRAMES)), {signal})

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Devices on real lines of the kernel, in a virtual machine: ./dev test-vm
 
-Two serial ports and a serial adapter on USB, whose other ends are the emulators on the host, so that
-libserialport's way is taken; a gamepad, a touch frame and a mouse made by uinput, so that libevdev's way is. Judges health, values
-and the order of events; no rates and no latencies, since the machine is emulated.
+Two serial ports and a serial adapter on USB, whose other ends are the emulators on the host, test the way
+through libserialport. A gamepad, a touch frame and a mouse made by uinput test the way through libevdev.
+The tests judge health, values and the order of events, but no rates and no latencies, since the machine is
+emulated.
 """
 import json
 import os
@@ -23,7 +24,7 @@ BALL = {"driver": "usb-serial", "id": "ball", "chardev": "ball-line"}
 
 
 def setUpModule(modules=()):
-    """The emulators and the machine, with further modules of its kernel."""
+    """Starts the emulators and the machine, with further modules of its kernel."""
     global MACHINE
     lines = f"{OPTIONS.work}/lines"
     os.makedirs(lines, exist_ok=True)
@@ -31,7 +32,7 @@ def setUpModule(modules=()):
         command = [f"{OPTIONS.bin}/merlin", "emulate", device, "--link", f"{lines}/{device}", "--script", script]
         emulator = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         EMULATORS.append(emulator)
-        emulator.stdout.readline()  # it is there
+        emulator.stdout.readline()  # the emulator is ready
     extra = ["-chardev", f"serial,id=glove-line,path={lines}/cyberglove", "-serial", "chardev:glove-line",
              "-chardev", f"serial,id=tracker-line,path={lines}/fastrak", "-serial", "chardev:tracker-line",
              "-chardev", f"serial,id=ball-line,path={lines}/spaceball",
@@ -61,7 +62,7 @@ def entry(name, port):
 
 
 def start(*devices, **settings):
-    """Starts merlind with these devices, and waits until it is ready; returns its process id."""
+    """Starts merlind with these devices and waits until it is ready; returns its process id."""
     config = {"run_directory": "/run/merlin", "devices": list(devices), **settings}
     with open(f"{MACHINE.shared}/devices.json", "w", encoding="utf-8") as file:
         json.dump(config, file)
@@ -120,14 +121,14 @@ class Devices(unittest.TestCase):
         stop(pid)
 
     def plug(self, kind):
-        """A made-up input device; returns its process id and its file."""
+        """Makes an input device; returns the id of its process and the path of its file."""
         maker = int(MACHINE.run(f"rm -f /run/input.path; make_input {kind} </run/input "
                                 ">/run/input.path 2>/run/log & echo $!"))
         path = vm.until(lambda: MACHINE.run("cat /run/input.path", succeeds=False).strip(), f"the {kind} is there")
         return maker, path
 
     def report(self, *events):
-        """One report of the input device, of some (type, code, value)."""
+        """Makes one report of the input device, of several (type, code, value)."""
         MACHINE.run("echo " + " ".join(str(number) for event in events for number in event) + " >&5")
 
     def test_3_a_gamepad_is_found_read_grabbed_unplugged_and_back(self):
@@ -202,9 +203,9 @@ class Devices(unittest.TestCase):
         MACHINE.run(f"kill {mouse}; wait {mouse}", succeeds=False)
 
     def fingers(self):
-        """The places of the fingers on the surface."""
+        """The positions of the fingers on the surface."""
         fields = json.loads(MACHINE.run("merlin shm dump --json"))["/merlin-devices"]
-        if not fields["touch.fingers"].get("value"):  # before the first sample, too
+        if not fields["touch.fingers"].get("value"):  # also before the first sample
             return []
         places = fields["touch.position"]["value"]
         return [places[2 * i:2 * i + 2] for i in range(fields["touch.fingers"]["value"])]

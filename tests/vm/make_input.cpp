@@ -1,8 +1,8 @@
-// make_input KIND: an input device of the kernel, made by uinput, for the tests in the virtual
+// make_input KIND: makes an input device of the kernel by uinput, for the tests in the virtual
 // machine: a gamepad with two sticks and two buttons, a touch frame with ten slots, or a mouse.
-// Prints the path of its file, then makes a report of each line of its input: some of "TYPE CODE
-// VALUE" in numbers of linux/input-event-codes.h. It is unplugged when its input ends, or by a
-// signal.
+// Prints the path of its file. Then each line of its input becomes a report: several "TYPE CODE
+// VALUE" in numbers of linux/input-event-codes.h. The device is unplugged when the input ends, or
+// by a signal.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -41,7 +41,7 @@ void addGamepad(libevdev* device) {
   addKeys(device, {BTN_SOUTH, BTN_EAST});
 }
 
-// 800 mm by 400 mm.
+// The surface is 800 mm by 400 mm.
 void addFrame(libevdev* device) {
   libevdev_set_name(device, "made-up frame of a test");
   for (const auto& [code, high] : {std::pair{ABS_X, 8000},

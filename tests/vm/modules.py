@@ -1,7 +1,7 @@
 """Modules that Debian's kernel leaves out, for the virtual machine: a simulated GPIO chip, and a display with CRCs.
 
 build() makes them once, out of tree, of Debian's source for exactly the machine's kernel, and keeps
-them in WORK/modules/RELEASE. By hand, to see whether they build here:
+them in WORK/modules/RELEASE. To see by hand whether they can be built on this machine:
 
     python3 -B tests/vm/modules.py build/vm
 """
@@ -15,15 +15,16 @@ import unittest
 
 import vm
 
-# What is taken from the kernel's source for each module.
+# The files and folders of the kernel's source that each module needs.
 GPIO_SIM, VKMS = "gpio-sim", "vkms"
 SOURCES = {GPIO_SIM: ("drivers/gpio/gpio-sim.c", "drivers/gpio/gpiolib.h", "kernel/irq/irq_sim.c"),
            VKMS: ("drivers/gpu/drm/vkms",)}
-DOWNLOAD_MB = 155  # for both
+DOWNLOAD_MB = 155  # for both modules together
 
 
 def build(work, name):
-    """The file of a module, made if it is not there yet; vm.Missing with the reason if it cannot be."""
+    """The path of a module's file, which is built if it does not exist yet; raises vm.Missing if that is not
+    possible."""
     cache = f"{work}/kernel"
     release = os.path.basename(vm.kernel(cache)[1])
     folder = f"{work}/modules/{release}"
@@ -43,7 +44,7 @@ def build(work, name):
 
 
 def fetch(at, release, cache):
-    """Unpacks the headers for this kernel into AT/usr, and the wanted files of its source into AT/source."""
+    """Unpacks the headers for this kernel into AT/usr, and the needed files of its source into AT/source."""
     headers = f"linux-headers-{release}"
     series = re.match(r"\d+\.\d+", release)[0]
     policy = subprocess.run(["apt-cache", "policy", headers], capture_output=True, text=True)
@@ -57,13 +58,13 @@ def fetch(at, release, cache):
     for file in files:
         if file != source:
             subprocess.run(["dpkg-deb", "-x", file, at], check=True)
-    # The header package names its other half by the path where that would be installed.
+    # The header package refers to its other half by the path at which that would be installed.
     makefile = f"{at}/usr/src/{headers}/Makefile"
     with open(makefile, encoding="utf-8") as file:
         text = file.read()
     with open(makefile, "w", encoding="utf-8") as file:
         file.write(text.replace("include /usr/src/", f"include {at}/usr/src/"))
-    # A package is an archive that has the compressed archive of the source in it.
+    # The package is an archive that contains the compressed archive of the source.
     tree = f"linux-source-{series}"
     wanted = " ".join(f"{tree}/{path}" for paths in SOURCES.values() for path in paths)
     os.makedirs(f"{at}/source")
@@ -73,7 +74,7 @@ def fetch(at, release, cache):
 
 
 def compile_module(at, release, name, sources, made):
-    """Builds one module. Everything it needs is there: if it is not built, that is an error."""
+    """Builds one module. All that it needs is available, so a failure is an error."""
     folder = f"{at}/{name}"
     os.makedirs(folder)
     for source in (f"{at}/source/{path}" for path in sources):
@@ -91,19 +92,20 @@ def compile_module(at, release, name, sources, made):
 
 
 def add_interrupts(folder):
-    """Makes one module of gpio-sim and irq_sim, which Debian's kernel has not either (CONFIG_IRQ_SIM)."""
-    os.rename(f"{folder}/gpio-sim.c", f"{folder}/chip.c")  # a module of two files has another name than each
+    """Makes one module of gpio-sim and irq_sim (CONFIG_IRQ_SIM), since Debian's kernel has neither."""
+    os.rename(f"{folder}/gpio-sim.c", f"{folder}/chip.c")  # a module of two files needs a name that differs from theirs
     with open(f"{folder}/Makefile", "w", encoding="utf-8") as file:
         file.write("obj-m := gpio-sim.o\ngpio-sim-y := chip.o irq_sim.o\n")
     with open(f"{folder}/irq_sim.c", encoding="utf-8") as file:
         text = file.read()
-    # irq_to_desc() is not for modules; generic_handle_irq() calls the handler that irq_sim.c itself has set.
+    # Modules may not use irq_to_desc(); generic_handle_irq() calls the same handler, which irq_sim.c has set.
     with open(f"{folder}/irq_sim.c", "w", encoding="utf-8") as file:
         file.write(text.replace("handle_simple_irq(irq_to_desc(irqnum))", "generic_handle_irq(irqnum)"))
 
 
 def build_or_skip(work, name, what):
-    """The same for a test's module; where it cannot be built, `what` is skipped with the reason."""
+    """As build(), for the module of a test; if it cannot be built, the tests of `what` are skipped with the
+    reason."""
     try:
         return build(work, name)
     except vm.Missing as missing:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The Debian packages on a fresh Debian 12 with its own systemd, in a virtual machine: ./dev test-vm-package
 
-The Debian is made once by debootstrap, with the libraries that the packages depend on; each run begins
-with a copy. Judges states and pictures; the times that it prints are those of an emulated machine.
+debootstrap makes the Debian once, with the libraries that the packages depend on; each run begins with a
+copy. The tests judge states and pictures; the times that they print are those of an emulated machine.
 """
 import argparse
 import glob
@@ -20,7 +20,7 @@ MACHINE = None
 MODE = (1024, 768)
 UNITS = ("merlin-devices", "merlin-wall", "merlin-page")
 
-# Hands the shell of vm.Vm to the tests when everything that starts with the machine has started.
+# Gives the tests the shell of vm.Vm once everything that starts with the machine has started.
 SHELL_UNIT = """[Unit]
 Description=Shell of the tests
 After=multi-user.target
@@ -31,18 +31,18 @@ WantedBy=graphical.target multi-user.target
 """
 
 
-# An emulated machine takes seconds for what the watchdogs of the units allow 5 s for.
+# The units' watchdogs allow 5 s, which is too little for an emulated machine.
 SLOW = "[Service]\nWatchdogSec=120\n"
 
 
 def dependencies(package):
-    """Names of the packages that it depends on: of alternatives the first one."""
+    """Names of the packages that it depends on; of alternatives, the first one."""
     field = subprocess.run(["dpkg-deb", "--field", package, "Depends"], check=True, capture_output=True, text=True)
     return [entry.split("|")[0].split("(")[0].strip() for entry in field.stdout.split(",")]
 
 
 def make_debian(folder, package):
-    """A Debian 12 with systemd and what `package` depends on."""
+    """Makes a Debian 12 with systemd and everything that `package` depends on."""
     if os.path.exists(f"{folder}/made"):
         return
     if shutil.which("debootstrap") is None or os.geteuid() != 0:
@@ -58,10 +58,10 @@ def make_debian(folder, package):
 def debootstrap(folder, package):
     subprocess.run(["debootstrap", "--variant=minbase", "--include=systemd,systemd-sysv,udev,dbus,procps", "bookworm",
                     f"{folder}/root"], check=True, stdout=subprocess.DEVNULL)
-    for name in glob.glob("/etc/apt/apt.conf.d/*"):  # a proxy
+    for name in glob.glob("/etc/apt/apt.conf.d/*"):  # perhaps there is a proxy
         shutil.copy(name, f"{folder}/root/etc/apt/apt.conf.d/")
     with open(f"{folder}/root/usr/sbin/policy-rc.d", "w", encoding="utf-8") as file:
-        file.write("#!/bin/sh\nexit 101\n")  # nothing is started here
+        file.write("#!/bin/sh\nexit 101\n")  # no package may start a service here
     os.chmod(f"{folder}/root/usr/sbin/policy-rc.d", 0o755)
     subprocess.run(["chroot", f"{folder}/root", "env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "install", "-qy",
                     "--no-install-recommends", *dependencies(package)], check=True, stdout=subprocess.DEVNULL)
@@ -98,12 +98,12 @@ def tearDownModule():
 
 
 def state(unit):
-    """What systemd says of it: "active", "inactive" ..."""
+    """The unit's state as systemd names it: "active", "inactive" ..."""
     return MACHINE.run(f"systemctl is-active {unit}", succeeds=False).strip()
 
 
 def since(event, unit="merlin-wall"):
-    """When the unit last was in a state, "ActiveEnter" (READY) or "InactiveEnter" [s]."""
+    """The time [s] at which the unit last entered a state: "ActiveEnter" (READY) or "InactiveEnter"."""
     return int(MACHINE.run(f"systemctl show -p {event}TimestampMonotonic --value {unit}")) / 1e6
 
 
@@ -112,23 +112,23 @@ def pid(unit):
 
 
 def runs_again(unit, before):
-    """Whether another process than `before` is ready; asked at once, since both may change between two questions."""
+    """Whether a process other than `before` is ready. One command asks for both, since they may change in between."""
     shown = dict(line.split("=") for line in MACHINE.run(f"systemctl show -p MainPID,ActiveState {unit}").split())
     return shown["ActiveState"] == "active" and int(shown["MainPID"]) not in (0, before)
 
 
 def kill(process):
-    """Kills it, and returns when [s]."""
+    """Kills the process; returns the time [s]."""
     return float(MACHINE.run(f"cut -d ' ' -f 1 /proc/uptime; kill -KILL {process}"))
 
 
 def frame_buffers():
-    """How many pictures the kernel holds for the card's displays, those of its console too."""
+    """Number of pictures that the kernel holds for the card's displays, including those of its console."""
     return MACHINE.run("cat /sys/kernel/debug/dri/0/framebuffer").count("framebuffer[")
 
 
 def spread(name, seconds):
-    """The distribution as a line."""
+    """The distribution of the values, as a line of text."""
     ordered = sorted(seconds)
     at = lambda share: ordered[min(len(ordered) - 1, int(share * len(ordered)))]
     print(f"{name}, {len(ordered)} times: least {ordered[0]:.2f} s, median {at(0.5):.2f} s, 95 % {at(0.95):.2f} s, "
@@ -136,7 +136,8 @@ def spread(name, seconds):
 
 
 def shown_until(condition):
-    """The least share of a display that was lit in any screendump, and their number, until the condition is true."""
+    """Takes screendumps until the condition is true. Returns the least share of a display that was lit, and
+    their number."""
     least, count, until = 1.0, 0, time.monotonic() + vm.DEADLINE_S
     while True:
         for head in range(vm.HEADS):
@@ -153,20 +154,20 @@ def status():
 
 
 def frames():
-    """Frames of the wall; where the machine is too busy, its status lacks them for a moment."""
+    """The wall's number of frames. Waits for it, since on a busy machine the status may lack it for a moment."""
     return vm.until(lambda: status().get("frames"), "the wall's status")
 
 
 def lit(picture):
-    """Share of the picture that is not dark: the background's channels are below 32."""
+    """Share of the picture that is not dark: all channels of the background are below 32."""
     data = picture[2]
-    every = 3 * 16  # one pixel in 16 says it as well
+    every = 3 * 16  # one pixel in 16 is enough
     pixels = zip(data[0::every], data[1::every], data[2::every])
     return sum(1 for pixel in pixels if max(pixel) > 48) * every / len(data)
 
 
 class Package(unittest.TestCase):
-    """In the order of an administrator's: the names are sorted."""
+    """The steps of an administrator, in this order; unittest sorts tests by name."""
 
     def test_1_installed_it_is_neither_enabled_nor_started(self):
         MACHINE.run("apt-get install -qy --no-install-recommends /mnt/merlin.deb")
@@ -183,7 +184,7 @@ class Package(unittest.TestCase):
         print(MACHINE.run("merlin status"))
         until = time.monotonic() + 10 + vm.DEADLINE_S  # the playlist begins after ten seconds
         shown = []
-        while time.monotonic() < until:  # a picture follows READY by a frame
+        while time.monotonic() < until:  # the picture follows READY by a frame
             shown = [lit(MACHINE.screendump(head)) for head in range(vm.HEADS)]
             if min(shown) > 0.03 and status()["playlist"] == "running":
                 break

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 """The wall's control panel on a GPIO chip of the kernel, in a virtual machine: ./dev test-vm
 
-The chip is the kernel's simulator gpio-sim, so that libgpiod's way is taken: what the lines are is
-read from the simulator, and the button is pressed there. A tracker on a serial line has to go on all
-the time.
+The chip is the kernel's simulator gpio-sim, so the way through libgpiod is tested: the tests read the lines
+from the simulator, and press the button there. A tracker on a serial line has to go on all the time.
 """
 import json
 import unittest
@@ -17,14 +16,15 @@ PROJECTOR, VIDEO, LAMP, BUTTON = range(4)
 OFF, WARMING, ON, COOLING = range(4)
 HEALTH = ("absent", "opening", "ok", "failed")
 CONFIGURED = "/sys/kernel/config/gpio-sim/panel"
-LABEL = "panel-of-a-test"  # an unplugged chip whose lines are held comes back with another number
-# The panel refuses for this long to switch the projectors on again, and repeats what it was told afterwards.
+# A chip that is unplugged while its lines are held comes back with another number, but with the same label.
+LABEL = "panel-of-a-test"
+# For this time the panel refuses to switch the projectors on again, and executes the command afterwards.
 COOL_DOWN_S = 5
 CHIP = None
 
 
 class Chip:
-    """A chip with eight lines, which can be unplugged and plugged in."""
+    """A chip with eight lines, which can be unplugged and plugged in again."""
 
     def __init__(self):
         devices.MACHINE.run("mount -t configfs configfs /sys/kernel/config\n"
@@ -42,7 +42,7 @@ class Chip:
         devices.MACHINE.run(f"echo 0 >{CONFIGURED}/live")
 
     def levels(self):
-        """Of projectors, video switch and lamp."""
+        """The levels of the lines for projectors, video switch and lamp."""
         return [int(level) for level in devices.MACHINE.run(
             "cat " + " ".join(f"{self.at}/sim_gpio{line}/value" for line in (PROJECTOR, VIDEO, LAMP))).split()]
 
@@ -50,7 +50,7 @@ class Chip:
         devices.MACHINE.run(f"echo pull-{'up' if pressed else 'down'} >{self.at}/sim_gpio{BUTTON}/pull")
 
     def take(self, line):
-        """The kernel takes a line away from everybody else; returns what gives it back."""
+        """Lets the kernel take a line, so that no one else can use it; returns a function that gives it back."""
         base = int(devices.MACHINE.run(f"cat {self.numbers}"))
         devices.MACHINE.run(f"echo {base + line} >/sys/class/gpio/export")
         return lambda: devices.MACHINE.run(f"echo {base + line} >/sys/class/gpio/unexport")
@@ -68,7 +68,7 @@ def tearDownModule():
 
 
 def state(name):
-    """Fields of the panel ("gpio") or of the tracker in shared memory, by their names without it."""
+    """Fields of the panel ("gpio") or of the tracker in shared memory; the keys lack that name."""
     fields = json.loads(devices.MACHINE.run("merlin shm dump --json"))["/merlin-devices"]
     return {field.removeprefix(f"{name}."): found.get("value") for field, found in fields.items()
             if field.startswith(f"{name}.")}
@@ -88,7 +88,7 @@ def merlin(command):
 
 
 def refused(command):
-    """What the command says that is not executed."""
+    """The message of a command that is refused."""
     mark = "was executed"
     said = devices.MACHINE.run(f"merlin {command} && echo {mark}", succeeds=False)
     if mark in said:
@@ -98,7 +98,7 @@ def refused(command):
 
 class Panel(unittest.TestCase):
     def start(self, **gpio):
-        """merlind with the panel and a tracker; stopped at the test's end."""
+        """Starts merlind with the panel and a tracker; it is stopped at the test's end."""
         lines = {"projector_line": PROJECTOR, "video_line": VIDEO, "lamp_line": LAMP, "button_line": BUTTON}
         times = {"warm_up_s": 1, "cool_down_s": COOL_DOWN_S, "interlock_s": 0}
         pid = devices.start(devices.entry("tracker", "serial:/dev/ttyS2"), state_file="/run/merlin.state.json",
@@ -148,7 +148,7 @@ class Panel(unittest.TestCase):
             until(lambda: panel()["presses"] == presses, "the button is pressed")
             self.levels_become(1, 1, 0)
             CHIP.press(False)
-            merlin("video_a")  # which takes longer than a release has to
+            merlin("video_a")  # this takes longer than a button has to be released
             self.levels_become(1, 0, 0)
         self.the_tracker_goes_on()
 
@@ -187,7 +187,7 @@ class Panel(unittest.TestCase):
         self.the_tracker_goes_on()
         give_back()
         until(lambda: health() == ("ok", ""), "the line is free")
-        self.levels_become(1, 0, 0)  # what was refused is done afterwards
+        self.levels_become(1, 0, 0)  # the refused command is executed afterwards
 
     def test_5_what_is_not_there_is_said(self):
         self.start(lamp_line=8)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Whether the wall notices what its displays really show, in a virtual machine: ./dev test-vm
 
-spoil_display changes what a display shows while the wall stays DRM master and nothing moves. The
-wall has to find it, say it, put its picture back and say that, too.
+spoil_display changes the picture of a display while the wall stays DRM master and nothing moves. The wall
+has to find the fault, report it, restore its picture, and report that, too.
 """
 import subprocess
 import sys
@@ -14,10 +14,10 @@ import wall_test as wall
 from vm import until
 
 SPOILED, CONNECTOR = "centre", "Virtual-2"
-# Between two checks 5 s; a second reading after half a second; events are told every half second.
-# The rest is for a machine that is emulated.
+# 5 s between two checks, half a second to a second reading, half a second until events are reported.
+# The rest is tolerance for an emulated machine.
 LONGEST_S = 12
-STANDS_S = 3  # without a frame
+STANDS_S = 3  # time without a new frame
 
 
 def merlin(*arguments):
@@ -31,7 +31,8 @@ def setUpModule():
 
 
 def small_wall():
-    """The wall with a model that an emulated machine soon has in full detail: then no frame is drawn any more."""
+    """Starts a wall with a model that an emulated machine soon shows in full detail; then no more frames are
+    drawn."""
     small = f"{wall.OPTIONS.work}/small"
     merlin("mesh", "export", f"{wall.OPTIONS.work}/model.mrm", "--percent", "2", "-o", f"{small}.ply")
     merlin("mesh", "reduce", f"{small}.ply", "-o", f"{small}.mrm")
@@ -67,7 +68,7 @@ class Picture(unittest.TestCase):
         until(stands_still, "nothing is drawn any more")
 
     def spoil(self, how, name=SPOILED, connector=CONNECTOR):
-        """Spoils a display; returns when it was done."""
+        """Spoils a display; returns the time at which that was done."""
         wall.MACHINE.run(f"spoil_display {wall.CARD} {wall.PID} {connector} {how}")
         return time.monotonic()
 

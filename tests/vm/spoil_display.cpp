@@ -1,12 +1,13 @@
-// spoil_display CARD PID CONNECTOR HOW [FILE]: spoils what a display shows behind the back of the
-// process that has the card, for the tests in the virtual machine: with a copy of that process's
-// descriptor, so that the process stays DRM master and is told nothing. HOW:
-//   off      the display's CRTC is switched off
-//   black    the buffer that is shown is overwritten with zeros
-//   foreign  a purple buffer is shown instead
-//   keep     what is shown is written to FILE
-//   put      what is in FILE is written over what is shown
-//   half     the same of the lower half
+// spoil_display CARD PID CONNECTOR HOW [FILE]: changes the picture of a display without the
+// knowledge of the process that uses the card, for the tests in the virtual machine. It works with
+// a copy of that process's descriptor, so that the process stays DRM master and is told nothing.
+// HOW:
+//   off      switches the display's CRTC off
+//   black    overwrites the buffer that is shown with zeros
+//   foreign  shows a purple buffer instead
+//   keep     writes what is shown to FILE
+//   put      writes the content of FILE over what is shown
+//   half     as put, but for the lower half only
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -36,7 +37,7 @@ constexpr std::uint32_t kPurple = 0x00800080;
   std::exit(1);
 }
 
-// A copy of the descriptor by which the process is the card's DRM master.
+// Returns a copy of the descriptor through which the process is the card's DRM master.
 int copyFrom(const std::string& card, int pid) {
   const auto process = static_cast<int>(::syscall(SYS_pidfd_open, pid, 0));
   if (process < 0) fail("pidfd_open");

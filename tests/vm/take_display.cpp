@@ -1,7 +1,7 @@
-// take_display CARD [PID]: a program that has the displays, for the tests in the virtual machine:
-// becomes DRM master, paints every connected display in one colour, and keeps them until SIGTERM.
-// With PID it first takes them from that process, as logind does on a change of the session: with a
-// copy of the process's descriptor.
+// take_display CARD [PID]: a program that takes the displays, for the tests in the virtual machine.
+// It becomes DRM master, paints every connected display in one colour, and keeps them until
+// SIGTERM. With PID it first takes them from that process, as logind does when the session changes:
+// with a copy of the process's descriptor.
 #include <cerrno>
 #include <csignal>
 #include <cstdio>

@@ -1,10 +1,10 @@
 """A virtual machine for tests: Debian's kernel, four displays of a virtio GPU, the host's files.
 
 Vm starts QEMU without KVM (the emulator is slower, but the same everywhere), and offers
-  run(command)      a command in the machine's shell; its output, once it has ended
+  run(command)      runs a command in the machine's shell; returns its output once it has ended
   wait_for(regex)   the next line of the machine's console that matches; merlind's log goes there
-  screendump(head)  what display `head`, counted from 0, shows
-Nothing here sleeps: each call waits for bytes, up to a deadline, and then fails with what it saw.
+  screendump(head)  the picture of display `head`, counted from 0
+No function sleeps: each call waits for bytes, up to a deadline, and then fails with what it has received.
 """
 import argparse
 import glob
@@ -20,16 +20,16 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 HEADS = 4
-DEADLINE_S = 120  # for anything: a loaded machine emulates slowly
+DEADLINE_S = 120  # for every wait: a loaded machine emulates slowly
 MODULES = ("virtio_pci", "virtio_console", "virtio-gpu", "9pnet_virtio", "9p")
 
 
 class Missing(Exception):
-    """What a virtual machine needs cannot be had here."""
+    """Something that a virtual machine needs is not available here."""
 
 
 def arguments():
-    """The folders that a test program's command line names, and the arguments for unittest."""
+    """Parses a test program's command line: its folders, and the arguments for unittest."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--bin", required=True, help="folder of the programs")
     parser.add_argument("--work", required=True, help="folder for the machine's files")
@@ -62,9 +62,9 @@ def kernel(cache):
 
 
 def module_files(folder, wanted):
-    """Files of the modules `wanted` and of what they need, in the order in which they are loaded.
+    """Files of the modules `wanted` and of those that they need, in the order in which they have to be loaded.
 
-    `wanted`: names of modules in `folder`, or paths of others.
+    `wanted`: names of modules in `folder`, or paths of other modules.
     """
     paths = glob.glob(f"{folder}/**/*.ko", recursive=True) + [name for name in wanted if "/" in name]
     files = {os.path.basename(path)[:-3].replace("-", "_"): path for path in paths}
@@ -118,7 +118,7 @@ def initrd(path, modules, init):
 
 
 def until(condition, what, deadline_s=DEADLINE_S):
-    """Asks again and again until the condition is true, and returns it."""
+    """Calls the condition repeatedly until it returns a true value; returns that value."""
     end = time.monotonic() + deadline_s
     while not (result := condition()):
         if time.monotonic() > end:
@@ -127,14 +127,14 @@ def until(condition, what, deadline_s=DEADLINE_S):
 
 
 class Line:
-    """A stream socket whose bytes are read up to what somebody waits for."""
+    """A stream socket, whose bytes are read until an expected text comes."""
 
     def __init__(self, path, ended):
         self.socket = socket.socket(socket.AF_UNIX)
         self.ended, self.seen, self.at = ended, b"", 0
         self.log = open(path + ".log", "wb")
         until = time.monotonic() + DEADLINE_S
-        while True:  # QEMU makes the socket a moment after its start
+        while True:  # QEMU makes the socket a moment after it has started
             try:
                 self.socket.connect(path)
                 break
@@ -154,7 +154,7 @@ class Line:
         self.socket.sendall(text.encode())
 
     def wait_for(self, regex, deadline_s=DEADLINE_S):
-        """The next match after the last one; AssertionError with what came instead."""
+        """The next match after the last one; AssertionError with the received text if there is none."""
         pattern, until = re.compile(regex.encode(), re.MULTILINE), time.monotonic() + deadline_s
         while True:
             # Searches only whole lines, since a line may arrive in pieces.
@@ -174,7 +174,7 @@ class Line:
 
 
     def wait_for_all(self, regexes, deadline_s=DEADLINE_S):
-        """The matches of several regular expressions, in whatever order they come."""
+        """The matches of several regular expressions, in any order."""
         begin, found, end = self.at, [], self.at
         for regex in regexes:
             self.at = begin
@@ -186,12 +186,13 @@ class Line:
 
 class Vm:
     def __init__(self, folder, mode, memory_mb=1536, root=None, modules=(), extra=()):
-        """`folder`: for the machine's files; FOLDER/shared is its /mnt. `mode`: "640x480".
+        """`folder`: for the machine's files; FOLDER/shared is its /mnt. `mode`: for example "640x480".
 
-        `modules`: of the kernel, beside MODULES, or paths of others. `extra`: arguments of QEMU; a further
+        `modules`: names of further modules of the kernel, or paths of others. `extra`: arguments of QEMU; a further
         serial port is /dev/ttyS1.
 
-        `root`: a Debian of its own with systemd, which the machine writes to; None: the host's, read-only.
+        `root`: a folder with a Debian of its own with systemd, which the machine may change; None: the host's root,
+        read-only.
         """
         self.folder, self.shared = folder, os.path.join(folder, "shared")
         shutil.rmtree(folder, ignore_errors=True)
@@ -200,7 +201,7 @@ class Vm:
             raise Missing("QEMU is not there (package qemu-system-x86)")
         vmlinuz, module_folder = kernel(os.path.join(os.path.dirname(folder), "kernel"))
         initrd(f"{folder}/initrd", module_files(module_folder, MODULES + tuple(modules)), "systemd" if root else "init")
-        # Owners are those of the files, which only root can set.
+        # Files keep their owners, which only root can set.
         owners = "passthrough" if os.geteuid() == 0 else "none"
         shares = f"path={root},security_model={owners}" if root else "path=/,security_model=none,readonly=on"
         video = " ".join(f"video=Virtual-{i + 1}:{mode}@60e" for i in range(HEADS))
@@ -234,7 +235,7 @@ class Vm:
         return [found[0].decode(errors="replace") for found in self.console.wait_for_all(regexes)]
 
     def run(self, command, succeeds=True):
-        """Output of the command, with its errors. AssertionError if it fails and `succeeds`."""
+        """Runs a command; returns its output and error output. AssertionError if it fails and `succeeds` is true."""
         self.commands += 1
         mark = f"@{self.commands}@"
         begin = len(self.shell.seen)
@@ -246,14 +247,14 @@ class Vm:
         return output
 
     def ask(self, command, **arguments):
-        """A command of QEMU's monitor."""
+        """Runs a command of QEMU's monitor."""
         self.monitor.send(json.dumps({"execute": command, "arguments": arguments}))
         answer = self.monitor.wait_for(r'"(return|error)".*')
         if answer[1] == b"error":
             raise AssertionError(answer[0].decode())
 
     def screendump(self, head):
-        """(width, height, RGB bytes) of what a display shows."""
+        """(width, height, RGB bytes) of the picture that a display shows."""
         path = f"{self.folder}/head{head}.ppm"
         self.ask("screendump", filename=path, device="gpu", head=head)
         with open(path, "rb") as file:

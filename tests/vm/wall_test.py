@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The wall on four displays, in a virtual machine: ./dev test-vm
 
-Judges pictures, health and the order of events; no rates and no latencies, since the machine is
+The tests judge pictures, health and the order of events, but no rates and no latencies, since the machine is
 emulated. Each test leaves the wall running with all four displays lit.
 """
 import json
@@ -11,7 +11,7 @@ import sys
 import unittest
 
 import vm
-from vm import until  # what a display shows follows an event by a frame
+from vm import until  # used for pictures, which follow their events by a frame
 
 sys.path.insert(0, os.path.join(vm.HERE, "..", "support"))
 import check_wall_picture  # noqa: E402  its reader of PNG files
@@ -21,11 +21,11 @@ MODE = (640, 480)
 CARD = "/dev/dri/card0"
 OPTIONS = None
 MACHINE = None
-PID = None  # of merlind in the machine
+PID = None  # merlind's process in the machine
 
 
 def setUpModule(modules=()):
-    """The machine, with further modules of its kernel, and the wall's configuration."""
+    """Starts the machine with further modules of its kernel, and writes the wall's configuration."""
     global MACHINE
     model = f"{OPTIONS.work}/model.mrm"
     os.makedirs(OPTIONS.work, exist_ok=True)
@@ -43,8 +43,8 @@ def setUpModule(modules=()):
     config["run_directory"] = "/run/merlin"
     config["state_file"] = "/run/merlin.state.json"
     write_config("wall", config)
-    # The names of the programs, and a home for Mesa's cache. The log goes through a pipe, since
-    # merlind leaves lines out that a terminal has no room for.
+    # Sets the path of the programs, and a folder for Mesa's cache. The log goes through a pipe, since merlind
+    # leaves out lines for which a terminal has no room.
     MACHINE.run(f"PATH=$PATH:{OPTIONS.bin} HOME=/run; export PATH HOME\n"
                 "mkfifo /run/log; exec 4<>/run/log; cat <&4 >/dev/ttyS0 &")
 
@@ -65,7 +65,7 @@ def read_config(name):
 
 
 def start_wall(config="wall"):
-    """Starts merlind, whose log is the console, and waits until it is ready."""
+    """Starts merlind with its log on the console, and waits until it is ready."""
     global PID
     command = f"merlind --role wall --config /mnt/{config}.json >/run/log 2>&1 & echo $!"
     PID = int(MACHINE.run(command))
@@ -77,12 +77,12 @@ def stop_wall(signal):
 
 
 def outputs():
-    """What `merlin status` says of each output."""
+    """The entry of each output in `merlin status`."""
     return json.loads(MACHINE.run("merlin status --json"))["outputs"]
 
 
 def picture(name, command):
-    """(width, height, RGB bytes) of the PNG file that a command writes in the machine."""
+    """(width, height, RGB bytes) of the PNG file that a command in the machine writes."""
     MACHINE.run(f"{command} -o /mnt/{name}.png")
     width, height, step, rows = check_wall_picture.read_png(f"{MACHINE.shared}/{name}.png")
     pixels = b"".join(rows)
@@ -106,12 +106,12 @@ def part(image, x, y, width, height):
 
 
 def turned(image):
-    """The picture upside down: turned by 180 degrees."""
+    """The picture turned by 180 degrees."""
     return image[0], image[1], b"".join(image[2][i:i + 3] for i in range(len(image[2]) - 3, -1, -3))
 
 
 def at_rest():
-    """Whether the wall shows all the detail there is, after which the pictures stay."""
+    """Whether the wall shows full detail, after which its pictures no longer change."""
     return json.loads(MACHINE.run("merlin status --json"))["full_detail"]
 
 
@@ -151,7 +151,7 @@ class Wall(unittest.TestCase):
             tile = part(canvas, x, y, *MODE)
             if name == "right":
                 tile = turned(tile)
-            if name == "centre":  # corrected
+            if name == "centre":  # this output has a correction
                 self.assertFalse(seen[name] == tile, "the correction changed nothing")
             else:
                 self.assertTrue(seen[name] == tile, f"{name}: the display differs from the canvas")
@@ -164,7 +164,7 @@ class Wall(unittest.TestCase):
         self.assertEqual(health, {"shared_memory": "ok", "left": "ok", "centre": "failed", "right": "ok",
                                   "operator": "ok"})
         before = MACHINE.screendump(0)
-        MACHINE.run("merlin wall testcard grid")  # a change that the others show
+        MACHINE.run("merlin wall testcard grid")  # a change that the other displays show
         until(lambda: MACHINE.screendump(0) != before and shows_signals(("left", "right", "operator")),
               "the other three show the test card")
         connector(2, "on")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""./dev bench attack: what an attack does to the wall, beside the same attacker on a bare sink.
+"""./dev bench attack: the effect of attacks on the wall, compared with the same attacker on a bare sink.
 
-A table of cases, each of which reports its figures, and fails where they are beyond its limit. Where
-the attack did not reach merlind, the benchmark has no figures. Python's own library alone. A group of cases is a module
-with a list CASES, named in GROUPS below.
+Runs a table of cases. Each case reports its figures, and fails if they are beyond its limit. If an attack did
+not reach merlind, the benchmark has no figures. Uses Python's standard library alone. A group of cases is a
+module with a list CASES, named in GROUPS below.
 """
 import argparse
 import os
@@ -24,11 +24,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bin", required=True, help="the folder of merlin and merlind")
     parser.add_argument("--source", required=True, help="the source tree")
-    parser.add_argument("--seconds", type=float, default=15, help="of one turn")
-    parser.add_argument("--rounds", type=int, default=3, help="turns of each side")
-    parser.add_argument("--soak-seconds", type=float, default=600, help="of the case soak")
+    parser.add_argument("--seconds", type=float, default=15, help="length of one turn")
+    parser.add_argument("--rounds", type=int, default=3, help="number of turns of each side")
+    parser.add_argument("--soak-seconds", type=float, default=600, help="length of the case soak")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
-    parser.add_argument("case", nargs="*", help="names; without: all but soak")
+    parser.add_argument("case", nargs="*", help="names of cases; the default is all but soak")
     options = parser.parse_args()
     cases = [case for group in GROUPS for case in group.CASES]
     unknown = set(options.case) - {case.name for case in cases}
@@ -51,7 +51,7 @@ def main():
                 except AssertionError as wrong:
                     failed.append(case.name)
                     report.text(f"{case.name}: FAILED: {wrong}")
-                    figures.note(f"{case.name}: FAILED: {wrong}")  # also where it is the only case
+                    figures.note(f"{case.name}: FAILED: {wrong}")  # also if it is the only case
         if failed:
             figures.note(f"attack: {len(failed)} failed: {', '.join(failed)}")
         return not failed

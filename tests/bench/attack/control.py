@@ -1,6 +1,6 @@
-"""Cases: clients who may not command. Each attacks the wall's encrypted address for commands, or its
-local sockets, and in turn a sink; what counts is that it gets nothing and that no more frames are
-late than beside the sink."""
+"""Cases: clients that have no permission to send commands. Each attacks the wall's encrypted address for
+commands or its local sockets, and in turn a sink. It must get no answer, and no more frames may be late than
+beside the sink."""
 import copy
 import json
 import os
@@ -17,7 +17,7 @@ from devices import FLOODER, RATE_HZ, free_port
 from figures import Measured, did_not_run, mean_of
 from wall import WAY_OUT, Children, Wall, wait_for
 
-LIMIT = 1.0  # percentage points of late frames more than in the worst turn on a sink
+LIMIT = 1.0  # percentage points of late frames beyond those of the worst turn on a sink
 SERVER = "commands of the wall over the network"
 BLANK = json.dumps({"command": "blank"}).encode()
 OTHER_USER = 65534
@@ -35,7 +35,7 @@ def key(options, name):
 
 
 class Attacked:
-    """A wall whose commands are served over the network to one key, and where that is."""
+    """A wall that accepts commands over the network from one key, and its addresses."""
 
     def __init__(self, options):
         self.options = options
@@ -47,8 +47,8 @@ class Attacked:
         self.local = os.path.join(options.folder, f"{self.wall.instance}-wall.command")
 
     def on_sinks(self):
-        """The same for attackers, but for where they go: sinks that do nothing more than to hear a
-        client and send it away."""
+        """The same attacker's data with the addresses of sinks, which only read a client's first bytes and
+        close the connection."""
         sinks = copy.copy(self)
         sinks.address = ("127.0.0.1", free_port())
         sinks.local = os.path.join(self.options.folder, "sink")
@@ -61,11 +61,11 @@ class Attacked:
             check=False)
 
 
-# Each of these goes on until `end` and returns how often it tried and what it got, as bytes that
-# are more than a server's greeting.
+# Each of these functions attacks until `end`. It returns the number of attempts, and the bytes that came
+# beyond a server's greeting.
 
 def no_key(attacked, end):
-    """Without encryption: the commands' own protocol."""
+    """A client without encryption, which speaks the protocol of commands."""
     tries, got = 0, b""
     while time.monotonic() < end:
         s = strangers.connect(attacked.address)
@@ -77,7 +77,7 @@ def no_key(attacked, end):
 
 
 def wrong_key(attacked, end):
-    """With a key of its own that is not listed, by merlin itself."""
+    """merlin with a key of its own that is not in the list."""
     tries, got = 0, b""
     while time.monotonic() < end or tries == 0:
         asked = attacked.merlin(attacked.other, "blank")
@@ -87,7 +87,7 @@ def wrong_key(attacked, end):
 
 
 def other_user(attacked, end):
-    """Of the same machine, in no group of the daemon's."""
+    """Another user of the same machine, who is in none of the daemon's groups."""
     if os.geteuid() != 0:
         did_not_run("another user", "only root can become one", "run this as root")
     os.chmod(attacked.options.folder, 0o755)
@@ -105,12 +105,12 @@ def other_user(attacked, end):
 
 
 def connections(attacked, end):
-    """10,000 of them, 200 at a time, each with a greeting where it is taken at once, and no more."""
+    """10,000 connections, 200 at a time. Each sends a greeting if that is possible at once, and then nothing."""
     tries, held = 0, []
     pause = max(0, end - time.monotonic()) * 200 / CONNECTIONS
     while tries < CONNECTIONS:
         s = socket.socket()
-        s.setblocking(False)  # a server that takes no more for now is not waited for
+        s.setblocking(False)  # the client does not wait for a server that accepts no more connections now
         s.connect_ex(attacked.address)
         try:
             s.send(strangers.CURVE_GREETING)
@@ -126,7 +126,7 @@ def connections(attacked, end):
 
 
 def gigabyte(attacked, end):
-    """Messages declared as 1 GB, of which as much is sent as is taken."""
+    """Messages that declare 1 GB; sends as much of it as the server reads."""
     tries, got, zeros = 0, b"", bytes(1 << 16)
     while time.monotonic() < end:
         for greeting in (strangers.GREETING + strangers.ready(b"REQ"), strangers.CURVE_GREETING):
@@ -140,7 +140,7 @@ def gigabyte(attacked, end):
 
 
 def half_a_message(attacked, end):
-    """The greeting, then half of a frame, and then nothing."""
+    """The greeting, then half of a frame, then nothing."""
     tries, got, held = 0, b"", []
     while time.monotonic() < end:
         s = strangers.connect(attacked.address)
@@ -154,7 +154,8 @@ def half_a_message(attacked, end):
 
 
 def received(s):
-    """What came beyond the greeting (64 bytes) until the other side closed, or for 20 ms; and closes."""
+    """Returns the bytes beyond the greeting (64 bytes) that come until the other side closes, or for 20 ms;
+    closes."""
     if s is None:
         return b""
     data = b""
@@ -169,7 +170,7 @@ def received(s):
 
 
 class Unauthorised:
-    """Each of the attackers: turns on sinks and on merlind, ABBA."""
+    """Runs each attacker in turns on sinks and on merlind, in the order ABBA."""
     name = "unauthorised"
     ATTACKERS = (no_key, wrong_key, other_user, connections, gigabyte, half_a_message)
 
@@ -177,7 +178,7 @@ class Unauthorised:
         attacked, wrong = Attacked(options), []
         with attacked.wall as wall:
             self.expect_served(attacked)
-            time.sleep(3)  # the governor has learnt
+            time.sleep(3)  # by now the governor knows the machine
             for attacker in self.ATTACKERS:
                 if not self.bears(attacked, attacker, report):
                     wrong.append(attacker.__name__)
@@ -192,8 +193,8 @@ class Unauthorised:
         assert not wrong, f"late frames: {', '.join(wrong)}"
 
     def bears(self, attacked, attacker, report):
-        """Whether no more frames are late than in the worst turn on sinks, and LIMIT: on a machine
-        that does something else too, turns differ by themselves."""
+        """Whether no more frames are late than in the worst turn on sinks, plus LIMIT. The worst turn counts,
+        since turns differ by themselves on a machine that also does something else."""
         options, tries, turns = attacked.options, 0, {"sink": [], "merlind": []}
         for turn in range(2 * options.rounds):
             side = ("sink", "merlind")[(turn + turn // 2) % 2]  # ABBA
@@ -227,12 +228,12 @@ class Unauthorised:
         return share, result
 
     def late(self, wall, seconds, work):
-        """Share of late deadlines while `work` runs, at least `seconds`."""
+        """Share of late deadlines while `work` runs, which lasts at least `seconds`."""
         began, before = time.monotonic(), wall.deadlines()
         work()
         time.sleep(max(0, began + seconds - time.monotonic()))
         took, after = time.monotonic() - began, wall.deadlines()
-        # Relative to the configured rate: a wall that halved its rate missed every second frame.
+        # Relative to the configured rate: a wall that has halved its rate misses every second frame.
         asked = RATE_HZ * took
         deadlines, late = (b - a for a, b in zip(before, after))
         if deadlines < asked / 8:
@@ -241,7 +242,8 @@ class Unauthorised:
         return Measured(max(0, 100 * (1 - (deadlines - late) / asked)), deadlines, "deadlines")
 
     def expect_served(self, attacked):
-        """That the listed key is answered: the address is served, before and after."""
+        """Checks that the listed key is answered, so that the address is known to be served before and after
+        the attack."""
         asked = attacked.merlin(attacked.listed, "status", "--json")
         if asked.returncode != 0:
             did_not_run("the listed key", f"it was not answered: {asked.stderr[-300:]}", WAY_OUT)

@@ -1,4 +1,4 @@
-"""Cases: lines that flood, beside the same flooders on sinks that block them the same way."""
+"""Cases: lines that flood, compared with the same flooders on sinks that block them in the same way."""
 import os
 import socket
 import sys
@@ -8,7 +8,7 @@ from figures import did_not_run, mean_of, note, Measured
 from wall import Children, Wall, wait_for
 
 FLOODER = os.path.join(os.path.dirname(__file__), "flooder.py")
-LIMIT = 1.0  # percentage points of late frames above those beside the sinks
+LIMIT = 1.0  # percentage points of late frames beyond those beside the sinks
 SEE = "see merlin status and tests/bench/attack/flooder.py"
 RATE_HZ = 30  # of the demo's wall
 TCP_RATE, SERIAL_RATE = 1_000_000, 4 * 38400 / 10  # bytes a second that merlind reads
@@ -21,7 +21,7 @@ def free_port():
 
 
 class Flood:
-    """`kind`: tcp or pty; each of `devices` gets one flooder of `data`."""
+    """A flood. `kind`: tcp or pty; each of `devices` gets a flooder that sends `data`."""
 
     def __init__(self, name, kind, devices, data, ball_garbage=0):
         self.name, self.kind, self.devices, self.data = name, kind, devices, data
@@ -74,11 +74,11 @@ class Flood:
                 return self.measure(options, wall, side)
 
     def measure(self, options, wall, side):
-        time.sleep(3)  # the governor has learnt, the floods have begun
+        time.sleep(3)  # by now the governor knows the machine and the floods have begun
         began, before, cores = time.monotonic(), wall.deadlines(), wall.cores()
         time.sleep(options.seconds)
         after, cores = wall.deadlines(), wall.cores() - cores
-        # Relative to the configured rate: a wall that halved its rate missed every second frame.
+        # Relative to the configured rate: a wall that has halved its rate misses every second frame.
         asked = RATE_HZ * (time.monotonic() - began)
         deadlines, late = (b - a for a, b in zip(before, after))
         status = wall.status()
@@ -91,7 +91,7 @@ class Flood:
         return Measured(share, deadlines, "deadlines"), cores / options.seconds
 
     def expect_flooded(self, status):
-        """That the attack reached merlind: each line's health says so, and the ball is well."""
+        """Checks that the attack reached merlind: the health of each flooded line reports it, and the ball works."""
         health = status["devices"]
         for device in self.devices:
             if "sends more than" not in health[device].get("reason", ""):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The attacker and the bare sink: flooder.py send|sink tcp:PORT|pty:LINK [BYTES|RATE], and of
-sockets: flooder.py knock|answer PORT|PATH [BYTES]
+"""The attacker and the bare sink. Lines: flooder.py send|sink tcp:PORT|pty:LINK [BYTES|RATE].
+Sockets: flooder.py knock|answer PORT|PATH [BYTES].
 
-send: a line on which BYTES (newlines, noise) comes as fast as somebody takes it; one at a time.
-sink: opens such a line as merlind does and reads RATE bytes a second in steps of 10 ms, into
-nothing: it blocks the sender as merlind does, and does no more.
+send: a line on which BYTES (newlines, noise) come as fast as somebody reads them; one reader at a time.
+sink: opens such a line as merlind does, reads RATE bytes a second in steps of 10 ms, and discards them.
+It blocks the sender as merlind does, and does no other work.
 """
 import os
 import random
@@ -61,7 +61,7 @@ def address_of(where):
 
 
 def knock(where, data):
-    """Connects, sends until it is sent away, connects again at once."""
+    """Connects, sends until the server closes the connection, and connects again at once."""
     address = address_of(where)
     family = socket.AF_UNIX if isinstance(address, str) else socket.AF_INET
     while True:
@@ -75,7 +75,7 @@ def knock(where, data):
 
 
 def answer(where):
-    """Takes a client, hears its first words and sends it away, and does no more."""
+    """Accepts a client, reads its first bytes, closes the connection, and does no other work."""
     address = address_of(where)
     family = socket.AF_UNIX if isinstance(address, str) else socket.AF_INET
     if isinstance(address, str) and os.path.exists(address):

@@ -1,4 +1,4 @@
-"""Cases: strangers on every socket of one merlind; the same for ten minutes, as a soak."""
+"""Cases: strangers on every socket of one merlind, and the same for ten minutes as a soak."""
 import os
 import re
 import sys
@@ -11,15 +11,15 @@ from devices import FLOODER, Flood, free_port
 from figures import Measured, did_not_run
 from wall import WAY_OUT, Children, Wall
 
-MOST_MORE_MB = 8  # of resident memory, above its value after the first round
-MOST_WAIT_S = 5  # of `merlin status`, while strangers hold every place
+MOST_MORE_MB = 8  # resident memory beyond that after the first round
+MOST_WAIT_S = 5  # longest time of `merlin status` while strangers hold every place
 ATTACKED = ("commands of the wall", "topics of the devices", "samples for other machines", "VRPN",
             "space mouse")
 FAULT = re.compile(r"ERROR: \w+Sanitizer|runtime error|WARNING: ThreadSanitizer")
 
 
 def attacked(options):
-    """A wall with every server, fed by emulators; and where it listens."""
+    """A wall with all servers and emulated devices, and the servers' addresses."""
     keys = []
     for name in ("server", "client"):
         path = os.path.join(options.folder, f"{name}.keys")
@@ -37,7 +37,7 @@ def attacked(options):
 
 
 class Held:
-    """What a process holds."""
+    """The resources that a process holds."""
 
     def __init__(self, pid):
         self.descriptors = len(os.listdir(f"/proc/{pid}/fd"))
@@ -50,7 +50,7 @@ class Held:
 
 
 def settled(wall):
-    """Once the attackers' connections are gone: they time out within seconds."""
+    """Waits until the attackers' connections are gone, which time out within seconds; returns what is held then."""
     best = Held(wall.process.pid)
     for _ in range(30):
         time.sleep(0.5)
@@ -63,8 +63,8 @@ def settled(wall):
 
 
 def attack(wall, target, stranger):
-    """One attack; `merlin status` is asked in its midst and afterwards. Returns its sentence, the
-    longest wait, and the resident memory at that time."""
+    """Performs one attack, and runs `merlin status` during it and afterwards. Returns what the attack did in
+    words, the longest wait, and the resident memory at that time."""
     said = []
     thread = threading.Thread(target=lambda: said.append(stranger(target)))
     thread.start()
@@ -86,7 +86,7 @@ def attack(wall, target, stranger):
 
 
 def expect_sent_away(status):
-    """That the attacks reached every server: each says that it sent somebody away."""
+    """Checks that the attacks reached every server: each reports that it has closed a stranger's connection."""
     for name in ATTACKED:
         if not sent_away(status, name) > 0:
             did_not_run(f"the attack on {name}", f"it did not reach it: {status['servers'][name]}",
@@ -116,7 +116,7 @@ class Sockets:
         wall, target = attacked(options)
         with wall:
             held = [settled(wall)]
-            for turn in range(1 + options.rounds):  # the first one warms up
+            for turn in range(1 + options.rounds):  # the first round only warms up
                 for stranger in strangers.ALL:
                     said, wait, mb = attack(wall, target, stranger)
                     if turn == 1:
@@ -134,7 +134,7 @@ class Sockets:
                                                                "rounds"), "MiB")
             assert last.descriptors <= warm.descriptors, f"descriptors: {warm}, then {last}"
             assert last.threads <= warm.threads, f"threads: {warm}, then {last}"
-            # A sanitizer keeps what was freed for a while.
+            # A sanitizer keeps freed memory for a while.
             assert is_sanitized(wall) or last.mb <= warm.mb + MOST_MORE_MB, \
                 f"memory: {warm}, then {last}"
             began = time.monotonic()
@@ -151,7 +151,7 @@ def expect_clean_end(wall):
 
 
 class Soak:
-    """All attacks again and again while the devices are counted. Only where it is named."""
+    """Repeats all attacks while the devices' samples are counted. Runs only if it is named on the command line."""
     name, by_name_only = "soak", True
     RATES = {"glove": 100.0, "tracker1": 120.0}  # the emulators'
 
@@ -187,7 +187,7 @@ class Soak:
         report.figure(f"{self.name}.late", share, "1")
 
     def counts(self, wall):
-        """Of each device: the number of its newest sample, and when that was taken, seconds."""
+        """For each device: the number of its newest sample, and the time of that sample in seconds."""
         names = [f"{device}.{field}" for device in self.RATES for field in ("counter", "received_ns")]
         values = wall.fields("devices", *names)
         return {device: (values[f"{device}.counter"], values[f"{device}.received_ns"] / 1e9)
@@ -195,7 +195,7 @@ class Soak:
 
 
 class Knocking(Flood):
-    """One stranger who connects, sends noise until he is sent away, and connects again at once."""
+    """A stranger who connects, sends noise until the server closes the connection, and connects again at once."""
 
     def __init__(self, name, server, place):
         super().__init__(name, "socket", (), "noise")

@@ -1,5 +1,5 @@
-"""Attacks on merlind's sockets, each bounded in count and time: what a stranger does who may
-connect, but not more. Each takes a Target and returns what it did, in words."""
+"""Attacks on merlind's sockets by strangers who may connect, but have no permissions. Each attack is limited in
+number and time; it takes a Target and returns in words what it did."""
 import json
 import os
 import random
@@ -19,7 +19,7 @@ def ready(kind):
 
 
 def connect(address):
-    """A stream to ("127.0.0.1", PORT) or to a path; None where it is refused."""
+    """A stream to ("127.0.0.1", PORT) or to a path; None if the connection is refused."""
     s = socket.socket(socket.AF_UNIX if isinstance(address, str) else socket.AF_INET)
     s.settimeout(2)
     try:
@@ -31,7 +31,7 @@ def connect(address):
 
 
 def send(s, data):
-    """How many bytes went before the other side closed or stopped reading."""
+    """Sends data; returns the number of bytes sent before the other side closed or stopped reading."""
     sent = 0
     try:
         while s and sent < len(data):
@@ -42,7 +42,7 @@ def send(s, data):
 
 
 def push(s, data, seconds):
-    """The same data again and again."""
+    """Sends the same data repeatedly."""
     end, sent = time.monotonic() + seconds, 0
     while time.monotonic() < end:
         n = send(s, data)
@@ -59,7 +59,7 @@ def close(sockets):
 
 
 class Target:
-    """Where one merlind listens."""
+    """The addresses of a merlind's servers."""
 
     def __init__(self, folder, instance, vrpn, samples, spnav):
         self.commands = os.path.join(folder, f"{instance}-wall.command")
@@ -129,7 +129,7 @@ def subscriptions(target):
 
 
 def requests(target):
-    """A well-behaved client but for its speed; nobody reads the answers."""
+    """A client that behaves well except for its speed, and reads none of the answers."""
     s = connect(target.commands)
     send(s, GREETING + ready(b"REQ"))
     body = json.dumps({"command": "status"}).encode()

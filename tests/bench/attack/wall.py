@@ -1,4 +1,4 @@
-"""A real merlind with a wall that moves, and the figures of it."""
+"""A real merlind whose wall moves, and its figures."""
 import json
 import os
 import signal
@@ -13,7 +13,7 @@ WAY_OUT = "'./dev bench attack' builds merlind and merlin"
 
 
 def make_model(options):
-    """The demo's model, once a run."""
+    """Makes the demo's model, once in each run."""
     if os.path.exists(options.model):
         return
     scan = os.path.join(options.source, "config/models/ankylosaurus.ply")
@@ -22,8 +22,8 @@ def make_model(options):
 
 
 class Wall:
-    """merlind on a configuration of its own; `lines` maps glove, tracker and ball to ports, or is
-    None: emulated devices, a ball that turns."""
+    """merlind with a configuration of its own. `lines`: the ports of glove, tracker and ball; None: emulated
+    devices with a ball that turns."""
 
     def __init__(self, options, lines, also=None):
         make_model(options)
@@ -33,7 +33,7 @@ class Wall:
         config.pop("$schema")
         config["instance"], config["run_directory"] = self.instance, options.folder
         config["wall"]["model"] = options.model
-        config.pop("postures", None)  # names a file beside the demo's
+        config.pop("postures", None)  # refers to a file beside the demo's configuration
         if lines is None:
             config["script"] = "turning"
         else:
@@ -48,7 +48,7 @@ class Wall:
         emulate = ["--emulate"] if lines is None else []
         self.process = subprocess.Popen([f"{options.bin}/merlind", "--config", path, *emulate],
                                         stdout=self.log, stderr=self.log)
-        self.end = ""  # all that it said, once it has ended
+        self.end = ""  # merlind's whole output, once it has ended
 
     def __enter__(self):
         deadline = time.monotonic() + 60
@@ -79,7 +79,7 @@ class Wall:
             return file.read()
 
     def fields(self, role, *names):
-        """Whole numbers of the shared memory, one of each name."""
+        """The values of these fields in the shared memory, which are whole numbers."""
         reader = os.path.join(self.options.source, "daemon/shm/read_merlin.py")
         output = figures.run([sys.executable, reader, f"{self.instance}-{role}", *names],
                              "merlind", WAY_OUT)
@@ -90,7 +90,7 @@ class Wall:
         return {name: int(value.split("]")[0].strip("[")) for name, value in rows.items()}
 
     def deadlines(self):
-        """How many deadlines there were while it moved, and how many were missed."""
+        """The number of deadlines while the wall moved, and how many of them were missed."""
         values = self.fields("wall", "wall.deadlines", "wall.late")
         return [values[f"wall.{name}"] for name in ("deadlines", "late")]
 
@@ -99,18 +99,18 @@ class Wall:
                                        "--instance", self.instance], "merlin status", WAY_OUT))
 
     def connections(self):
-        """Of each server, now."""
+        """The present number of connections of each server."""
         return [server["connections"] for server in self.status()["servers"].values()]
 
     def cores(self):
-        """Processor seconds of all of its threads so far."""
+        """The processor seconds that all threads have used so far."""
         with open(f"/proc/{self.process.pid}/stat", encoding="utf8") as file:
             words = file.read().rsplit(")", 1)[1].split()
         return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class Children:
-    """Processes that end with the block."""
+    """Starts processes; they are killed at the block's end."""
 
     def __init__(self):
         self.all = []

@@ -1,9 +1,10 @@
-// The Point Cloud Library's way from an organised cloud to a mesh, for ./dev bench range:
+// The steps from an organised cloud to a mesh with the Point Cloud Library, for ./dev bench range:
 //
 //   range_peer_pcl IN.pcd OUT.ply MOST_EDGE ROUNDS
 //
-// reads, median-filters, triangulates and writes so many times, and prints the medians of the steps
-// as one JSON object [ms]. It has no filter for spikes and computes no normals, so it does less.
+// reads the cloud, applies a median filter, triangulates and writes it ROUNDS times, and prints the
+// medians of the steps as one JSON object [ms]. It filters no spikes and computes no normals, so it
+// does less than MERLIN.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

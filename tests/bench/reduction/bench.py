@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """./dev bench reduction: MERLIN's costs and every peer that was built, on equal meshes.
 
-Each program reduces in a process of its own, in turns, in every round; of its seconds the least
-count. What is counted, and what a figure means: README.md beside this file.
+Each program reduces in a process of its own, in turns in every round; the least of its seconds counts. README.md
+beside this file says what is counted and what a figure means.
 """
 import argparse
 import hashlib
@@ -21,7 +21,7 @@ import report
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 WAY_OUT = "'./dev bench reduction' builds it"
 
-# name, executable, arguments before the file, what it needs of the mesh, Debian package
+# name, executable, arguments before the file, what the mesh has to have, Debian package
 PEERS = [
     ("meshoptimizer", "bench_meshoptimizer", "plain", "", "libmeshoptimizer-dev"),
     ("meshoptimizer, colour", "bench_meshoptimizer", "colour", "colour", "libmeshoptimizer-dev"),
@@ -33,7 +33,7 @@ PEERS = [
     ("VTK quadric, less colour", "bench_vtk", "colour=0.003", "colour", "libvtk9-dev"),
 ]
 
-# name, cost, threads, weights, what it needs of the mesh
+# name, cost, threads, weights, what the mesh has to have
 COSTS = [
     ("quadric, 1 thread", "quadric", "1", "default", ""),
     ("quadric, 2 threads", "quadric", "2", "default", ""),
@@ -47,7 +47,7 @@ COSTS = [
 
 OURS = {cost[0] for cost in COSTS}
 
-# name, how it is made. The scans of several kinds that lie beside the repository, if they do.
+# name, how it is made. Scans of several kinds, used if they exist beside the repository.
 SCANS = [
     ("nefertiti", lambda d, ply: d / "models/odedstein/nefertiti/nefertiti-lowres.obj"),
     ("hammer", lambda d, ply: d / "models/odedstein/hammer/hammer.obj"),
@@ -64,7 +64,7 @@ def digest(path):
 
 
 def line_of(command):
-    """The JSON line that a program prints; what it says on standard error where it fails."""
+    """The JSON line that a program prints; if it fails, its message on standard error."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
     if done.returncode != 0:
         why = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
@@ -85,12 +85,12 @@ class Bench:
             if not subject.exists():
                 figures.did_not_run(subject, "there is no such program", WAY_OUT)
         self.missing = set()
-        self.seen = {}  # errors of this run by the bytes of the file
+        self.seen = {}  # errors of this run, by the digest of the file
 
     # Meshes
 
     def prepare(self, name, source):
-        """The mesh that all programs get; None where it cannot be read."""
+        """Makes the mesh that all programs get; None if it cannot be read."""
         ply = self.work / f"{name}.ply"
         kind = line_of([self.programs / "bench_merlin", "prepare", source, ply])
         if "skipped" in kind:
@@ -117,7 +117,7 @@ class Bench:
     # Runs
 
     def remembered(self, key, run):
-        """With --reuse the figures of an earlier run."""
+        """Runs `run` and keeps its figures; with --reuse returns those of an earlier run."""
         path = self.memo / (hashlib.sha256(key.encode()).hexdigest()[:24] + ".json")
         if self.options.reuse and path.exists():
             return json.loads(path.read_text())
@@ -135,7 +135,7 @@ class Bench:
             if "skipped" not in line:
                 line["file"] = str(out)
             return line
-        if name == "meshoptimizer":  # what seconds are compared with: always of this run
+        if name == "meshoptimizer":  # the reference for seconds, so it always runs
             return {level: run()}
         key = f"{mesh['sha']} {program} {variant} {level} {digest(command[0])}"
         return {level: self.remembered(key, run)}
@@ -155,7 +155,7 @@ class Bench:
                 for level, n in targets.items()}
 
     def jobs(self, mesh):
-        """(name, function that runs it once at one or all levels) of each program, in turns."""
+        """(name, function that runs the program at one level or at all) of each program, in turns."""
         for cost in COSTS:
             if not cost[4] or mesh[cost[4]]:
                 yield cost[0], lambda cost=cost: self.run_cost(cost, mesh)
@@ -169,7 +169,7 @@ class Bench:
                 yield peer[0], lambda p=peer, lv=level: self.run_peer(p, mesh, lv)
 
     def rounds(self, mesh):
-        """rows[name, level]: the first run's line, with the least seconds of all rounds."""
+        """rows[name, level]: the line of the first run, with the least seconds of all rounds."""
         rows, done = {}, set()
         for number in range(self.options.rounds):
             for job, (name, run) in enumerate(self.jobs(mesh)):
@@ -178,7 +178,7 @@ class Bench:
                 for level, line in run().items():
                     keep_least(rows.setdefault((name, level), line), line)
                     if line.get("seconds", self.options.slow + 1) > self.options.slow:
-                        done.add(job)  # so long that one run has to do, or skipped
+                        done.add(job)  # slow, so that one run has to do; or skipped
             figures.note(f"{mesh['name']}: round {number + 1} of {self.options.rounds}")
         return rows
 
@@ -219,7 +219,7 @@ class Bench:
 
 
 def keep_least(row, line):
-    """Into the row the least seconds of both."""
+    """Puts the smaller seconds of both into the row."""
     for key in row.keys() & line.keys():
         if key.endswith("seconds"):
             row[key] = min(row[key], line[key])
@@ -231,20 +231,20 @@ def target(mesh, level):
 
 def options_of():
     parser = argparse.ArgumentParser(prog="./dev bench reduction", description=__doc__)
-    parser.add_argument("meshes", nargs="*", metavar="MESH", help="PLY or OBJ, beside the scans")
+    parser.add_argument("meshes", nargs="*", metavar="MESH", help="further meshes, PLY or OBJ")
     parser.add_argument("--quick", action="store_true",
                         help="the repository's own model, and MESH, in two rounds")
-    parser.add_argument("--scans", metavar="NAME,...", help="of " + ", ".join(
-        name for name, _ in SCANS) + "; all that are there unless told, none where empty")
-    parser.add_argument("--levels", default="10,5,1", help="percent of the triangles kept")
-    parser.add_argument("--rounds", type=int, help="3, and 2 with --quick")
+    parser.add_argument("--scans", metavar="NAME,...", help="scans to use, of " + ", ".join(
+        name for name, _ in SCANS) + "; the default is all that exist, empty: none")
+    parser.add_argument("--levels", default="10,5,1", help="triangles to be kept, in percent")
+    parser.add_argument("--rounds", type=int, help="number of rounds; 3, with --quick 2")
     parser.add_argument("--slow", type=float,
-                        help="who needs more seconds runs in the first round only; 5, --quick: 0.5")
+                        help="a program that takes more seconds runs in the first round only; 5, with --quick 0.5")
     parser.add_argument("--width", default="0.005",
-                        help="of the certified maximum's interval, percent of the diagonal")
+                        help="width of the certified maximum's interval, in percent of the diagonal")
     parser.add_argument("--reuse", action="store_true",
-                        help="peers (all but meshoptimizer) and errors from earlier runs")
-    parser.add_argument("--json", action="store_true", help="all figures for programs")
+                        help="take the peers (except meshoptimizer) and errors from earlier runs")
+    parser.add_argument("--json", action="store_true", help="all figures as one JSON object")
     parser.add_argument("--bin", type=pathlib.Path, default=REPOSITORY / "build/release")
     parser.add_argument("--data", type=pathlib.Path, default=REPOSITORY.parent / "shared/data")
     parser.add_argument("--out", type=pathlib.Path, default=REPOSITORY / "build/bench/reduction")
@@ -266,7 +266,7 @@ def write(out, meshes, rows, missing):
 
 
 def tell(result, meshes, rows, missing):
-    """MERLIN's rates, and the ratios to each peer that was there; all else as members beside."""
+    """Reports MERLIN's rates and the ratios to each available peer as figures, everything else as further members."""
     result.text(report.text(meshes, rows, missing).rstrip("\n"))
     for row in rows:
         if row["program"] in OURS and "skipped" not in row:
@@ -285,7 +285,7 @@ def measure(options, result):
         meshes.append({k: v for k, v in mesh.items() if k != "path"})
         rows += bench.measure(mesh)
         missing = sorted(bench.missing)
-        write(options.out, meshes, rows, missing)  # after each: a long run is of use early
+        write(options.out, meshes, rows, missing)  # after each mesh, since partial results are useful
     if not meshes:
         figures.did_not_run("MERLIN", "there is no mesh to reduce", "see --scans and --data")
     tell(result, meshes, rows, missing)

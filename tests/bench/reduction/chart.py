@@ -1,4 +1,4 @@
-"""The reduction benchmark's picture: RMS and seconds against triangles, one line a program."""
+"""The chart of the reduction benchmark: RMS and seconds against triangles, one line for each program."""
 import math
 from xml.sax.saxutils import escape
 
@@ -13,12 +13,12 @@ COLOURS = {"quadric, 1 thread": "#d7191c", "quadric, 2 threads": "#d7191c",
            "VTK quadric, less colour": "#bdbdbd"}
 DASHED = {"quadric, 1 thread", "fast, 1 thread", "pattern, 1 thread"}
 
-WIDTH, HEIGHT, LEFT, TOP, GAP = 400, 250, 70, 30, 60  # of a panel, px
+WIDTH, HEIGHT, LEFT, TOP, GAP = 400, 250, 70, 30, 60  # of a panel [px]
 LEGEND = 210
 
 
 class Axis:
-    """A logarithmic axis from pixel `low_px` to `high_px`."""
+    """A logarithmic axis from pixel `low_px` to pixel `high_px`."""
 
     def __init__(self, values, low_px, high_px):
         low, high = math.log10(min(values)), math.log10(max(values))
@@ -37,7 +37,7 @@ class Axis:
 
 
 def panel(title, unit, lines, x0, y0):
-    """lines: {program: [(triangles, value)]}. SVG elements."""
+    """The SVG elements of a panel. `lines`: {program: [(triangles, value)]}."""
     points = [p for line in lines.values() for p in line]
     x = Axis([p[0] for p in points], x0, x0 + WIDTH)
     y = Axis([p[1] for p in points], y0 + HEIGHT, y0)
@@ -78,7 +78,7 @@ def legend(programs, x, y):
 
 
 def write(path, meshes, rows):
-    """A row of two panels for each mesh, the legend beside them."""
+    """A row of two panels for each mesh, with the legend beside them."""
     good = [r for r in rows if "skipped" not in r]
     svg, programs = [], list(dict.fromkeys(r["program"] for r in good))
     for number, mesh in enumerate(meshes):

@@ -1,4 +1,4 @@
-"""Meshes of the reduction benchmark that are not meshes yet: heights and range images as PLY."""
+"""Meshes for the reduction benchmark, made from height fields and range images and written as PLY."""
 import array
 import sys
 
@@ -11,7 +11,7 @@ def _big_endian(raw, type_):
 
 
 def _write_ply(path, vertices, colours, triangles):
-    """Binary PLY. `vertices` and `triangles` are flat arrays, `colours` flat bytes or None."""
+    """Writes binary PLY. `vertices` and `triangles` are flat arrays, `colours` flat bytes or None."""
     with open(path, "wb") as out:
         out.write(("ply\nformat binary_little_endian 1.0\n"
                    f"element vertex {len(vertices) // 3}\n"
@@ -31,7 +31,7 @@ def _write_ply(path, vertices, colours, triangles):
 
 
 def _grid_triangles(width, height, index, near):
-    """Two triangles a cell of the grid, each where its corners exist and are `near` one another."""
+    """Two triangles for each cell of the grid, each where its corners exist and are `near` one another."""
     triangles = array.array("i")
     for y in range(height - 1):
         for at in range(y * width, y * width + width - 1):
@@ -43,7 +43,7 @@ def _grid_triangles(width, height, index, near):
 
 
 def heights(hgt, ply, step):
-    """An SRTM tile of 3 arc seconds as a height field in metres, every `step`th sample."""
+    """An SRTM tile of 3 arc seconds as a height field in metres; uses every `step`th sample."""
     with open(hgt, "rb") as file:
         samples = _big_endian(file.read(), "h")
     side = int(len(samples) ** 0.5)
@@ -58,8 +58,8 @@ def heights(hgt, ply, step):
 
 
 def range_image(depth_pgm, colour_ppm, ply):
-    """A Kinect frame (depth in mm, 0 where there is none) as a coloured mesh, torn where the depth
-    jumps by more than 2 %."""
+    """A Kinect frame (depth in mm, 0: no depth) as a coloured mesh, which is cut where the depth jumps by more
+    than 2 %."""
     def pnm(path, bytes_per_pixel):
         with open(path, "rb") as file:
             raw = file.read()

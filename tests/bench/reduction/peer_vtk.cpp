@@ -110,7 +110,7 @@ class VtkPeer : public Peer {
   double scale_;
 };
 
-// Followed by the weight, as a share of the diagonal.
+// The prefix of a variant; the weight follows it, as a share of the diagonal.
 constexpr std::string_view kColour = "colour=";
 
 Result<std::unique_ptr<Peer>> make(render::mesh::Mesh mesh, const std::string& variant) {

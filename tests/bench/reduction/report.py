@@ -9,7 +9,7 @@ SPEED_PEER = "meshoptimizer"
 
 
 def reached(row):
-    """Whether it got down to the triangles asked for; who stops early is no match for who does."""
+    """Whether the program reached the requested number of triangles; otherwise it is no match for those that did."""
     return row["triangles"] <= 1.02 * row["target"]
 
 
@@ -19,7 +19,7 @@ def cells(rows, program):
 
 
 def ratios(rows, program, key, peer, peer_key=None):
-    """Ratio of a figure of two programs: geometric mean over meshes and levels, and each cell."""
+    """Ratio of a figure of two programs: the geometric mean over meshes and levels, and the ratio of each cell."""
     ours, theirs = cells(rows, program), cells(rows, peer)
     each = {}
     for cell in ours.keys() & theirs.keys():
@@ -37,7 +37,7 @@ def ratios(rows, program, key, peer, peer_key=None):
 
 
 def summary(rows):
-    """What MERLIN is measured by: ratios of one run. None where a program is missing."""
+    """The ratios within one run by which MERLIN is judged; None if a program is missing."""
     wanted = []
     for program in GEOMETRY:
         wanted += [(program, "rms", "CGAL Lindstrom-Turk"),
@@ -111,7 +111,7 @@ def row_line(row):
 
 
 def kind(mesh):
-    """What kind of mesh it is, and what was done to it."""
+    """Properties of the mesh, and how it was prepared."""
     parts = [f"{mesh['triangles']} triangles", f"{mesh['components']} components",
              f"{mesh['border_edges']} border edges"]
     for key in ("non_manifold_edges", "contracted_edges", "split_vertices"):

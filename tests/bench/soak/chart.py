@@ -1,11 +1,11 @@
-"""A soak's picture: resident memory of each process and late frames of each minute, against time."""
+"""The chart of a soak: resident memory of each process and late frames of each minute, over time."""
 
 COLOURS = {"wall": "#d7191c", "devices": "#2c7bb6", "page": "#1a9641"}
-WIDTH, HEIGHT, LEFT, TOP, GAP = 800, 220, 70, 30, 60  # of a panel, px
+WIDTH, HEIGHT, LEFT, TOP, GAP = 800, 220, 70, 30, 60  # of a panel [px]
 
 
 def panel(title, lines, colour_of, most_x, y0):
-    """lines: {name: [(minutes, value)]}; the y axis begins at 0."""
+    """`lines`: {name: [(minutes, value)]}; the y axis begins at 0."""
     most_y = 1.05 * max((y for line in lines.values() for _, y in line), default=1) or 1
 
     def px(x, y):
@@ -27,7 +27,7 @@ def panel(title, lines, colour_of, most_x, y0):
 
 
 def write(path, samples, frames):
-    """samples: {role: [Sample]}; a process that was started anew begins where it is then."""
+    """`samples`: {role: [Sample]}; the line of a restarted process goes on from the time of its restart."""
     memory = {role: [(s.at_s / 60, s.memory_mib) for s in all_] for role, all_ in samples.items()}
     late = {"wall": [(i + at, 100 * late / max(deadlines, 1))
                      for i, (deadlines, late) in enumerate(frames.minutes) for at in (0, 1)]}

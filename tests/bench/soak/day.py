@@ -1,6 +1,5 @@
-"""The scripted day of a soak: people who come and go, faults, reloads, in an order and at times that a
-seed gives. Each act says which events it explains, and which of them have to come.
-"""
+"""The scripted day of a soak: people who come and go, faults and reloads, in an order and at times that a seed
+determines. Each act says which events it explains, and which of them have to come."""
 import os
 import random
 import re
@@ -10,11 +9,11 @@ import time
 
 import figures
 
-EXPLAINS_S = 30  # a fault's events come within this time
+EXPLAINS_S = 30  # the events of a fault come within this time
 
 
 class Explanation:
-    """Events of this kind and form, from now on for so many seconds, are this act's."""
+    """Events of this kind and form belong to this act from now on until the time is over."""
 
     def __init__(self, act, kind, pattern, due):
         self.act, self.kind, self.due = act, kind, due
@@ -29,9 +28,9 @@ class Explanation:
 
 
 class People:
-    """One person at a time, with glove, tracker and ball: phases of the emulators' script `visit`, one
-    after another. Between two visits nobody is there, for longer than the playlist waits."""
-    PHASES, REST = 12, 1  # of the script; the one in which nothing is touched
+    """One person at a time, with glove, tracker and ball: goes through the phases of the emulators' script
+    `visit`. Between two visits nobody is there, for longer than the playlist waits."""
+    PHASES, REST = 12, 1  # phases of the script; the phase in which nothing is touched
 
     def __init__(self, emulators, chance):
         self.emulators, self.chance = emulators, chance
@@ -40,7 +39,7 @@ class People:
     def tend(self, now):
         if now < self.next_at:
             return
-        if self.left == 0 and self.phase == self.REST:  # somebody comes
+        if self.left == 0 and self.phase == self.REST:  # a person comes
             self.visits += 1
             self.left = self.chance.randint(1, 3) * self.PHASES
         self.left = max(0, self.left - 1)
@@ -55,14 +54,14 @@ class People:
                 emulator.next()
 
     def back(self, name):
-        """An emulator that was started anew is where the others are."""
+        """Brings a restarted emulator to the phase of the others."""
         for _ in range(self.phase):
             self.emulators[name].next()
 
 
 class Day:
-    """Does one act after another. Thread-bound; tend() never waits long: what an act does later stands
-    in a list."""
+    """Performs one act after another. Thread-bound. tend() never waits long: what an act does later is kept in
+    a list."""
 
     def __init__(self, wall, seed, every_s):
         self.wall, self.chance, self.every_s = wall, random.Random(seed), every_s
@@ -74,8 +73,8 @@ class Day:
         self.disk = Disk(wall.disk, lambda: wall.programs["wall"].pid)
 
     def kill_at(self, times):
-        """[(when, role)]: roles die early in the day, so that each lives long enough afterwards for its
-        memory to be judged."""
+        """`times`: [(when, role)]. Roles are killed early in the day, so that each then lives long enough for
+        its memory to be judged."""
         self.kills = sorted(times)
 
     def tend(self, now, may_begin):
@@ -107,8 +106,8 @@ class Day:
         self.explanations.append(Explanation(act, kind, pattern, due))
 
     def explanation_of(self, event):
-        """The act that this event, which has just come, is explained by; None where none does. Of several
-        it is the last, and none of them has to wait for its event any more."""
+        """The act that explains this event, which has just come; None if there is none. If there are several,
+        the last one is returned, and none of them has to wait for its event any more."""
         now = time.monotonic()
         found = [e.act for e in self.explanations if now <= e.until and e.takes(event)]
         return found[-1] if found else None
@@ -119,7 +118,7 @@ class Day:
                 if e.due and not e.count]
 
     def end(self):
-        """Everything as it was."""
+        """Ends all acts that are still under way."""
         while self.later:
             self.later.pop(0)[1]()
         self.disk.free()
@@ -132,8 +131,8 @@ class Day:
 
 
 class Disk:
-    """A folder of the wall's that can be full: a small file system of its own where we may mount one,
-    else a limit on the files of the wall's process."""
+    """A folder of the wall whose disk can be full: a small file system of its own if we may mount one,
+    otherwise a limit on the size of the files of the wall's process."""
 
     def __init__(self, folder, pid):
         self.folder, self.pid, self.ballast = folder, pid, os.path.join(folder, "ballast")
@@ -167,7 +166,7 @@ class Disk:
             subprocess.run(["umount", "-l", self.folder], capture_output=True, check=False)
 
 
-# The acts. Each begins at once and ends by day.after().
+# The acts. Each begins when it is called and ends through day.after().
 
 def emulator_is_killed(day):
     name = day.chance.choice(sorted(day.wall.emulators))
@@ -178,7 +177,7 @@ def emulator_is_killed(day):
 
 
 def port_is_unlinked(day):
-    """The line's name goes while it is open, then the device; then both are back."""
+    """The line's name is removed while the line is open, then the device ends; then both return."""
     name = day.chance.choice(sorted(day.wall.emulators))
     emulator, act = day.wall.emulators[name], f"{name}'s port unlinked"
     day.explain_devices(act, [name])
@@ -188,7 +187,7 @@ def port_is_unlinked(day):
 
 
 def disk_is_full(day):
-    """A snapshot and a change of the state while the disk is full, and again once there is room."""
+    """Takes a snapshot and changes the state while the disk is full, and again when it has room."""
     act = "disk full"
     day.explains(act, "service", "^state: failed", due=True)
     day.explains(act, "service", "^state: works again", due=True)
@@ -210,14 +209,15 @@ def shared_memory_is_removed(day):
     act = f"shared memory of {role} removed"
     day.explains(act, "service", "^shared memory: failed", due=True)
     day.explains(act, "service", "^shared memory: works again", due=True)
-    day.explains(act, "role", f"the role {role} ")  # the page sees another segment
+    day.explains(act, "role", f"the role {role} ")  # to the page, the new segment is a restart
     if role == "devices":
         day.explain_devices(act, sorted(day.wall.emulators), due=False)
     os.unlink(f"/dev/shm/{day.wall.place.instance}-{role}")
 
 
 def model_is_damaged(day):
-    """A file that is no model in the model's place, moved as a copying program does; then the model."""
+    """Puts a file that is no model in the model's place, moved there as a copying program does; then the model
+    again."""
     act, model = "model damaged", day.wall.place.model
     day.explains(act, "model", r"model\.mrm", due=True)
     with open(model, "rb") as file:
@@ -240,13 +240,13 @@ def wall_is_killed(day):
 
 
 def devices_are_killed(day):
-    # Told only to whoever follows again by then.
+    # Only a process that already follows the role again reports these events.
     day.explain_devices("role devices killed", sorted(day.wall.emulators), due=False)
     role_is_killed(day, "devices")
 
 
 def role_is_killed(day, role):
-    """The supervisor starts it again as soon as systemd does (RestartSec of the units)."""
+    """Kills a role; the supervisor restarts it after the units' RestartSec, as systemd does."""
     act, program = f"role {role} killed", day.wall.programs[role]
     day.explains(act, "role", f"^the role {role} (runs|was started again)", due=True)
     day.explains(act, "role", f"^the role {role} does not run")
@@ -264,17 +264,17 @@ def good_reload(day):
 
 
 def bad_reload(day):
-    """By command, which has both roles check first and tells only who asks."""
+    """Requests a bad reload by a command, for which both roles check the file first and only the sender is told."""
     day.variant += 1
     variants = [{"postures": {"hold_s": "long"}}, {"wall": {"no_such_key": 1}},
                 {"bindings": [{"input": "posture.no-such", "action": "grab"}]},
                 {"wall": {"render": {"wireframe": "yes"}}}]
     reload(day, variants[day.variant % len(variants)], "bad reload", 2)
-    day.wall.place.write(day.wall.place.config)  # a role that is started needs a good one
+    day.wall.place.write(day.wall.place.config)  # a role that is restarted needs a good configuration
 
 
 def bad_reload_by_signal(day):
-    """Each role refuses it with an event, which a good one ends."""
+    """Requests a bad reload by a signal: each role refuses it with an event, which a good reload ends."""
     act = "bad reload by signal"
     day.explains(act, "service", "^configuration: failed", due=True)
     day.explains(act, "service", "^configuration: works again", due=True)
@@ -292,7 +292,7 @@ def reload(day, patch, act, status):
 
 
 def person_commands(day):
-    """What a person does at the page."""
+    """Sends the commands of a person at the page."""
     for command, argument in (("next_content", None), ("notice", "soak"), ("blank", None), ("blank", None),
                               ("reset_view", None), ("next_mode", None), ("next_mode", None),
                               ("snapshot", None)):

@@ -1,20 +1,20 @@
-"""What a soak measures of its processes, and what follows from that: slopes with their confidence,
-descriptors that grow, late frames. Pure but for Sample.of(). A process that was started anew is another
-life, with a level of its own."""
+"""Measurements of a soak's processes, and conclusions from them: slopes with their confidence, descriptors that
+grow, late frames. Pure, except for Sample.of(). A process that was restarted has a new life, with a level of
+its own."""
 import math
 import os
 import re
 import statistics
 
-LEAST = 60  # points of a slope
-Z = 1.96  # of a normal distribution, 95 % on both sides
-# Lists that are bounded, such as the page's last 500 events, take less than this when they are full,
-# and fill for hours.
+LEAST = 60  # a slope needs at least as many points
+Z = 1.96  # for 95 % of a normal distribution, on both sides
+# Lists that are bounded, such as the page's last 500 events, fill for hours and take less than this when
+# full.
 LISTS_MIB = 0.25
 
 
 class Sample:
-    """What one process holds at one time. `life`: its role and how often that was started."""
+    """The resources that a process holds at one time. `life`: the role, and the number of its starts."""
 
     def __init__(self, life, at_s, age_s, memory_mib, descriptors, threads):
         self.life, self.at_s, self.age_s = life, at_s, age_s
@@ -22,7 +22,7 @@ class Sample:
 
     @staticmethod
     def of(pid, life, at_s, age_s):
-        """None where it has just ended."""
+        """A sample of the process; None if it has just ended."""
         try:
             with open(f"/proc/{pid}/status", encoding="utf8") as file:
                 text = file.read()
@@ -37,7 +37,7 @@ class Sample:
 
 
 def longest_life(samples, warm_up_s):
-    """The samples of the life that has most of them, without its warm-up."""
+    """The samples of the life with the most samples, without its warm-up."""
     lives = {}
     for sample in samples:
         if sample.age_s >= warm_up_s:
@@ -46,9 +46,9 @@ def longest_life(samples, warm_up_s):
 
 
 def slope(points):
-    """The slope of [(x, y)] by least squares, and the half width of its 95 % interval. Memory grows in
-    steps, so neighbouring residuals are alike: as many points count as independent ones as the
-    correlation of neighbours leaves. None where there are too few."""
+    """The slope of [(x, y)] by least squares, and the half width of its 95 % interval. Memory grows in steps,
+    so neighbouring residuals are correlated; the number of points that count as independent is reduced
+    accordingly. None if there are too few points."""
     n = len(points)
     if n < LEAST:
         return None
@@ -66,12 +66,12 @@ def slope(points):
 
 
 def memory_slope(samples, warm_up_s):
-    """(MiB/h, half width of the 95 % interval) of one role, or None."""
+    """(MiB/h, half width of the 95 % interval) of one role; None if that cannot be said."""
     return slope([(s.at_s / 3600, s.memory_mib) for s in longest_life(samples, warm_up_s)])
 
 
 def grew(samples, warm_up_s):
-    """By how many MiB one role has grown for certain; 0: by no more than chance and its lists."""
+    """MiB by which one role has certainly grown; 0 if that is within chance and bounded lists."""
     life, found = longest_life(samples, warm_up_s), memory_slope(samples, warm_up_s)
     if found is None:
         return 0
@@ -80,8 +80,8 @@ def grew(samples, warm_up_s):
 
 
 def descriptors(samples, warm_up_s):
-    """(first, last) of one role: the median of the first and of the last quarter of its longest life,
-    since a device that is away has none for a moment. None where that was too short."""
+    """(first, last) of one role: the medians of the first and of the last quarter of its longest life. Medians,
+    since a device that is away has no descriptor for a moment. None if that life was too short."""
     warm = [s.descriptors for s in longest_life(samples, warm_up_s)]
     quarter = len(warm) // 4
     if quarter < 2:
@@ -90,7 +90,7 @@ def descriptors(samples, warm_up_s):
 
 
 class Frames:
-    """Deadlines while something moved, and those that were missed, over all lives of the wall."""
+    """Counts deadlines while something moved, and missed ones, over all lives of the wall."""
 
     def __init__(self):
         self.generation, self.last, self.minutes = None, (0, 0), []
@@ -104,6 +104,6 @@ class Frames:
         self.minutes[minute][1] += late - before[1]
 
     def first_and_rest(self):
-        """[deadlines, late] of the first minute, and of the rest."""
+        """[deadlines, late] of the first minute, and of all other minutes."""
         rest = [sum(m[i] for m in self.minutes[1:]) for i in (0, 1)]
         return (self.minutes or [[0, 0]])[0], rest

@@ -1,4 +1,4 @@
-"""That a soak finds what it is for: memory and descriptors that grow, and nothing where they do not."""
+"""Tests that a soak finds memory and descriptors that grow, and finds nothing if they do not."""
 import math
 import random
 import unittest

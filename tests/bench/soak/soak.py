@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""./dev soak DURATION: a lab's day in real time, on the real programs. README.md beside this file.
+"""./dev soak DURATION: a lab's day in real time, on the real programs. README.md beside this file describes it.
 
-Exit status: 0; 1 where an event is explained by nothing, a fault was told by nobody, descriptors grow or
-memory grows beyond chance; 1 without figures where the soak did not run; 2 for bad usage.
+Exit status: 0; 1 if no act explains an event, a fault was not reported, descriptors grow, or memory grows beyond
+chance; 1 without figures if the soak did not run; 2 for bad usage.
 """
 import argparse
 import json
@@ -23,15 +23,15 @@ import measures
 import roles
 from figures import Measured, did_not_run
 
-SAMPLE_S, PROGRESS_S, SETTLE_S = 1, 10, 20  # the last acts are over before the end
-DESCRIPTORS_S = 10  # after each start they are all open
-DOWN_S = 5  # a role that was started anew takes commands within this time
+SAMPLE_S, PROGRESS_S, SETTLE_S = 1, 10, 20  # the last acts are over this long before the end
+DESCRIPTORS_S = 10  # time after a start until all descriptors are open
+DOWN_S = 5  # time after a restart until a role takes commands
 ROLES = ("devices", "wall", "page")
-KILLS = ((0.08, "wall"), (0.12, "devices"), (0.16, "wall"), (0.20, "devices"))  # share of the soak
+KILLS = ((0.08, "wall"), (0.12, "devices"), (0.16, "wall"), (0.20, "devices"))  # as a share of the soak
 
 
 class Wall:
-    """merlind's devices, wall and page, restarted by us, with emulated devices beside them."""
+    """merlind's devices, wall and page, which we restart, with emulated devices beside them."""
 
     def __init__(self, options):
         self.place = roles.Place(options, "soak")
@@ -47,7 +47,7 @@ class Wall:
         self.emulators = {name: roles.Emulator(self.place, name, "visit", options.seed + i, step=True)
                           for i, name in enumerate(roles.DRIVERS)}
         self.programs = {role: self.place.role(role) for role in ROLES}
-        self.started = {role: (0, 0.0) for role in ROLES}  # how often, and when
+        self.started = {role: (0, 0.0) for role in ROLES}  # number of starts, and the time of the last one
 
     def start(self):
         for emulator in self.emulators.values():
@@ -70,7 +70,7 @@ class Wall:
             return json.load(answer)
 
     def command(self, name, argument=None):
-        """As a person at the page, who tries again while a role is down for a moment."""
+        """Sends a command as a person at the page does, who tries again while a role is down for a moment."""
         body = {"command": name} | ({"argument": argument} if argument else {})
         for tries in range(DOWN_S * 5, 0, -1):
             try:
@@ -82,7 +82,7 @@ class Wall:
                 time.sleep(0.2)
 
     def events(self):
-        """Those since the last call."""
+        """The events since the last call."""
         answer = self.ask(f"/api/events?since={self.told}")
         self.told = answer["next"] - 1
         return answer["events"]
@@ -122,14 +122,14 @@ class Soak:
             self.day.explains("start", kind, what)
         self.wall.start()
         begin = time.monotonic()
-        quiet_s = 60 if self.options.seconds >= 300 else 0  # what late frames are compared with
+        quiet_s = 60 if self.options.seconds >= 300 else 0  # the reference for late frames
         self.day.next_at = begin + quiet_s + self.options.every
         self.day.kill_at([(begin + quiet_s + share * self.options.seconds, role) for share, role in KILLS])
-        self.day.begin(day.person_commands)  # what opens with the first command is open from now on
+        self.day.begin(day.person_commands)  # what the first command opens stays open from now on
         end, sample_at, progress_at = begin + self.options.seconds, begin, begin
         while (now := time.monotonic()) < end:
             self.day.tend(now, may_begin=end - now > SETTLE_S)
-            if not self.day.later:  # else a role may be down on purpose
+            if not self.day.later:  # otherwise a role may be down on purpose
                 self.wall.expect_running()
             if now >= sample_at:
                 sample_at += SAMPLE_S
@@ -172,7 +172,7 @@ class Soak:
 
 
 def report_memory(role, samples, warm_up_s, report):
-    """(what the table says, what is wrong) of one role's memory."""
+    """The text for the table, and a list of faults, about the memory of one role."""
     found = measures.memory_slope(samples, warm_up_s)
     if found is None:
         return "too short to be judged", []
@@ -185,7 +185,7 @@ def report_memory(role, samples, warm_up_s, report):
 
 
 def report_process(role, samples, options, report):
-    """A row of the table. Returns what is wrong."""
+    """Adds a row to the table; returns a list of faults."""
     if not samples:
         did_not_run(f"merlind --role {role}", "it could not be looked at", "is /proc there?")
     memory, wrong = report_memory(role, samples, options.warm_up, report)
@@ -208,7 +208,7 @@ def report_frames(frames, report):
     names = ("first minute", "the rest")
     for name, (deadlines, late) in zip(names, frames.first_and_rest()):
         if deadlines == 0 and name == names[1]:
-            continue  # a soak of a minute
+            continue  # if the soak lasts a minute
         share = figures.share_of(late, deadlines, "deadlines of the wall, which did not move,")
         report.text(f"late frames, {name}: {100 * share:.2f} % of {deadlines}")
         report.figure(f"late_{name.replace(' ', '_')}", share, "1")
@@ -247,7 +247,7 @@ def measure(options, report):
     report_frames(soak.frames, report)
     report_events(soak, report)
     wrong += [f"unexplained event: {event}" for event in soak.unexplained]
-    wrong += [f"nobody was told of it: {what}" for what in soak.day.untold()] + wall.wrong
+    wrong += [f"a fault was not reported: {what}" for what in soak.day.untold()] + wall.wrong
     for what in wrong:
         report.text(f"WRONG: {what}")
         figures.note(f"soak: {what}")
@@ -269,16 +269,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("seconds", metavar="DURATION", type=seconds_of, help="such as 90s, 10m, 2h")
     parser.add_argument("--bin", required=True, help="the folder of merlin and merlind")
-    parser.add_argument("--seed", type=int, default=1, help="of people, faults and devices")
-    parser.add_argument("--rate", type=float, default=30, help="frames a second")
-    parser.add_argument("--every", type=float, default=15, help="seconds from act to act, on average")
+    parser.add_argument("--seed", type=int, default=1, help="seed of people, faults and devices")
+    parser.add_argument("--rate", type=float, default=30, help="frame rate of the wall in Hz")
+    parser.add_argument("--every", type=float, default=15, help="average number of seconds between two acts")
     parser.add_argument("--warm-up", type=float, help="seconds after each start whose memory does not count")
     parser.add_argument("--chart", help="the SVG file to write")
-    parser.add_argument("--keep", metavar="FOLDER", help="where logs and configuration are copied to")
+    parser.add_argument("--keep", metavar="FOLDER", help="folder to which logs and configuration are copied")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
     if options.warm_up is None:
-        # The flight recorder fills for five minutes, and what an act does for the first time takes memory.
+        # The flight recorder fills for five minutes, and the first run of each act takes memory.
         options.warm_up = max(300, 2 * len(day.ACTS) * options.every)
     figures.run_bench("soak", options.json, lambda report: measure(options, report))
 

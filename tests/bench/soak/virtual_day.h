@@ -1,6 +1,6 @@
 // A lab's day on virtual time: people who come and go, faults, reloads; and merlind's main thread,
-// which beats, mends and publishes events, status and alarms. Each fault says which events it
-// explains.
+// which writes heartbeats, repairs shared memory, and publishes events, status and alarms. Each
+// fault says which events it explains.
 #pragma once
 
 #include <cstdint>
@@ -27,15 +27,15 @@
 
 namespace merlin::bench {
 
-// What the persons do, by the number of a phase of their emulators' script.
+// The present activity of each person, as the number of a phase of the emulators' script.
 struct Persons {
   std::size_t first = 0, guest = 0;
 };
 
-// The script of a person; `held` is a member of Persons.
+// The script of a person. `held`: the member of Persons with the phase.
 const emulate::MotionScript& scriptOf(const std::size_t& held);
 
-// Where the state would be; a disk that can be full.
+// The storage of the state file, whose disk can be full.
 class VirtualDisk final : public state::StateFiles {
  public:
   bool full = false;
@@ -50,20 +50,20 @@ class VirtualDisk final : public state::StateFiles {
   std::string text_, name_ = "the state";
 };
 
-// What a day counts.
+// Counts of a day.
 struct DayCounts {
   std::uint64_t visits = 0, faults = 0, reloads = 0, alarms = 0, documents = 0;
   std::map<std::string, std::map<std::string, std::uint64_t>>
-      events;                                 // by kind and what explains it
-  std::vector<std::string> wrong;             // unexplained, untold, refused or accepted wrongly
-  std::uint64_t digest = 0xcbf29ce484222325;  // of all events and when they came
+      events;                      // by kind and what explains it
+  std::vector<std::string> wrong;  // unexplained or missing events, wrong answers to reloads
+  std::uint64_t digest = 0xcbf29ce484222325;  // hash of all events and their times
 };
 
 // Thread-bound.
 class VirtualDay {
  public:
   struct Parts {
-    nlohmann::json configuration;  // of which settings was read
+    nlohmann::json configuration;  // from which the settings were read
     std::string folder;            // its paths are relative to
     Settings& settings;            // in effect; changed by reloads
     Fibers& fibers;
@@ -78,7 +78,7 @@ class VirtualDay {
   void start(const std::stop_token& stop, Timestamp end);
 
   const DayCounts& counts() const { return counts_; }
-  // Seconds in which the renderer was slow on purpose, or just had been, cover this time.
+  // Whether the renderer is slow on purpose now, or was a moment ago.
   bool isSlow() const { return parts_.clock.now() < slow_until_; }
   // The events that had to come and did not; to be called at the end.
   std::vector<std::string> untold() const;
@@ -130,7 +130,7 @@ class VirtualDay {
   std::size_t variant_ = 0;
   std::vector<Explanation> explanations_;
   ThreadWatch watch_;
-  VirtualDisk* disk_;  // keeper_ owns it
+  VirtualDisk* disk_;  // owned by keeper_
   state::StateKeeper keeper_;
   status::Services services_;
   status::HealthEvents health_events_;

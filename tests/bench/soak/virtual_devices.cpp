@@ -67,7 +67,7 @@ VirtualDevices::VirtualDevices(const Settings& settings, std::vector<Line> lines
   if (!segment) didNotRun("shared memory", segment.error().what, "see /dev/shm");
   segment_.emplace(*std::move(segment));
   auto slots = shm::DeviceSlots::find(**segment_);
-  if (!slots) didNotRun("shared memory", slots.error().what, "mend the benchmark");
+  if (!slots) didNotRun("shared memory", slots.error().what, "fix the benchmark");
   slots_ = *std::move(slots);
   flight_.emplace(**segment_, settings.run_directory + "/flight", settings.instance);
   const auto trained = devices::loadTrained(settings);

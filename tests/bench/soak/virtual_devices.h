@@ -25,11 +25,11 @@ class VirtualLine {
   // Opens the port. Errors: kClosed (unplugged).
   Result<std::unique_ptr<ByteStream>> open();
 
-  // Plugs the adapter in, or out: what is open is closed.
+  // Plugs the adapter in or out. When it is plugged out, open streams are closed.
   void plug(bool in);
-  // Switches the device off, or on again as after a start; the line stays.
+  // Switches the device off, or on again, after which it starts anew; the line stays.
   void power(bool on) { emulator_ = on ? make_(fibers_.now()) : nullptr; }
-  // Bytes that no device sent, as of a bad contact.
+  // Inserts bytes that no device has sent, as a bad contact does.
   void disturb(const std::string& bytes) { input_ += bytes; }
 
  private:
@@ -38,23 +38,23 @@ class VirtualLine {
   Maker make_;
   std::unique_ptr<emulate::Emulator> emulator_;  // null: switched off
   std::string input_;
-  std::uint64_t plugged_ = 1;  // odd: it is in; a stream belongs to one number
+  std::uint64_t plugged_ = 1;  // odd: plugged in; a stream is valid for one number
 };
 
-// The role's devices. Thread-bound.
+// The devices of merlind's role devices. Thread-bound.
 class VirtualDevices {
  public:
   struct Line {
     std::string name;
     std::unique_ptr<VirtualLine> line;
   };
-  // `lines`: by device of the settings. Ends the benchmark where merlind would not start.
+  // `lines`: one for each device of the settings. Ends the benchmark if merlind would not start.
   VirtualDevices(const Settings& settings, std::vector<Line> lines, Fibers& fibers, Clock& clock);
 
   // Starts a fiber for each device.
   void start(const std::stop_token& stop);
 
-  // As merlind's role does on a reload, except for lines.
+  // Does what merlind's role does on a reload, except for changes of lines.
   void reload(const Settings& settings, bool bindings, bool hand, bool postures);
 
   VirtualLine& line(std::size_t device) { return *lines_[device].line; }
@@ -63,7 +63,7 @@ class VirtualDevices {
   shm::SegmentWriter<shm::DevicesSegment>& segment() { return *segment_; }
   const shm::DeviceSlots& slots() const { return *slots_; }
   devices::FlightRecorder& flight() { return *flight_; }
-  // Samples of all devices so far.
+  // Number of samples of all devices so far.
   std::uint64_t samples() const;
 
  private:

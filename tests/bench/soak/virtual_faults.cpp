@@ -50,11 +50,11 @@ void VirtualDay::switchDeviceOff() {
   const std::size_t device = below(parts_.devices.count());
   explainDevice("device switched off", device);
   parts_.devices.line(device).power(false);
-  (void)sleep(between(12, 60));  // a ball at rest is silent for seconds as well
+  (void)sleep(between(12, 60));  // long, since a ball at rest is silent for seconds too
   parts_.devices.line(device).power(true);
 }
 
-// May be too little for the driver to give the device up.
+// The disturbance may be too short for the driver to give the device up.
 void VirtualDay::disturbLine() {
   const std::size_t device = below(parts_.devices.count());
   const std::string& name = parts_.devices.name(device);
@@ -84,7 +84,7 @@ void VirtualDay::fillDisk() {
   (void)sleep(between(3, 30));
   disk_->full = false;
   change();
-  // The keeper's thread lives in real time: virtual time stands still until it has saved.
+  // The keeper's thread runs in real time, so virtual time stands still until it has saved.
   SystemClock system;
   for (int i = 0; !keeper_.fault().empty() && i < 5000; ++i)
     (void)system.sleepUntil(system.now() + std::chrono::milliseconds(1), {});
@@ -102,7 +102,7 @@ void VirtualDay::slowRenderer() {
 void VirtualDay::unplugOutput() {
   explain("output unplugged", "wall", "^output shared failed: the display was unplugged", true);
   explain("output unplugged", "wall", "^output shared works again", true);
-  // What it shows is no longer what was meant: the checks may say so, too.
+  // The output no longer shows what it should, so the picture checks may report that too.
   explain("output unplugged", "picture", "^output shared ");
   parts_.wall.faults().unplugged = true;
   (void)sleep(between(3, 25));
@@ -144,7 +144,7 @@ void VirtualDay::reloadBadly() {
   if (!reload(json::object())) counts_.wrong.emplace_back("a good reload was refused");
 }
 
-// What merlind's Reloader does, without its thread.
+// Does what merlind's Reloader does, but without its thread.
 bool VirtualDay::reload(const json& patch) {
   ++counts_.reloads;
   json changed = parts_.configuration;

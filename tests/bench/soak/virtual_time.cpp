@@ -16,7 +16,7 @@ constexpr std::size_t kStack = std::size_t{1} << 20;
 struct Fibers::Fiber {
   ucontext_t context{};
   std::function<void()> body;
-  std::unique_ptr<std::byte[]> stack;  // not initialised: only what is used takes memory
+  std::unique_ptr<std::byte[]> stack;  // not initialised, so only the used part takes memory
   bool returned = false;
 };
 
@@ -28,7 +28,7 @@ void Fibers::enter(unsigned high, unsigned low) {
   auto* const fiber = reinterpret_cast<Fiber*>(std::uintptr_t{high} << 32 | std::uintptr_t{low});
   fiber->body();
   fiber->returned = true;
-  // Its context's successor is the main one.
+  // The fiber's context continues with the main context.
 }
 
 void Fibers::start(std::function<void()> body) {
@@ -63,7 +63,7 @@ void Fibers::runUntil(Timestamp end) {
 
 void Fibers::waitUntil(Timestamp when) {
   assert(current_);
-  // Most waits are shorter than anybody else's: no switch is needed.
+  // Most waits end before those of all other fibers; then no switch is needed.
   if (when <= end_ && (waiting_.empty() || when < waiting_.top().when)) {
     now_ = std::max(now_, when);
     return;

@@ -1,6 +1,6 @@
-// Virtual time for code that blocks: its threads are fibers of one thread, which run one at a time,
-// in the order of the times that they wait for. So hours pass as fast as the work that is done in
-// them, and each run with the same seeds is the same.
+// Virtual time for code that blocks. The threads of that code are fibers of one thread, which run
+// one at a time, in the order of the times for which they wait. So hours pass as fast as the
+// computation in them, and each run with the same seeds is the same.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ class Fibers {
   // Runs all fibers until virtual time `end`, or until all have returned. Not within a fiber.
   void runUntil(Timestamp end);
 
-  // Within a fiber: others run until then. Those that wait for the same time run in the order in
-  // which they began to wait.
+  // To be called within a fiber: other fibers run until `when`. Fibers that wait for the same time
+  // continue in the order in which they began to wait.
   void waitUntil(Timestamp when);
 
   Timestamp now() const noexcept { return now_; }
@@ -50,12 +50,12 @@ class Fibers {
   Timestamp now_{std::chrono::seconds(1000)}, end_{};
   std::uint64_t order_ = 0;
   std::unique_ptr<Fiber> main_;
-  Fiber* current_ = nullptr;  // null: none runs
+  Fiber* current_ = nullptr;  // null: no fiber is running
   std::vector<std::unique_ptr<Fiber>> all_;
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting_;
 };
 
-// The clock of everything that runs in fibers. sleepUntil() only within one.
+// The clock of all code that runs in fibers. sleepUntil() may be called in a fiber only.
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(Fibers& fibers) : fibers_(fibers) {}

@@ -14,11 +14,12 @@ namespace {
 
 namespace out = render::out;
 
-constexpr int kWidth = 64, kHeight = 48;  // of the frame: what is drawn costs virtual time alone
+// The frame is small, since drawing costs virtual time only.
+constexpr int kWidth = 64, kHeight = 48;
 constexpr Duration kPerTriangle = std::chrono::microseconds(6),
                    kFixed = std::chrono::milliseconds(4);
 constexpr Duration kSlice = std::chrono::milliseconds(3);
-constexpr int kSlices = 20;  // of full detail while nothing moves
+constexpr int kSlices = 20;  // a slice of full detail while nothing moves
 
 render::tiles::TilePlan smallPlan() {
   render::tiles::TilesSettings settings;
@@ -26,11 +27,11 @@ render::tiles::TilePlan smallPlan() {
   settings.frame_height = settings.tile_height = kHeight;
   settings.tiles = {{"wall", render::tiles::TileKind::kWall, 0, 0, 0}};
   auto plan = render::tiles::planTiles(settings);
-  if (!plan) didNotRun("the wall", plan.error().what, "mend the benchmark");
+  if (!plan) didNotRun("the wall", plan.error().what, "fix the benchmark");
   return *std::move(plan);
 }
 
-// An output whose cable or picture the script takes away.
+// An output that the script can unplug or blacken.
 class FaultyOutput final : public out::Output {
  public:
   FaultyOutput(std::unique_ptr<out::Output> inner, const WallFaults& faults)
@@ -43,7 +44,7 @@ class FaultyOutput final : public out::Output {
     black_.resize(signal.pixels.size());
     return inner_->present({signal.width, signal.height, black_}, info);
   }
-  // Presented again so that what has changed is shown, although nothing moves.
+  // True after a change of the fault, so that it shows although nothing moves.
   bool wantsFrame(Timestamp) const override { return std::exchange(was_, now()) != now(); }
   bool canReadBack() const override { return true; }
   Result<std::vector<out::DisplayReading>> readBack() override { return inner_->readBack(); }
@@ -60,8 +61,8 @@ class FaultyOutput final : public out::Output {
 
 }  // namespace
 
-// Draws nothing but a pattern that differs from frame to frame; takes the time that a model of a
-// renderer says, with noise, and a spike now and then.
+// Draws only a pattern that changes from frame to frame. It takes as long as a model of a renderer
+// says, with noise and occasional spikes.
 class VirtualWall::Painter final : public render::frame::FramePainter {
  public:
   Painter(const VirtualWall& wall, VirtualClock& clock, double cost, std::uint64_t seed)

@@ -1,6 +1,6 @@
 // The wall's loop on a virtual clock. Real: input, turns, scene, governor, ladder, playlist,
-// attendance, delivery, the output in shared memory, its picture checks, statistics. A stand-in:
-// who draws, whose cost the script gives.
+// attendance, delivery, the output in shared memory, its picture checks, statistics. Simulated: the
+// painter, whose cost the script determines.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@
 
 namespace merlin::bench {
 
-// What the script does to the wall's surroundings.
+// Faults that the script causes around the wall.
 struct WallFaults {
   double slower = 1;       // factor of all drawing times
   bool unplugged = false;  // the output fails
@@ -35,7 +35,7 @@ class VirtualWall {
   // Starts the fibers of the loop and of the picture checks.
   void start(const std::stop_token& stop);
 
-  // As merlind's role does on a reload.
+  // Does what merlind's role does on a reload.
   void reload(const Settings& settings, bool rate, bool playlist, bool scene, bool input);
 
   WallFaults& faults() { return faults_; }
