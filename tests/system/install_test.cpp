@@ -471,6 +471,26 @@ TEST_F(InstalledServers, AreSaidToBeForbiddenAndTheDevicesAreRead) {
   EXPECT_EQ(devices->kill(SIGTERM), 0);
 }
 
+TEST_F(InstalledServers, OfTheWallAreForbiddenToItAndServedWithItsDropIn) {
+  const int port = freePort();
+  const std::string config =
+      configuration({{"serve",
+                      {{"wall_endpoint", "tcp://127.0.0.1:" + std::to_string(port)},
+                       {"commands_keys", dir_ / "keys"},
+                       {"commands_clients", dir_ / "clients"}}}});
+  auto wall = start("wall", config);
+  EXPECT_TRUE(wall->saysEventually(
+      "commands of the wall over the network: failed (/serve/wall_endpoint: network sockets are "
+      "forbidden"))
+      << wall->output();
+  EXPECT_FALSE(connects(port));
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+  wall = start("wall", config, {"network.conf"});
+  EXPECT_TRUE(eventually([&] { return connects(port); })) << wall->output();
+  EXPECT_EQ(wall->output().find("failed (/serve"), std::string::npos) << wall->output();
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+}
+
 TEST_F(InstalledServers, AreServedWithTheDropIn) {
   const auto devices = start("devices", config_, {"network.conf"});
   EXPECT_TRUE(connects(vrpn_)) << devices->output();
