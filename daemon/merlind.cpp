@@ -195,7 +195,12 @@ int runDaemon(const Options& options, const ProgramRestart& restart) {
     return exitStatus(daemon.error());
   }
   const Result<Ok> ran = (*daemon)->run();
-  if (!ran || !(*daemon)->startsAgain()) return exitStatusOf(ran);
+  if (!ran || !(*daemon)->startsAgain()) {
+    const int status = exitStatusOf(ran);
+    // Not after a fault of a process that ran: its successor is to be there at once.
+    if (!ran && !(*daemon)->wasReady() && ran.error().code != Errc::kClosed) delayRestart();
+    return status;
+  }
   const auto kept = (*daemon)->handOver();
   daemon->reset();
   return exitStatusOf(restart.now(kept));

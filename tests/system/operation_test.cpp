@@ -1,4 +1,5 @@
 // A daemon that runs for months: signals, disks that fill up and come back, unusual file names.
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -123,6 +124,21 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
       << second.output;
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
   EXPECT_EQ(m.leftInSharedMemory().size(), 0u);
+}
+
+// systemd starts it again 0.1 s after its end, and each start writes to the journal.
+TEST(Operation, AStartThatFailsUnderSystemdEndsOnlyAfterFiveSeconds) {
+  const TempDir dir;
+  const std::string instance = privateName("fails"), config = dir / "merlin.json";
+  writeText(config, json{{"instance", instance}, {"run_directory", dir.path()}}.dump());
+  writeText(dir / (instance + "-devices.command"), "in the socket's place");
+  const auto begin = std::chrono::steady_clock::now();
+  Process merlind({kMerlind, "--config", config, "--role", "devices"},
+                  {{"NOTIFY_SOCKET", dir / "nobody"}});
+  EXPECT_NE(merlind.wait(), 0);
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  EXPECT_NE(merlind.output().find("is not a socket and is not replaced"), std::string::npos)
+      << merlind.output();
 }
 
 // One that the command takes.
