@@ -313,6 +313,36 @@ TEST_F(Install, TheInstalledDaemonRunsUnderItsUnits) {
   EXPECT_EQ(wall->kill(SIGTERM), 0) << wall->output();
 }
 
+// The drop-ins files.conf allow /srv/merlin, which is in the test's folder here.
+TEST_F(Install, AFolderOfOnesOwnIsForbiddenByTheUnitsAndAllowedByTheirDropIns) {
+  if (::geteuid() != 0 || run({"unshare", "--mount", "true"}).status != 0)
+    GTEST_SKIP() << "this user cannot make files read-only by mounts";
+  const std::string folder = dir_ / "srv/merlin";
+  fs::create_directories(folder);
+  ASSERT_EQ(::chown(folder.c_str(), kNobody, kNobody), 0);
+  const json settings = {{"devices", {{"serve", {{"spnav_socket", folder + "/spnav.sock"}}}}},
+                         {"wall", {{"wall", {{"snapshots", folder}}}}}};
+  for (const auto& [role, patch] : settings.items()) {
+    const std::string config = configuration(patch);
+    const auto started = [&, &role = role](const std::vector<std::string>& drop_ins) {
+      auto command = underUnit({merlind_, "--role", role, "--last-good", "--config", config},
+                               "merlin-" + role + ".service", drop_ins);
+      command.insert(command.begin() + 1, {"--in", dir_.path()});
+      return std::make_unique<Process>(
+          command, std::map<std::string, std::string>{{"STATE_DIRECTORY", runDirectory()}});
+    };
+    const auto alone = started({});
+    EXPECT_NE(alone->wait(), 0) << role;
+    EXPECT_NE(alone->output().find("Read-only file system"), std::string::npos) << alone->output();
+    const auto allowed = started({"files.conf"});
+    EXPECT_TRUE(allowed->saysEventually("ready")) << allowed->output();
+    if (role == "devices") {
+      EXPECT_TRUE(eventually([&] { return fs::is_socket(folder + "/spnav.sock"); }));
+    }
+    EXPECT_EQ(allowed->kill(SIGTERM), 0) << allowed->output();
+  }
+}
+
 TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
   if (!fs::exists(MERLIN_BIN_DIR "/merlin-rfb")) GTEST_SKIP() << "merlin-rfb is not built";
   EXPECT_FALSE(fs::exists(root_ + "/usr/bin/merlin-rfb")) << "it is a component of its own";
