@@ -131,6 +131,9 @@ void blockSignals() {
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  // If whoever started merlind ignores it, no end of a child could be waited for, and no alarm
+  // would be told after the first.
+  ::signal(SIGCHLD, SIG_DFL);
   // Signals that have no meaning for merlind are ignored. With SIGXFSZ ignored, write() returns an
   // error when a file-size limit is exceeded.
   for (const int s : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU,
