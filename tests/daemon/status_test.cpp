@@ -20,6 +20,7 @@
 #include "daemon/status/client.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
+#include "daemon/status/role_follower.h"
 #include "daemon/status/run_directory.h"
 #include "daemon/status/server.h"
 #include "daemon/status/watchdog.h"
@@ -682,6 +683,37 @@ TEST_F(ServerTest, ASocketOfAnotherProgramInItsPlaceStays) {
 TEST_F(ServerTest, ACleanStopLeavesNoSocket) {
   server_.reset();
   EXPECT_TRUE(fs::is_empty(dir_.path()));
+}
+
+// Too many files were open, for example; the run may go on for months.
+TEST(RoleFollower, ConnectsToARunThatItCouldNotFollowAtFirst) {
+  using Wall = shm::WallSegment;
+  const test::TempDir dir;
+  const std::string instance = test::privateName("follower"), endpoint = "ipc://" + dir / "s";
+  Timestamp now = kNow;
+  auto wall = shm::SegmentWriter<Wall>::make(shm::segmentName(instance, "wall"), shm::wallFields(),
+                                             7, now, {"of no kind that ZeroMQ knows", ""});
+  ASSERT_TRUE(wall) << wall.error().what;
+  RoleFollower<shm::SegmentReader<Wall>> follower(instance, "wall", {"event"});
+  const auto look = [&] {
+    now += milliseconds(500);
+    wall->writeHeartbeat(now);
+    return follower.update(now);
+  };
+  EXPECT_TRUE(look());
+  EXPECT_EQ(follower.generation(), 7u);
+  auto& header = (**wall).header;
+  std::snprintf(header.status_endpoint, sizeof header.status_endpoint, "%s", endpoint.c_str());
+  zmq::context_t context;
+  zmq::socket_t publisher(context, zmq::socket_type::pub);
+  publisher.set(zmq::sockopt::linger, 0);
+  publisher.bind(endpoint);
+  EXPECT_TRUE(test::eventually([&] {
+    EXPECT_FALSE(look()) << "it is the same run";
+    publisher.send(zmq::str_buffer("event"), zmq::send_flags::sndmore);
+    publisher.send(zmq::str_buffer("{}"), zmq::send_flags::none);
+    return follower.take().has_value();
+  }));
 }
 
 TEST(Server, AnEndpointThatCannotBeBoundIsNamed) {
