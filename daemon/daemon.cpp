@@ -260,6 +260,7 @@ Result<Ok> Daemon::run() {
   }
   kept_files_.forgetUntaken();  // the cards that are used were opened before the first frame
   tellReady();
+  was_ready_ = true;
   logInfo("ready");
   keepLastGood();
   while (!starts_again_ && !stopAsked(kSignalWait)) {

@@ -53,6 +53,8 @@ class Daemon {
   // before the first frame); a thread has ended unexpectedly.
   Result<Ok> run();
   bool startsAgain() const noexcept { return starts_again_; }
+  // Whether run() got as far as the first frame, or the devices.
+  bool wasReady() const noexcept { return was_ready_; }
   // Returns the files that are to stay open for the next start: see ProgramRestart.
   std::vector<std::pair<std::string, UniqueFd>> handOver() { return kept_files_.handOver(); }
 
@@ -90,7 +92,7 @@ class Daemon {
   status::EndedThreads ended_threads_{threads_, services_};
   status::Watchdog watchdog_;
   Timestamp summarised_{}, mended_{};
-  bool starts_again_ = false;
+  bool starts_again_ = false, was_ready_ = false;
   std::atomic<bool> closed_{false};  // a person closed a window whose on_close is "stop"
   std::unique_ptr<EmulatorChildren> emulators_;
   std::unique_ptr<RemoteDevices> remote_devices_;  // if /wall/input names another machine

@@ -8,6 +8,7 @@
 
 #include "config/writer.h"
 #include "daemon/base/absolute_path.h"
+#include "daemon/base/clock.h"
 #include "daemon/base/log.h"
 #include "daemon/base/restricted_file.h"
 
@@ -17,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Duration kStep = std::chrono::milliseconds(200);
+constexpr Duration kTryAgain = std::chrono::seconds(5);  // after a failure: the disk may be full
 
 // Removes from `mode` the permissions that the file does not give.
 void restrictTo(const fs::path& file, mode_t& mode) {
@@ -74,31 +76,40 @@ void LastGoodKeeper::keep(const Settings& settings) {
 
 void LastGoodKeeper::loop(const std::stop_token& stop, Progress& progress) {
   giveWay();
+  std::optional<std::string> unwritten;
+  SystemClock clock;
+  Timestamp next_try{};
   for (;;) {
-    std::optional<std::string> text;
     {
       std::unique_lock lock(mutex_);
       wake_.wait_for(lock, stop, kStep, [this] { return waiting_.has_value(); });
-      text = std::exchange(waiting_, std::nullopt);
+      if (waiting_) {
+        unwritten = std::exchange(waiting_, std::nullopt);
+        next_try = clock.now();
+      }
     }
     progress.step();
-    if (text) {
+    const bool last = stop.stop_requested();
+    if (unwritten && (last || clock.now() >= next_try)) {
       const Progress::Pause pause(progress);  // writing to a disk may take long
-      write(*text);
-    } else if (stop.stop_requested()) {
-      return;
+      if (write(*unwritten)) unwritten.reset();
+      next_try = clock.now() + kTryAgain;
     }
+    if (last) return;  // even if it failed
   }
 }
 
-void LastGoodKeeper::write(const std::string& text) {
+bool LastGoodKeeper::write(const std::string& text) {
   std::error_code ignored;
   fs::create_directories(fs::path(file_).parent_path(), ignored);
   const auto written = writeRestrictedFile(file_, text, modeLike(configuration_));
   const std::string why = written ? std::string() : written.error().what;
-  if (!why.empty() && why != logged_)
-    logWarning("the last good configuration is not kept: {}: {}", file_, why);
+  if (!why.empty() && why != logged_) {
+    logWarning("the last good configuration is not kept: {}: {}; tried again every {:.0f} s", file_,
+               why, toSeconds(kTryAgain));
+  }
   logged_ = why;
+  return written.ok();
 }
 
 }  // namespace merlin

@@ -30,12 +30,13 @@ class LastGoodKeeper {
   LastGoodKeeper(const LastGoodKeeper&) = delete;
   LastGoodKeeper& operator=(const LastGoodKeeper&) = delete;
 
-  // Keeps these settings. If the file cannot be written, the log says so, once for each reason.
+  // Keeps these settings. If the file cannot be written, the log says so, once for each reason, and
+  // it is tried again every 5 s.
   void keep(const Settings& settings);
 
  private:
   void loop(const std::stop_token& stop, Progress& progress);
-  void write(const std::string& text);
+  bool write(const std::string& text);
 
   const std::string file_, configuration_;
   std::mutex mutex_;  // guards waiting_

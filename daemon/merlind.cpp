@@ -131,6 +131,9 @@ void blockSignals() {
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  // If whoever started merlind ignores it, no end of a child could be waited for, and no alarm
+  // would be told after the first.
+  ::signal(SIGCHLD, SIG_DFL);
   // Signals that have no meaning for merlind are ignored. With SIGXFSZ ignored, write() returns an
   // error when a file-size limit is exceeded.
   for (const int s : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU,
@@ -195,7 +198,12 @@ int runDaemon(const Options& options, const ProgramRestart& restart) {
     return exitStatus(daemon.error());
   }
   const Result<Ok> ran = (*daemon)->run();
-  if (!ran || !(*daemon)->startsAgain()) return exitStatusOf(ran);
+  if (!ran || !(*daemon)->startsAgain()) {
+    const int status = exitStatusOf(ran);
+    // Not after a fault of a process that ran: its successor is to be there at once.
+    if (!ran && !(*daemon)->wasReady() && ran.error().code != Errc::kClosed) delayRestart();
+    return status;
+  }
   const auto kept = (*daemon)->handOver();
   daemon->reset();
   return exitStatusOf(restart.now(kept));

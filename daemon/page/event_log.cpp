@@ -74,6 +74,7 @@ std::vector<LoggedEvent> EventLog::after(std::uint64_t number) const {
 
 std::string EventLog::since(std::uint64_t since) const {
   const std::lock_guard lock(mutex_);
+  if (since >= next_) since = 0;
   auto from = std::ranges::upper_bound(events_, since, {}, &LoggedEvent::number);
   if (events_.end() - from > static_cast<std::ptrdiff_t>(kSentEvents))
     from = events_.end() - static_cast<std::ptrdiff_t>(kSentEvents);

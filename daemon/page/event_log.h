@@ -38,7 +38,9 @@ class EventLog {
   std::vector<LoggedEvent> after(std::uint64_t number) const;
 
   // {"next": N, "events": [{"number", "role", "time_utc", "kind", "what"}]}: the events after
-  // number `since`, the oldest first, at most the last 200.
+  // number `since`, the oldest first, at most the last 200. A number that no event has had yet is
+  // of an earlier run, which ended before the clock was set back: all events are new to that
+  // client.
   std::string since(std::uint64_t since) const;
 
  private:

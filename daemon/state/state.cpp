@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kLongestName = 64, kLongestPath = 4096;
 constexpr int kLargest = 1 << 20;  // the largest size, and number of points
 constexpr double kLeastRate = 1, kMostRate = 240;
-constexpr std::uint64_t kMostMinutes = 5'000'000'000;  // of local time since 1970
+constexpr std::int64_t kMostMinutes = 5'000'000'000;  // of local time since 1970
 constexpr const char* kVersionKey = "merlin_state";
 
 Json textOf(const Offset& o) { return Json::array({o.x, o.y}); }
@@ -220,8 +220,10 @@ std::string stateText(const State& state) {
   if (!state.content.empty()) text += fmt::format("\"content\": {},\n", lineOf(state.content));
   if (state.playlist_off) text += "\"playlist\": \"off\",\n";
   if (const auto& p = state.projectors) {
+    // A clock whose battery is empty may be before 1970; what is written has to be readable.
+    const auto minute = std::clamp<std::int64_t>(p->local_minute, 0, kMostMinutes);
     text += fmt::format("\"projectors\": {{\"switched\": \"{}\", \"local_minute\": {}}},\n",
-                        p->on ? "on" : "off", p->local_minute);
+                        p->on ? "on" : "off", minute);
   }
   std::vector<std::string> aside;
   for (const Alignment& alignment : state.set_aside.alignments())

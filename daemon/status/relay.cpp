@@ -130,19 +130,21 @@ Relay::Relay(RelaySettings settings, const Clock& clock)
 
 Relay::~Relay() {
   thread_.stop();
-  if (!path().empty() && inodeOf(path()) == file_) ::unlink(path().c_str());
+  if (isThere()) ::unlink(path().c_str());
 }
 
 std::string Relay::path() const {
   return settings_.endpoint.starts_with(kIpc) ? settings_.endpoint.substr(kIpc.size()) : "";
 }
 
+bool Relay::isThere() const { return !path().empty() && file_ != 0 && inodeOf(path()) == file_; }
+
 Result<Ok> Relay::listen() {
   Result<UniqueFd> listener =
       Error{Errc::kInvalidArgument, settings_.endpoint + ": is neither ipc:// nor tcp://"};
   if (!path().empty()) {
     listener = net::listenLocal(path(), kMode);
-    file_ = inodeOf(path());
+    file_ = listener ? inodeOf(path()) : 0;  // what else may be there is not ours
   } else if (settings_.endpoint.starts_with(kTcp)) {
     const auto address = parseTcp(settings_.endpoint);
     if (!address) return address.error();
@@ -166,17 +168,24 @@ void Relay::run(const std::stop_token& stop, Progress& progress) {
 }
 
 // If the socket's file (or its folder) was removed, creates it again, so that clients can connect.
+// If that fails, it is tried again until it succeeds: only root may be able to make the folder.
 void Relay::listenAgainWhereGone() {
   const Timestamp now = clock_.now();
   if (path().empty() || now - checked_ < kCheckPeriod) return;
   checked_ = now;
-  if (inodeOf(path()) == file_) return;
+  if (isThere()) return;
   std::error_code error;
   std::filesystem::create_directories(std::filesystem::path(path()).parent_path(), error);
   server_.stopListening();
   const auto listening = listen();
-  if (listening)
+  const std::string why = listening ? std::string() : listening.error().what;
+  if (listening) {
     logWarning("{}: its socket {} was removed and has been created again", settings_.name, path());
+  } else if (why != failure_) {
+    logWarning("{}: its socket {} was removed and cannot be created again: {}; tried every second",
+               settings_.name, path(), why);
+  }
+  failure_ = why;
 }
 
 }  // namespace merlin::status

@@ -44,12 +44,14 @@ class Relay final : public net::Server {
   void run(const std::stop_token& stop, Progress& progress);
   void listenAgainWhereGone();
   std::string path() const;  // path of a local public address; empty for TCP
+  bool isThere() const;      // whether the file at path() is the socket that listens
 
   RelaySettings settings_;
   const Clock& clock_;
   net::ConnectionServer server_;
-  std::uint64_t file_ = 0;  // inode of the public socket's file
+  std::uint64_t file_ = 0;  // inode of the public socket's file; 0: it does not listen
   Timestamp checked_{};     // when the file was last checked
+  std::string failure_;     // why it could not be created again; empty: it could
   WatchedThread thread_;
 };
 

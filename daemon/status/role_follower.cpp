@@ -8,6 +8,8 @@
 namespace merlin::status {
 namespace {
 
+constexpr Duration kConnectAgain = std::chrono::seconds(1);
+
 const shm::Header& headerOf(const shm::WallSegment& segment) { return segment.header; }
 const shm::Header& headerOf(const shm::DeviceSlots& slots) { return *slots.header; }
 
@@ -25,17 +27,29 @@ bool RoleFollower<Reader>::update(Timestamp now) {
   segment_ = follower_.get(now);
   const shm::Header* const header = segment_ ? &headerOf(*segment_) : nullptr;
   const std::uint64_t generation = header ? header->generation : 0;
-  if (generation == generation_) return false;
-  generation_ = generation;
-  command_endpoint_ = header ? textIn(header->command_endpoint) : "";
-  // Uses a new socket for each run, because the old one would not reconnect after every kind of
-  // fault.
-  (void)topics_.connect("").ok();
-  const auto connected =
-      topics_.connect(std::string(header ? textIn(header->status_endpoint) : ""));
-  if (!connected)
-    logWarning("cannot receive the status of the role {}: {}", role_, connected.error().what);
-  return true;
+  const bool another = generation != generation_;
+  if (!another && now - connected_ < kConnectAgain) return false;
+  if (another) {
+    generation_ = generation;
+    command_endpoint_ = header ? textIn(header->command_endpoint) : "";
+    // Uses a new socket for each run, because the old one would not reconnect after every kind of
+    // fault.
+    (void)topics_.connect("").ok();
+  }
+  connected_ = now;
+  connect(std::string(header ? textIn(header->status_endpoint) : ""));
+  return another;
+}
+
+// Does nothing while it is connected there. A run that could not be followed at first, as too many
+// files were open, may go on for months.
+template <typename Reader>
+void RoleFollower<Reader>::connect(const std::string& endpoint) {
+  const auto connected = topics_.connect(endpoint);
+  const std::string fault = connected ? std::string() : connected.error().what;
+  if (!fault.empty() && fault != fault_)
+    logWarning("cannot receive the status of the role {}: {}", role_, fault);
+  fault_ = fault;
 }
 
 template class RoleFollower<shm::SegmentReader<shm::WallSegment>>;

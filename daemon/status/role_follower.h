@@ -38,12 +38,16 @@ class RoleFollower {
   std::optional<TopicFollower::Message> take() { return topics_.take(); }
 
  private:
+  void connect(const std::string& endpoint);
+
   const std::string role_;
   shm::SegmentFollower<Reader> follower_;
   TopicFollower topics_;
   const typename Reader::View* segment_ = nullptr;
   std::uint64_t generation_ = 0;
   std::string command_endpoint_;
+  Timestamp connected_{};  // when connect() was called last
+  std::string fault_;      // why it failed; empty: it did not
 };
 
 }  // namespace merlin::status

@@ -287,7 +287,8 @@ void StatusServer::bindAgainWhereGone() {
     std::error_code ignored;
     std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
     const Umask umask;
-    b.socket->unbind("ipc://" + path);
+    // Fails if an earlier bindAt() failed here: nothing is bound then.
+    (void)::zmq_unbind(b.socket->handle(), ("ipc://" + path).c_str());
     Sockets::bindAt(b);
     logWarning("status of the {}: the socket {} was removed and has been created again",
                settings_.name, path);

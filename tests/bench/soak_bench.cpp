@@ -1,6 +1,7 @@
 // ./dev bench soak: a day of the wall on a virtual clock, with scripted people, faults and reloads,
-// in minutes. Measures memory, descriptors and late frames, and whether every event is explained.
-// The same seed gives the same day. In real time, on the real programs: ./dev soak.
+// in minutes: memory, descriptors, late frames, and whether every event is explained. The same seed
+// is the same day. In real time, on the real programs: ./dev soak.
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <thread>
@@ -228,6 +229,19 @@ bool reportHeld(const Options& options, const std::vector<Sample>& samples, Repo
   return slope.value - slope.half_width <= 0 && after <= before;
 }
 
+// A day in which nobody came or nothing happened says nothing. Minutes may be so.
+void expectLived(const Options& options, const DayCounts& counts,
+                 const std::vector<Sample>& samples) {
+  if (options.hours < 24) return;
+  const bool moved =
+      std::ranges::any_of(samples, [](const Sample& sample) { return sample.deadlines > 0; });
+  if (moved && counts.visits > 0 && counts.faults > 0 && counts.reloads > 0) return;
+  didNotRun("the day",
+            fmt::format("{} visits, {} faults, {} reloads, and the wall {}", counts.visits,
+                        counts.faults, counts.reloads, moved ? "moved" : "did not move"),
+            "see tests/bench/soak/virtual_day.cpp");
+}
+
 bool bench(const Options& options, Report& report) {
   // With a single heap for the one thread, memory of samples can be compared.
   ::mallopt(M_ARENA_MAX, 1);
@@ -235,6 +249,7 @@ bool bench(const Options& options, Report& report) {
   Lab lab(options, dir);
   lab.run();
   const DayCounts& counts = lab.day().counts();
+  expectLived(options, counts, lab.samples());
   const Measured speed = Measured::of(3600 * options.hours / lab.took_s(), 1, "days");
   report.text(
       "{:.4g} h of the wall in {:.0f} s, {:.0f} times as fast, seed {}: {} frames, {} samples\n",

@@ -250,6 +250,19 @@ TEST(StateText, IsReadBackAsItWas) {
   EXPECT_EQ(again.offset("right", kBottomRight), (Offset{-7, 0}));
 }
 
+// The state would be set aside as damaged, and the alignment with it.
+TEST(StateText, OfProjectorsSwitchedWhileTheClockWasWrongIsReadBack) {
+  for (const auto& [minute, kept] :
+       {std::pair<std::int64_t, std::int64_t>{-300, 0}, {9'000'000'000, 5'000'000'000}}) {
+    State written = someState();
+    written.projectors = {true, minute};
+    const auto read = parseState(stateText(written), "f");
+    ASSERT_TRUE(read) << read.error().what;
+    EXPECT_EQ(read->projectors->local_minute, kept);
+    EXPECT_EQ(read->alignment.done, 2u);
+  }
+}
+
 TEST(StateText, OfNothingIsReadBack) {
   const auto read = parseState(stateText({}), "f");
   ASSERT_TRUE(read) << read.error().what;

@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -15,9 +16,11 @@
 #include <zmq.hpp>
 
 #include "daemon/base/log.h"
+#include "daemon/net/connection_server.h"
 #include "daemon/status/client.h"
 #include "daemon/status/documents.h"
 #include "daemon/status/health_events.h"
+#include "daemon/status/role_follower.h"
 #include "daemon/status/run_directory.h"
 #include "daemon/status/server.h"
 #include "daemon/status/watchdog.h"
@@ -630,9 +633,87 @@ TEST_F(ServerTest, SocketsThatAreRemovedAreThereAgain) {
   }));
 }
 
+// What this process says on its standard error, as long as this object lives.
+class Said {
+ public:
+  Said() : before_(::dup(STDERR_FILENO)) {
+    const UniqueFd file(::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
+    EXPECT_GE(::dup2(file.get(), STDERR_FILENO), 0);
+  }
+  ~Said() { ::dup2(before_.get(), STDERR_FILENO); }
+  Said(const Said&) = delete;
+  Said& operator=(const Said&) = delete;
+
+  bool eventually(const std::string& text) const {
+    return test::eventually([&] { return test::readText(path_).find(text) != std::string::npos; });
+  }
+
+ private:
+  test::TempDir dir_;
+  std::string path_ = dir_ / "said";
+  UniqueFd before_;
+};
+
+// In /run only root can make the folder again that somebody removed.
+TEST_F(ServerTest, SocketsWhoseFolderIsMissingForAWhileAreThereOnceItIsBack) {
+  const Said said;
+  ASSERT_TRUE(test::eventually([&] {  // the server makes the folder again at once
+    std::error_code ignored;
+    fs::remove_all(dir_.path(), ignored);
+    test::writeText(dir_.path(), "");
+    return fs::is_regular_file(dir_.path());
+  }));
+  EXPECT_TRUE(said.eventually(dir_ / "c was removed and cannot be created again"));
+  EXPECT_TRUE(said.eventually("; it continues")) << "of the inner sockets";
+  fs::remove(dir_.path());
+  fs::create_directory(dir_.path());
+  EXPECT_TRUE(test::eventually([&] { return ask(command_, "status", seconds(1)).ok(); }));
+}
+
+TEST_F(ServerTest, ASocketOfAnotherProgramInItsPlaceStays) {
+  auto made = net::listenLocal(dir_ / "other", 0600);
+  ASSERT_TRUE(made) << made.error().what;
+  const Said said;
+  fs::rename(dir_ / "other", dir_ / "c");
+  EXPECT_TRUE(said.eventually("another program serves this socket"));
+  server_.reset();
+  EXPECT_TRUE(fs::is_socket(dir_ / "c"));
+}
+
 TEST_F(ServerTest, ACleanStopLeavesNoSocket) {
   server_.reset();
   EXPECT_TRUE(fs::is_empty(dir_.path()));
+}
+
+// Too many files were open, for example; the run may go on for months.
+TEST(RoleFollower, ConnectsToARunThatItCouldNotFollowAtFirst) {
+  using Wall = shm::WallSegment;
+  const test::TempDir dir;
+  const std::string instance = test::privateName("follower"), endpoint = "ipc://" + dir / "s";
+  Timestamp now = kNow;
+  auto wall = shm::SegmentWriter<Wall>::make(shm::segmentName(instance, "wall"), shm::wallFields(),
+                                             7, now, {"of no kind that ZeroMQ knows", ""});
+  ASSERT_TRUE(wall) << wall.error().what;
+  RoleFollower<shm::SegmentReader<Wall>> follower(instance, "wall", {"event"});
+  const auto look = [&] {
+    now += milliseconds(500);
+    wall->writeHeartbeat(now);
+    return follower.update(now);
+  };
+  EXPECT_TRUE(look());
+  EXPECT_EQ(follower.generation(), 7u);
+  auto& header = (**wall).header;
+  std::snprintf(header.status_endpoint, sizeof header.status_endpoint, "%s", endpoint.c_str());
+  zmq::context_t context;
+  zmq::socket_t publisher(context, zmq::socket_type::pub);
+  publisher.set(zmq::sockopt::linger, 0);
+  publisher.bind(endpoint);
+  EXPECT_TRUE(test::eventually([&] {
+    EXPECT_FALSE(look()) << "it is the same run";
+    publisher.send(zmq::str_buffer("event"), zmq::send_flags::sndmore);
+    publisher.send(zmq::str_buffer("{}"), zmq::send_flags::none);
+    return follower.take().has_value();
+  }));
 }
 
 TEST(Server, AnEndpointThatCannotBeBoundIsNamed) {

@@ -1,12 +1,15 @@
-// under_unit UNIT... -- PROGRAM ARGUMENT...: runs a program, without systemd, under some
-// restrictions of these systemd unit files: address families, system calls, no new privileges,
+// under_unit [--in FOLDER] UNIT... -- PROGRAM ARGUMENT...: runs a program, without systemd, under
+// some restrictions of these systemd unit files: address families, system calls, no new privileges,
 // umask. If started by root, it runs the program as the user nobody. Later files add to earlier
-// ones, as systemd's drop-ins do. All other settings of the units are ignored.
+// ones, as systemd's drop-ins do. FOLDER stands for the machine's files, which ProtectSystem=strict
+// makes read-only but for $STATE_DIRECTORY and ReadWritePaths= (FOLDER/srv for /srv); only root can
+// have that. All other settings of the units are ignored.
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
@@ -18,7 +21,9 @@
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <sched.h>
 #include <stddef.h>
+#include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -183,8 +188,30 @@ void restrictCalls(const Words& sets, const Words& error) {
   install(code);
 }
 
-// LeakSanitizer inspects the ending program with ptrace, which a unit forbids; then both processes
-// would hang.
+void mountOrFail(const std::string& from, const std::string& at, unsigned long flags) {
+  if (::mount(from.empty() ? nullptr : from.c_str(), at.c_str(), nullptr, flags, nullptr) != 0)
+    fail(at + ": cannot be mounted: " + std::strerror(errno));
+}
+
+// Like systemd's ProtectSystem=strict and ReadWritePaths=, for what is in `folder`.
+void restrictFiles(const std::string& folder, const Words& units) {
+  const Words strict = valuesOf(units, "ProtectSystem");
+  if (folder.empty() || strict.empty() || strict.back() != "strict") return;
+  Words writable;
+  if (const char* const state = std::getenv("STATE_DIRECTORY")) writable.emplace_back(state);
+  for (const std::string& path : valuesOf(units, "ReadWritePaths"))
+    writable.push_back(folder + path);
+  if (::unshare(CLONE_NEWNS) != 0) fail("no mount namespace");
+  mountOrFail("", "/", MS_REC | MS_PRIVATE);
+  mountOrFail(folder, folder, MS_BIND);
+  mountOrFail("", folder, MS_BIND | MS_REMOUNT | MS_RDONLY);
+  for (const std::string& path : writable) {
+    mountOrFail(path, path, MS_BIND);
+    mountOrFail("", path, MS_BIND | MS_REMOUNT);
+  }
+}
+
+// LeakSanitizer inspects the ending program with ptrace, which a unit forbids; both would hang.
 void doWithoutLeakSanitizer() {
   const char* const options = std::getenv("ASAN_OPTIONS");
   ::setenv("ASAN_OPTIONS", (std::string(options ? options : "") + ":detect_leaks=0").c_str(), 1);
@@ -195,13 +222,16 @@ void doWithoutLeakSanitizer() {
 int main(int argc, char** argv) {
   constexpr unsigned kNobody = 65534;
   Words units;
-  int at = 1;
+  const std::string folder = argc > 2 && std::string(argv[1]) == "--in" ? argv[2] : "";
+  int at = folder.empty() ? 1 : 3;
   for (; at < argc && std::string(argv[at]) != "--"; ++at) units.emplace_back(argv[at]);
-  if (at + 1 >= argc || units.empty()) fail("usage: under_unit UNIT... -- PROGRAM ARGUMENT...");
+  if (at + 1 >= argc || units.empty())
+    fail("usage: under_unit [--in FOLDER] UNIT... -- PROGRAM ARGUMENT...");
   const Words families = valuesOf(units, "RestrictAddressFamilies");
   const Words sets = valuesOf(units, "SystemCallFilter");
   const Words error = valuesOf(units, "SystemCallErrorNumber");
   const bool no_new_privileges = hasNoNewPrivileges(units);
+  restrictFiles(folder, units);
   for (const std::string& mask : valuesOf(units, "UMask"))
     ::umask(static_cast<mode_t>(std::strtoul(mask.c_str(), nullptr, 8)));
   if (::geteuid() == 0 &&

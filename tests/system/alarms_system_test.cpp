@@ -124,7 +124,28 @@ TEST(Alarms, AContentThatWasMissingAtTheStartIsTold) {
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
-// The process waits for a configuration with alarms, and takes it over when it is told to reload.
+// A supervisor may ignore SIGCHLD, which its children inherit; the kernel then tells nobody how
+// they end.
+TEST(Alarms, TheEndOfAProgramIsNoticedWhoeverStartedMerlind) {
+  const TempDir dir;
+  writeText(dir / "c.json", Json{{"instance", privateName("alarm")},
+                                 {"run_directory", dir.path()},
+                                 {"alarms", alarmsInto(dir / "told")}}
+                                .dump());
+  // Not /bin/sh: dash does not ignore this signal.
+  Process alarms({"bash", "-c", "trap '' CHLD; exec \"$@\"", "sh", kMerlind, "--config",
+                  dir / "c.json", "--role", "alarms"});
+  ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
+  for (const int times : {1, 2}) {
+    ::kill(alarms.pid(), SIGUSR1);
+    EXPECT_TRUE(eventually([&] {
+      return timesTold(dir / "told", "alarms", "this is a test") == times;
+    })) << alarms.output();
+  }
+  EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
+}
+
+// It waits for a configuration with some, and takes that when it is told to.
 TEST(Alarms, AConfigurationWithoutAlarmsHasNothingToStart) {
   const TempDir dir;
   writeText(dir / "c.json", "{}");

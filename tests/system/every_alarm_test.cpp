@@ -46,6 +46,7 @@ struct Row {
   const char* role;  // the role of merlind in which the fault is
   std::function<Json(Stage&)> also;
   std::function<void(Stage&)> act;
+  const char* which = "";  // of several of one kind
 };
 
 void PrintTo(const Row& row, std::ostream* out) { *out << row.kind; }
@@ -74,6 +75,15 @@ Json vrpn(Stage& stage) {
   return {{"serve", {{"vrpn_port", stage.vrpn_port}}}};
 }
 
+// Its port is another program's from the start.
+Json takenVrpn(Stage& stage) {
+  auto taken = net::listenTcp("127.0.0.1", 0);
+  if (!taken) return Json::object();
+  stage.vrpn_port = net::portOf(taken->get());
+  stage.held.push_back(*std::move(taken));
+  return {{"serve", {{"vrpn_port", stage.vrpn_port}}}};
+}
+
 void killTheBall(Stage& stage) {
   for (const pid_t pid : stage.merlind->children("spaceball")) ::kill(pid, SIGKILL);
 }
@@ -94,7 +104,13 @@ void reloadNonsense(Stage& stage) {
   ::kill(stage.merlind->process().pid(), SIGHUP);
 }
 
-// Opens more connections than the VRPN server has places for.
+void removeSharedMemory(Stage& stage) {
+  if (std::filesystem::exists(stage.file("removed"))) return;
+  writeText(stage.file("removed"), "shared memory");
+  std::filesystem::remove("/dev/shm/" + stage.merlind->instance() + "-devices");
+}
+
+// More clients than VRPN has places for.
 void crowdVrpn(Stage& stage) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -126,7 +142,10 @@ const std::vector<Row>& rows() {
       {"projector", "projector left: unknown, ", "devices", oneProjector,
        [](Stage& stage) { stage.projector.vanish(); }},
       {"service", "configuration: failed (", "devices", nothing, reloadNonsense},
-      {"server", "VRPN: ", "devices", vrpn, crowdVrpn},
+      {"service", "shared memory: failed (", "devices", nothing, removeSharedMemory,
+       "shared_memory"},
+      {"server", " refused or closed", "devices", vrpn, crowdVrpn},
+      {"server", "VRPN: failed (", "devices", takenVrpn, [](Stage&) {}, "taken_port"},
       {"state", "the state file is damaged", "wall", nothing, restartWithDamagedState},
       {"flight", "ball", "devices", nothing, killTheBall},
       {"role", "has not run for 15 s", "devices", nothing,
@@ -223,7 +242,9 @@ TEST_P(EveryAlarm, IsToldToTheProgramThatIsForIt) {
       << stage_.alarms->output();
 }
 
-std::string kindOf(const testing::TestParamInfo<Row>& of) { return of.param.kind; }
+std::string kindOf(const testing::TestParamInfo<Row>& of) {
+  return of.param.kind + std::string(*of.param.which ? "_" : "") + of.param.which;
+}
 
 INSTANTIATE_TEST_SUITE_P(OfTheDocuments, EveryAlarm, testing::ValuesIn(rows()), kindOf);
 

@@ -316,6 +316,36 @@ TEST_F(Install, TheInstalledDaemonRunsUnderItsUnits) {
   EXPECT_EQ(wall->kill(SIGTERM), 0) << wall->output();
 }
 
+// The drop-ins files.conf allow /srv/merlin, which is in the test's folder here.
+TEST_F(Install, AFolderOfOnesOwnIsForbiddenByTheUnitsAndAllowedByTheirDropIns) {
+  if (::geteuid() != 0 || run({"unshare", "--mount", "true"}).status != 0)
+    GTEST_SKIP() << "this user cannot make files read-only by mounts";
+  const std::string folder = dir_ / "srv/merlin";
+  fs::create_directories(folder);
+  ASSERT_EQ(::chown(folder.c_str(), kNobody, kNobody), 0);
+  const json settings = {{"devices", {{"serve", {{"spnav_socket", folder + "/spnav.sock"}}}}},
+                         {"wall", {{"wall", {{"snapshots", folder}}}}}};
+  for (const auto& [role, patch] : settings.items()) {
+    const std::string config = configuration(patch);
+    const auto started = [&, &role = role](const std::vector<std::string>& drop_ins) {
+      auto command = underUnit({merlind_, "--role", role, "--last-good", "--config", config},
+                               "merlin-" + role + ".service", drop_ins);
+      command.insert(command.begin() + 1, {"--in", dir_.path()});
+      return std::make_unique<Process>(
+          command, std::map<std::string, std::string>{{"STATE_DIRECTORY", runDirectory()}});
+    };
+    const auto alone = started({});
+    EXPECT_NE(alone->wait(), 0) << role;
+    EXPECT_NE(alone->output().find("Read-only file system"), std::string::npos) << alone->output();
+    const auto allowed = started({"files.conf"});
+    EXPECT_TRUE(allowed->saysEventually("ready")) << allowed->output();
+    if (role == "devices") {
+      EXPECT_TRUE(eventually([&] { return fs::is_socket(folder + "/spnav.sock"); }));
+    }
+    EXPECT_EQ(allowed->kill(SIGTERM), 0) << allowed->output();
+  }
+}
+
 TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
   if (!fs::exists(MERLIN_BIN_DIR "/merlin-rfb")) GTEST_SKIP() << "merlin-rfb is not built";
   EXPECT_FALSE(fs::exists(root_ + "/usr/bin/merlin-rfb")) << "it is a component of its own";
@@ -473,6 +503,26 @@ TEST_F(InstalledServers, AreSaidToBeForbiddenAndTheDevicesAreRead) {
   EXPECT_EQ(servers["VRPN"]["state"], "failed") << status.output;
   EXPECT_EQ(servers["samples for other machines"]["state"], "failed") << status.output;
   EXPECT_EQ(devices->kill(SIGTERM), 0);
+}
+
+TEST_F(InstalledServers, OfTheWallAreForbiddenToItAndServedWithItsDropIn) {
+  const int port = freePort();
+  const std::string config =
+      configuration({{"serve",
+                      {{"wall_endpoint", "tcp://127.0.0.1:" + std::to_string(port)},
+                       {"commands_keys", dir_ / "keys"},
+                       {"commands_clients", dir_ / "clients"}}}});
+  auto wall = start("wall", config);
+  EXPECT_TRUE(wall->saysEventually(
+      "commands of the wall over the network: failed (/serve/wall_endpoint: network sockets are "
+      "forbidden"))
+      << wall->output();
+  EXPECT_FALSE(connects(port));
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+  wall = start("wall", config, {"network.conf"});
+  EXPECT_TRUE(eventually([&] { return connects(port); })) << wall->output();
+  EXPECT_EQ(wall->output().find("failed (/serve"), std::string::npos) << wall->output();
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
 TEST_F(InstalledServers, AreServedWithTheDropIn) {

@@ -48,6 +48,18 @@ class LastGood : public testing::Test {
   std::string config_ = dir_ / "wall.json", model_ = makeModel(dir_, 5);
 };
 
+// The disk was full when merlind started, for example.
+TEST_F(LastGood, IsKeptAsSoonAsItCanBeWritten) {
+  fs::remove_all(state_);
+  writeText(state_, "a file in the folder's place");
+  const auto wall = start();
+  EXPECT_TRUE(wall->saysEventually("the last good configuration is not kept: ")) << wall->output();
+  fs::remove(state_);
+  fs::create_directories(state_);
+  EXPECT_TRUE(keeps("\"rate_hz\": 7")) << wall->output();
+  EXPECT_EQ(wall->kill(SIGTERM), 0);
+}
+
 TEST_F(LastGood, IsStartedWithSaidAndLeftByTheNextReload) {
   auto wall = start();
   ASSERT_TRUE(wall->saysEventually("ready")) << wall->output();

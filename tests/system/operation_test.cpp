@@ -1,5 +1,5 @@
-// A daemon that runs for months: signals, disks that fill up and have room again, unusual file
-// names.
+// A daemon that runs for months: signals, disks that fill up and come back, unusual file names.
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -127,7 +127,22 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
   EXPECT_EQ(m.leftInSharedMemory().size(), 0u);
 }
 
-// An argument that the command accepts.
+// systemd starts it again 0.1 s after its end, and each start writes to the journal.
+TEST(Operation, AStartThatFailsUnderSystemdEndsOnlyAfterFiveSeconds) {
+  const TempDir dir;
+  const std::string instance = privateName("fails"), config = dir / "merlin.json";
+  writeText(config, json{{"instance", instance}, {"run_directory", dir.path()}}.dump());
+  writeText(dir / (instance + "-devices.command"), "in the socket's place");
+  const auto begin = std::chrono::steady_clock::now();
+  Process merlind({kMerlind, "--config", config, "--role", "devices"},
+                  {{"NOTIFY_SOCKET", dir / "nobody"}});
+  EXPECT_NE(merlind.wait(), 0);
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  EXPECT_NE(merlind.output().find("is not a socket and is not replaced"), std::string::npos)
+      << merlind.output();
+}
+
+// One that the command takes.
 std::string argumentFor(const CommandInfo& command) {
   if (command.name == "align") return "list";
   if (command.name == "reload") return "check";

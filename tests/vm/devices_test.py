@@ -41,6 +41,7 @@ def setUpModule(modules=()):
         MACHINE = vm.Vm(f"{OPTIONS.work}/machine", "640x480", memory_mb=512, extra=extra,
                         modules=("xhci-pci", "ftdi_sio", "uinput", "evdev", *modules))
     except vm.Missing as missing:
+        tearDownModule()
         print(f"test-vm: skipped: {missing}")
         raise unittest.SkipTest(str(missing)) from missing
     MACHINE.run(f"PATH=$PATH:{OPTIONS.bin} HOME=/run; export PATH HOME\n"
@@ -201,6 +202,20 @@ class Devices(unittest.TestCase):
         vm.until(lambda: self.fingers() == [], "it goes")
         stop(pid)
         MACHINE.run(f"kill {mouse}; wait {mouse}", succeeds=False)
+
+    def test_6_an_adapter_that_is_plugged_in_after_the_start_is_read(self):
+        MACHINE.ask("device_del", id="ball")
+        vm.until(lambda: "gone" in MACHINE.run("test -e /dev/ttyUSB0 || echo gone"), "the adapter is gone")
+        pid = start(entry("tracker", "serial:/dev/ttyS2"), entry("ball", "serial:/dev/ttyUSB0"))
+        vm.until(lambda: health() == {"tracker": "ok", "ball": "absent"}, "the ball is missed, the tracker streams")
+        self.assertEqual(configured()["ball"]["samples"], 0)
+        self.assertIn("/dev/ttyUSB0", configured()["ball"]["reason"])
+        MACHINE.ask("device_add", **BALL)
+        vm.until(lambda: health() == {"tracker": "ok", "ball": "ok"}, "the ball is read")
+        samples = configured()["ball"]["samples"]
+        vm.until(lambda: configured()["ball"]["samples"] > samples, "its samples go on")
+        self.assertEqual(configured()["tracker"]["reconnects"], 0)
+        stop(pid)
 
     def fingers(self):
         """The positions of the fingers on the surface."""

@@ -19,6 +19,8 @@ OPTIONS = None
 MACHINE = None
 MODE = (1024, 768)
 UNITS = ("merlin-devices", "merlin-wall", "merlin-page")
+EMULATOR = None  # of the ball on a serial adapter, which each test may plug in; its other end is on the host
+BALL = {"driver": "usb-serial", "id": "ball", "chardev": "ball-line"}
 
 # Gives the tests the shell of vm.Vm once everything that starts with the machine has started.
 SHELL_UNIT = """[Unit]
@@ -31,7 +33,44 @@ WantedBy=graphical.target multi-user.target
 """
 
 
-# The units' watchdogs allow 5 s, which is too little for an emulated machine.
+# Shell commands that succeed where a drop-in allows what it is for, as the unit's user. A device is a file that the test
+# makes: one that is let through says that there is no such device, if there is none behind it.
+DEVICE = """said=$( (exec 3<>{0}) 2>&1 ) && exit 0
+case "$said" in *"No such device"*) exit 0;; esac
+exit 1"""
+# A connection to itself, in the network of the machine.
+NETWORK = """test "$(readlink /proc/self/ns/net)" = "$(cat /mnt/network)" || exit 1
+exec perl -MSocket -e 'socket(S, PF_INET, SOCK_STREAM, 0) && bind(S, sockaddr_in(0, INADDR_LOOPBACK)) && listen(S, 1)
+  && socket(C, PF_INET, SOCK_STREAM, 0) && connect(C, getsockname(S)) or exit 1'"""
+FILES = "touch /srv/merlin/probe"
+WINDOW = "test \"$DISPLAY\" = :0 && test -e /tmp/.X11-unix/X0"
+MAIL = "/usr/local/bin/probe-touch /var/mail/probe"  # setuid
+DROP_INS = (
+    ("merlin-devices", "network.conf", NETWORK),
+    ("merlin-devices", "gpio.conf", DEVICE.format("/dev/probe-gpio")),
+    ("merlin-devices", "input.conf", DEVICE.format("/dev/probe-input")),
+    ("merlin-devices", "files.conf", FILES),
+    ("merlin-wall", "network.conf", NETWORK),
+    ("merlin-wall", "gpu.conf", DEVICE.format("/dev/probe-gpu")),
+    ("merlin-wall", "displays.conf", DEVICE.format("/dev/probe-display")),
+    ("merlin-wall", "window.conf", WINDOW),
+    ("merlin-wall", "files.conf", FILES),
+    ("merlin-alarms", "mail.conf", MAIL),
+)
+# What the probes look for, and how it is taken away again. Numbers of devices: input 13, graphics cards 226.
+PROBED = """mkdir -p /srv/merlin /tmp/.X11-unix && chown merlin:merlin /srv/merlin && touch /tmp/.X11-unix/X0
+readlink /proc/self/ns/net >/mnt/network
+install -m 4755 /usr/bin/touch /usr/local/bin/probe-touch
+gpio=$(sed -n 's/^ *\\([0-9]*\\) gpiochip$/\\1/p' /proc/devices)
+mknod -m 660 /dev/probe-gpio c $gpio 0 && chgrp gpio /dev/probe-gpio
+mknod -m 660 /dev/probe-input c 13 95 && chgrp input /dev/probe-input
+mknod -m 660 /dev/probe-gpu c 226 191 && chgrp render /dev/probe-gpu
+mknod -m 660 /dev/probe-display c 226 63 && chgrp video /dev/probe-display"""
+NOT_PROBED = """systemctl reset-failed 'probe*'; rm -rf /srv/merlin /tmp/.X11-unix /usr/local/bin/probe-touch /var/mail/probe /dev/probe-* /run/systemd/system/probe*
+systemctl daemon-reload"""
+
+
+# An emulated machine takes seconds for what the watchdogs of the units allow 5 s for.
 SLOW = "[Service]\nWatchdogSec=120\n"
 
 
@@ -68,6 +107,22 @@ def debootstrap(folder, package):
     os.unlink(f"{folder}/root/usr/sbin/policy-rc.d")
 
 
+def start_emulator(package):
+    """Starts the package's own emulator of a ball on the host. Arguments of QEMU for its line; none where it does not run."""
+    global EMULATOR
+    unpacked, link = f"{OPTIONS.work}/package-unpacked", f"{OPTIONS.work}/package-ball"
+    shutil.rmtree(unpacked, ignore_errors=True)
+    subprocess.run(["dpkg-deb", "-x", package, unpacked], check=True)
+    command = [f"{unpacked}/usr/bin/merlin", "emulate", "spaceball", "--link", link, "--script", "turning"]
+    emulator = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    if not emulator.stdout.readline():  # else it is there
+        emulator.wait()
+        emulator.stdout.close()
+        return []
+    EMULATOR = emulator
+    return ["-chardev", f"serial,id=ball-line,path={link}", "-device", "qemu-xhci,id=usb"]
+
+
 def setUpModule():
     global MACHINE
     package = glob.glob(f"{OPTIONS.packages}/merlin_*.deb")[0]
@@ -85,8 +140,10 @@ def setUpModule():
             os.makedirs(f"{units}/{unit}.service.d")
             with open(f"{units}/{unit}.service.d/slow.conf", "w", encoding="utf-8") as file:
                 file.write(SLOW)
-        MACHINE = vm.Vm(f"{OPTIONS.work}/package-machine", f"{MODE[0]}x{MODE[1]}", root=root)
+        MACHINE = vm.Vm(f"{OPTIONS.work}/package-machine", f"{MODE[0]}x{MODE[1]}", root=root, extra=start_emulator(package),
+                        modules=("xhci-pci", "ftdi_sio"))
     except vm.Missing as missing:
+        tearDownModule()
         print(f"test-vm-package: skipped: {missing}")
         raise unittest.SkipTest(str(missing)) from missing
     shutil.copy(package, f"{MACHINE.shared}/merlin.deb")
@@ -95,6 +152,10 @@ def setUpModule():
 def tearDownModule():
     if MACHINE:
         MACHINE.close()
+    if EMULATOR:
+        EMULATOR.kill()
+        EMULATOR.wait()
+        EMULATOR.stdout.close()
 
 
 def state(unit):
@@ -153,6 +214,11 @@ def status():
     return json.loads(MACHINE.run("merlin status --json"))
 
 
+def ball():
+    """What `merlin status` says of it."""
+    return status().get("devices", {}).get("ball", {})
+
+
 def frames():
     """The wall's number of frames. Waits for it, since on a busy machine the status may lack it for a moment."""
     return vm.until(lambda: status().get("frames"), "the wall's status")
@@ -164,6 +230,31 @@ def lit(picture):
     every = 3 * 16  # one pixel in 16 is enough
     pixels = zip(data[0::every], data[1::every], data[2::every])
     return sum(1 for pixel in pixels if max(pixel) > 48) * every / len(data)
+
+
+def drop_in_file(unit, name):
+    """Where it is installed: that of the installed configuration's displays is in effect."""
+    folder = "/usr/lib/systemd/system" if name == "displays.conf" else "/usr/share/merlin"
+    return f"{folder}/{unit}.service.d/{name}"
+
+
+def are_allowed(cases):
+    """Of (unit, drop-in or None, command): whether the command succeeds as a service with all restrictions of the unit
+    and of its drop-in."""
+    own = "Restart|RestartSec|WatchdogSec|ExecReload|FileDescriptorStoreMax|PartOf|Wants|After|RuntimeDirectory|StateDirectory"
+    script = ["set -e", "cd /run/systemd/system"]
+    for i, (unit, drop_in, command) in enumerate(cases):
+        with open(f"{MACHINE.shared}/probe{i}", "w", encoding="utf-8") as file:
+            file.write(command + "\n")
+        script.append(f"sed -E -e '/^({own})=/d' -e 's/^Type=.*/Type=oneshot/' -e 's|^ExecStart=.*|ExecStart=/bin/sh /mnt/probe{i}|' "
+                      f"/usr/lib/systemd/system/{unit}.service >probe{i}.service")
+        if drop_in:
+            script.append(f"mkdir probe{i}.service.d && cp {drop_in_file(unit, drop_in)} probe{i}.service.d/")
+    with open(f"{MACHINE.shared}/make-probes", "w", encoding="utf-8") as file:
+        file.write("\n".join([*script, "systemctl daemon-reload", ""]))
+    MACHINE.run("sh /mnt/make-probes")
+    mark = "was allowed"
+    return [mark in MACHINE.run(f"systemctl start probe{i} 2>/dev/null && echo {mark}", succeeds=False) for i in range(len(cases))]
 
 
 class Package(unittest.TestCase):
@@ -268,6 +359,33 @@ class Package(unittest.TestCase):
         self.assertEqual(status()["services"]["configuration"]["health"], "failed")
         MACHINE.run("cp /root/good.json /etc/merlin/merlin.json; systemctl reload merlin-devices merlin-wall")
         vm.until(lambda: status()["services"]["configuration"]["health"] == "ok", "the file is in effect again")
+
+    def test_5b_each_drop_in_allows_what_it_is_for_and_the_unit_alone_does_not(self):
+        shipped = MACHINE.run("(cd /usr/share/merlin && ls -d *.service.d/*; cd /usr/lib/systemd/system && ls -d merlin-*.service.d/*)")
+        self.assertEqual(sorted(shipped.split()), sorted(f"{unit}.service.d/{name}" for unit, name, _ in DROP_INS))
+        self.addCleanup(MACHINE.run, NOT_PROBED)
+        MACHINE.run(f"(set -e\n{PROBED}\n)")
+        units = sorted({unit for unit, _, _ in DROP_INS})
+        found = are_allowed([(unit, None, "exit 0") for unit in units] + [(unit, None, probe) for unit, _, probe in DROP_INS]
+                            + [(unit, name, probe) for unit, name, probe in DROP_INS])
+        self.assertEqual(found[:len(units)], [True] * len(units), "units under which no probe runs")
+        alone, with_it = found[len(units):len(units) + len(DROP_INS)], found[len(units) + len(DROP_INS):]
+        names = [f"{unit}/{name}" for unit, name, _ in DROP_INS]
+        self.assertEqual([name for name, allowed in zip(names, alone) if allowed], [], "allowed without the drop-in")
+        self.assertEqual([name for name, allowed in zip(names, with_it) if not allowed], [],
+                         MACHINE.run("journalctl -u 'probe*' -n 40 --no-pager"))
+
+    def test_5c_a_serial_adapter_that_is_plugged_in_late_is_read_under_the_unit(self):
+        if EMULATOR is None:
+            self.skipTest("the package's merlin does not run on this host")
+        config = json.dumps({"devices": [{"name": "ball", "driver": "spaceball", "port": "serial:/dev/ttyUSB0"}]})
+        MACHINE.run(f"mkdir -p /etc/merlin/conf.d; echo '{config}' >/etc/merlin/conf.d/91-late.json; systemctl restart merlin-devices")
+        vm.until(lambda: ball().get("health") == "absent", "the ball is not there yet")
+        MACHINE.ask("device_add", **BALL)
+        vm.until(lambda: ball().get("health") == "ok", "the ball streams")
+        MACHINE.ask("device_del", id="ball")
+        vm.until(lambda: ball().get("health") == "absent", "the ball is gone")
+        MACHINE.run("rm /etc/merlin/conf.d/91-late.json; systemctl restart merlin-devices")
 
     def test_6_stopped_the_displays_are_the_consoles_again(self):
         MACHINE.run("systemctl stop merlin.target")

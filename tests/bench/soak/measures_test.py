@@ -1,8 +1,11 @@
-"""Tests that a soak finds memory and descriptors that grow, and finds nothing if they do not."""
+"""That a soak finds what it is for: memory and descriptors that grow, and nothing where they do not; and that it says when nothing happened."""
 import math
 import random
+import types
 import unittest
 
+import soak  # the first, since it says where the others are
+import figures
 from measures import Frames, Sample, descriptors, grew, memory_slope
 
 HOUR = 3600
@@ -73,6 +76,16 @@ class LateFrames(unittest.TestCase):
         frames.add(70, 8, 50, 2)
         frames.add(200, 8, 150, 3)
         self.assertEqual(frames.first_and_rest(), ([1000, 6], [150, 3]))
+
+
+class ADay(unittest.TestCase):
+    def test_without_people_or_faults_is_no_soak(self):
+        people = types.SimpleNamespace(visits=1)
+        soak.expect_lived(people, {"bad_reload": 1, "person_commands": 9})
+        for visits, done in ((0, {"bad_reload": 1}), (1, {"person_commands": 9})):
+            people.visits = visits
+            with self.assertRaises(figures.DidNotRun):
+                soak.expect_lived(people, done)
 
 
 if __name__ == "__main__":

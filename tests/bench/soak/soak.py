@@ -226,6 +226,14 @@ def report_events(soak, report):
     report.more["events"] = soak.events
 
 
+def expect_lived(people, done):
+    """A day on which nobody came or nothing happened says nothing about the wall."""
+    if not people.visits > 0:
+        did_not_run("the people", "nobody came", "see day.py")
+    if not any(done.get(act.__name__) for act in (*day.ACTS, *day.KILLS.values()) if act is not day.person_commands):
+        did_not_run("the day", "no fault and no reload happened", "soak for longer, or with a lower --every")
+
+
 def measure(options, report):
     wall = Wall(options)
     soak = Soak(options, wall)
@@ -239,6 +247,7 @@ def measure(options, report):
         if options.keep:
             subprocess.run(["cp", "-r", wall.place.folder, options.keep], check=False)
         wall.place.close()
+    expect_lived(soak.day.people, soak.day.done)
     disk = "a file system of its own" if soak.day.disk.mounted else "a limit on the size of its files"
     report.text(f"soak of {options.seconds:.0f} s, seed {options.seed}, {options.rate} Hz; the full disk is {disk}; "
                 f"warm-up {options.warm_up:.0f} s after each start")
