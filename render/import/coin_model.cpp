@@ -344,7 +344,8 @@ Result<std::string> unpacked(const std::string& path) {
   const bool marked = beginning && beginning->text().starts_with('\xEF');
   if (!gzip && !marked) return std::string();
   const auto file = MappedFile::open(path);
-  if (!file) throw std::bad_alloc();  // it could be read, so memory is what lacks
+  if (!file && file.error().code == Errc::kNoMemory) throw std::bad_alloc();
+  if (!file) return Error{file.error().code, "could be read once, and then no more; try again"};
   if (!gzip) return std::string(file->text());
   auto text = mesh::gunzip(file->text(), kMost);
   if (text && text->empty()) return Error{Errc::kMalformed, "gzip: nothing is packed"};

@@ -458,6 +458,16 @@ TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
   for (int i = 0; i < 20'000; ++i) large += "Translation { translation 1 0 0 } USE A\n";
   expectRefused("large.iv", large, "takes more memory than the 150 MB that are allowed (--memory,",
                 {"--memory", "150M"});
+  // A file of more bytes than may be used, of which only the first are there.
+  writeText(dir_ / "large.glb", std::string("glTF\2\0\0\0", 8));
+  std::filesystem::resize_file(dir_ / "large.glb", std::size_t{101} << 20);
+  const Outcome outcome = run(
+      {kMerlin, "mesh", "import", dir_ / "large.glb", "-o", dir_ / "x.ply", "--memory", "100M"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("large.glb: reading it takes more memory than the 100 MB that are "
+                                "allowed (--memory, by default the free memory)"),
+            std::string::npos)
+      << outcome.output;
 #endif
 }
 
