@@ -32,8 +32,8 @@ Result<Imported> importPicture(const Request& request, const Reports& reports) {
 
 Result<Imported> importModel(const Request& request, const Reports& reports) {
   const std::string name = "model.ply";
-  auto built =
-      render::import::readModel({request.input, request.format, request.folder}, reports.progress);
+  auto built = render::import::readModel(
+      {request.input, request.format, request.folder, request.beside}, reports.progress);
   if (!built) return built.error();
   const render::mesh::Mesh& mesh = built->mesh;
   if (const auto valid = validate(mesh); !valid)

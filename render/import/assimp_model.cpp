@@ -70,7 +70,7 @@ class SceneReader {
       : scene_(scene),
         linear_(file.format == "gltf" || file.format == "glb"),
         amf_(file.format == "amf"),
-        textures_(mesh::folderOf(file.path)),
+        textures_(file),
         on_triangles_(on_triangles) {
     for (unsigned m = 0; m < scene.mNumMaterials; ++m)
       materials_.push_back(materialOf(*scene.mMaterials[m]));
@@ -87,7 +87,7 @@ class SceneReader {
     }
     BuiltModel built = std::move(builder_).finish();
     built.origin = origin_;
-    const auto& notes = textures_.notes();
+    const auto notes = textures_.notes();
     built.notes.insert(built.notes.end(), notes.begin(), notes.end());
     if (transforms_ > 0)
       built.notes.push_back(fmt::format(

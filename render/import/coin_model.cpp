@@ -105,7 +105,7 @@ std::vector<Node*> nodesOf(SoNode* root) {
 class GraphReader {
  public:
   GraphReader(const ModelFile& file, const OnTriangles& on_triangles)
-      : textures_(mesh::folderOf(file.path)), on_triangles_(on_triangles) {}
+      : textures_(file), on_triangles_(on_triangles) {}
 
   Result<BuiltModel> read(SoNode* root) {
     prepareTextures(root);
@@ -126,7 +126,7 @@ class GraphReader {
     const std::size_t inlines =
         nodesOf<SoVRMLInline>(root).size() + nodesOf<SoWWWInline>(root).size();
     BuiltModel built = std::move(builder_).finish();
-    const auto& notes = textures_.notes();
+    const auto notes = textures_.notes();
     built.notes.insert(built.notes.end(), notes.begin(), notes.end());
     if (others_ > 0) built.notes.push_back(fmt::format("left out: {} lines and points", others_));
     if (unmade_ > 0)

@@ -123,10 +123,10 @@ std::string le(float x) {
 }
 
 // The same with a picture, whose coordinates are to be scaled.
-std::string threeDsWithPicture(float scale) {
+std::string threeDsWithPicture(float scale, const std::string& picture = "t.png") {
   const std::string named("m\0", 2);
   const std::string material =
-      chunk(0xA000, named) + chunk(0xA200, chunk(0xA300, std::string("t.png\0", 6)) +
+      chunk(0xA000, named) + chunk(0xA200, chunk(0xA300, picture + '\0') +
                                                chunk(0xA354, le(scale)) + chunk(0xA356, le(scale)));
   std::string vertices, faces, coordinates, of_material = named;
   for (std::string* counted : {&vertices, &coordinates}) appendLe16(*counted, 3);
@@ -268,6 +268,24 @@ TEST_F(ModelImport, AScaledTextureOf3dsIsLeftAsItIsWithANote) {
   EXPECT_NE(report("a.3ds", threeDsWithPicture(0.25F))["notes"].dump().find(
                 "left out: the scales, offsets and rotations of 1 textures"),
             std::string::npos);
+}
+
+// Names of DOS come in capitals, whatever the file beside the model is called.
+TEST_F(ModelImport, ATextureIsFoundWhoseNameDiffersInCapitals) {
+  const std::vector<std::uint8_t> red = {255, 0, 0, 255};
+  fs::create_directory(dir_ / "Maps");
+  ASSERT_TRUE(render::image::writePng(dir_ / "Maps/T.png", 1, 1, red));
+  std::string model = threeDsWithPicture(1, "MAPS\\T.PNG");
+  const auto found = report("a.3ds", model);
+  EXPECT_GT(found["texture_bytes"], 60) << found;
+  EXPECT_NE(found["notes"].dump().find("/Maps/T.png: is read in place of MAPS/T.PNG, which is not "
+                                       "there and differs only in capitals\""),
+            std::string::npos)
+      << found["notes"];
+  ASSERT_TRUE(render::image::writePng(dir_ / "T.PNG", 1, 1, red));
+  const auto exact = report("a.3ds", threeDsWithPicture(1, "T.PNG"));
+  EXPECT_GT(exact["texture_bytes"], 60) << exact;
+  EXPECT_EQ(exact["notes"].dump().find("capitals"), std::string::npos) << exact["notes"];
 }
 
 TEST_F(ModelImport, GltfColoursComeBackAsTheyWere) {

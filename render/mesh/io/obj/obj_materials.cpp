@@ -33,12 +33,12 @@ class Library {
   // opens  whether images are read; else only their paths are kept
   Library(const std::vector<std::string>& names, std::string folder,
           std::vector<std::string>& notes, bool opens)
-      : folder_(std::move(folder)), notes_(notes), materials_(names.size()), opens_(opens) {
+      : files_(std::move(folder)), notes_(notes), materials_(names.size()), opens_(opens) {
     for (std::size_t i = 0; i < names.size(); ++i) numbers_.emplace(names[i], i);
   }
 
   void read(const std::string& name) {
-    const auto file = MappedFile::open(pathBeside(folder_, name));
+    const auto file = MappedFile::open(files_.find(name));
     if (!file) {
       notes_.push_back(file.error().what + "; its materials are left out");
       return;
@@ -56,7 +56,10 @@ class Library {
     }
   }
 
-  std::vector<ObjMaterial> take() { return std::move(materials_); }
+  std::vector<ObjMaterial> take() {
+    if (std::string note = files_.note(); !note.empty()) notes_.push_back(std::move(note));
+    return std::move(materials_);
+  }
 
   std::vector<std::string> paths() const {
     std::vector<std::string> paths;
@@ -98,7 +101,7 @@ class Library {
       }
       rest = trimmed(after);
     }
-    material.picture = pictureOf(pathBeside(folder_, rest));
+    material.picture = pictureOf(files_.find(rest));
   }
 
   std::shared_ptr<const image::ImageFile> pictureOf(const std::string& path) {
@@ -115,7 +118,7 @@ class Library {
   }
 
   std::map<std::string, std::size_t, std::less<>> numbers_;  // by name
-  std::string folder_;
+  CompanionFinder files_;
   std::vector<std::string>& notes_;
   std::vector<ObjMaterial> materials_;
   bool opens_;
