@@ -4,6 +4,7 @@
 //
 // reads, median-filters, triangulates and writes so many times, and prints the medians of the steps
 // as one JSON object [ms]. It has no filter for spikes and computes no normals, so it does less.
+// Why it is the only peer: render/range/README.md.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
