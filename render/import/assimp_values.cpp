@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -87,6 +88,7 @@ OwnValues takeOwnValues(GltfPromise& promised, const aiScene& scene) {
     else
       keepCommon(of_mesh[m]->features, common);
   }
+  if (all.rows > std::numeric_limits<std::uint32_t>::max()) return {};  // rows have 32 bits
   for (const GltfFeature& f : common) {
     mesh::Feature& made = all.features.emplace_back(mesh::Feature{f.name, f.dimension, {}});
     made.values.reserve(all.rows * f.dimension);

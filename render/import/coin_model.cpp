@@ -6,6 +6,7 @@
 #include <new>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <Inventor/SbMatrix.h>
@@ -93,11 +94,12 @@ std::vector<Node*> nodesOf(SoNode* root) {
   search.setSearchingAll(TRUE);
   search.apply(root);
   std::vector<Node*> nodes;
+  std::unordered_set<const SoNode*> known;
   for (int i = 0; i < search.getPaths().getLength(); ++i) {
     // The whole path: nodes inside VRML's nodes are hidden from others.
     auto* const path = static_cast<SoFullPath*>(search.getPaths()[i]);
     auto* const node = static_cast<Node*>(path->getTail());
-    if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+    if (known.insert(node).second) nodes.push_back(node);
   }
   return nodes;
 }

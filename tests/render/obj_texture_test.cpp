@@ -403,6 +403,18 @@ TEST_F(TexturedObj, MayBeAPlyWhosePictureDiffersInCapitals) {
   EXPECT_EQ(mesh::meshFileSize(dir_ / "a.ply")->pictures, Names{dir_ / "four.png"});
 }
 
+TEST_F(TexturedObj, NotesAreFewWhateverItsMaterialsLack) {
+  std::string materials, text = std::string("mtllib a.mtl\n") + kSquare + kMiddles;
+  for (int m = 0; m < 100; ++m) {
+    materials += fmt::format("newmtl m{0}\nmap_Kd none{0}.png\n", m);
+    text += fmt::format("usemtl m{}\nf 1/1 2/2 4/4\n", m);
+  }
+  test::writeText(dir_ / "a.mtl", materials);
+  const auto loaded = read(text);
+  ASSERT_EQ(loaded.notes.size(), 17u);
+  EXPECT_EQ(loaded.notes.back(), "84 more notes about its materials are left out");
+}
+
 // A pipe without a writer: the reader must not block on it.
 TEST_F(TexturedObj, WaitsForNoPipe) {
   ASSERT_EQ(::mkfifo((dir_ / "x.mtl").c_str(), 0600), 0);

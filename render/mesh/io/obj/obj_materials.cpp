@@ -40,7 +40,7 @@ class Library {
   void read(const std::string& name) {
     const auto file = MappedFile::open(files_.find(name));
     if (!file) {
-      notes_.push_back(file.error().what + "; its materials are left out");
+      note(file.error().what + "; its materials are left out");
       return;
     }
     ObjMaterial* material = nullptr;  // null: a material that no face uses
@@ -57,7 +57,10 @@ class Library {
   }
 
   std::vector<ObjMaterial> take() {
-    if (std::string note = files_.note(); !note.empty()) notes_.push_back(std::move(note));
+    if (std::string other = files_.note(); !other.empty()) notes_.push_back(std::move(other));
+    if (noted_ > kMostNotes)
+      notes_.push_back(
+          fmt::format("{} more notes about its materials are left out", noted_ - kMostNotes));
     return std::move(materials_);
   }
 
@@ -68,6 +71,12 @@ class Library {
   }
 
  private:
+  static constexpr std::size_t kMostNotes = 16;
+
+  void note(std::string text) {
+    if (++noted_ <= kMostNotes) notes_.push_back(std::move(text));
+  }
+
   ObjMaterial* find(std::string_view name) {
     const auto at = numbers_.find(name);
     return at == numbers_.end() || name.empty() ? nullptr : &materials_[at->second];
@@ -89,7 +98,7 @@ class Library {
       int words = wordsOf(option);
       if (words < 0) break;  // a file name that begins with '-'
       if (option == "-s" || option == "-o")
-        notes_.push_back(fmt::format("map_Kd {}: the option {} is ignored", excerpt(line), option));
+        note(fmt::format("map_Kd {}: the option {} is ignored", excerpt(line), option));
       float number = 0;
       for (bool first = true; words > 0; --words, first = false) {
         std::string_view next = after;
@@ -112,7 +121,7 @@ class Library {
     if (auto read = reading_.read(path))
       picture = std::make_shared<const image::ImageFile>(*std::move(read));
     else
-      notes_.push_back(read.error().what + "; its colours are left out");
+      note(read.error().what + "; its colours are left out");
     pictures_[path] = picture;
     return picture;
   }
@@ -120,6 +129,7 @@ class Library {
   std::map<std::string, std::size_t, std::less<>> numbers_;  // by name
   CompanionFinder files_;
   std::vector<std::string>& notes_;
+  std::size_t noted_ = 0;
   std::vector<ObjMaterial> materials_;
   bool opens_;
   TexturePictures reading_;
