@@ -377,8 +377,8 @@ TEST_F(TexturedObj, PrefersTheNameAsItIsWrittenAndThenTheFirst) {
   const auto diffuseOf = [&] {
     const auto loaded = read(std::string("mtllib a.mtl\nmtllib B.mtl\n") + kSquare + kMiddles +
                              "usemtl m\nf 1/1 2/2 4/4 3/3\n");
-    const Floats& colour = loaded.mesh.find("colour")->values;
-    return Floats(colour.begin(), colour.begin() + 3);
+    const mesh::Feature* const colour = loaded.mesh.find("colour");
+    return colour ? Floats(colour->values.begin(), colour->values.begin() + 3) : Floats();
   };
   EXPECT_EQ(diffuseOf(), (Floats{0, 0, 1})) << "of b.mtl, which is read last";
   test::writeText(dir_ / "B.MTL", "newmtl m\nKd 1 1 1\n");
