@@ -153,6 +153,10 @@ Result<MappedFile> MappedFile::open(const std::string& path) {
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) return MappedFile();
   void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd.get(), 0);
+  if (data == MAP_FAILED && errno == ENOMEM)
+    return Error{Errc::kNoMemory, fmt::format("{}: its {} bytes take more memory than this program "
+                                              "may use (a limit such as ulimit -v)",
+                                              path, size)};
   if (data == MAP_FAILED) return fileError(path, errno);
   return MappedFile(static_cast<const std::byte*>(data), size);
 }

@@ -23,6 +23,7 @@ enum class Errc {
   kInvalidArgument,  // a value is out of range
   kUnsupported,      // valid, but not available here
   kBusy,             // another process uses it
+  kNoMemory,         // more memory is needed than this process may have
 };
 
 struct [[nodiscard]] Error {

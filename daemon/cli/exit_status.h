@@ -26,6 +26,7 @@ inline int exitStatus(const Error& error) {
     case Errc::kBusy: return kExitBusy;
     case Errc::kTimeout:
     case Errc::kClosed:
+    case Errc::kNoMemory:
     case Errc::kIo: break;
   }
   return kExitFailed;

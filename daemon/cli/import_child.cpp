@@ -94,7 +94,7 @@ void ImportReport::line(std::string_view text) {
     facts_ = text;
   } else if (what == "failed") {
     const int code = number<int>(word(text));
-    const bool known = code >= 0 && code <= static_cast<int>(Errc::kBusy);
+    const bool known = code >= 0 && code <= static_cast<int>(Errc::kNoMemory);
     result_ = Error{known ? static_cast<Errc>(code) : Errc::kIo, std::string(text)};
   }
 }

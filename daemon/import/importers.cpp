@@ -1,9 +1,7 @@
 #include "daemon/import/importers.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/import/sandbox.h"
 #include "render/import/grid_import.h"
@@ -34,8 +32,8 @@ Result<Imported> importPicture(const Request& request, const Reports& reports) {
 
 Result<Imported> importModel(const Request& request, const Reports& reports) {
   const std::string name = "model.ply";
-  auto built =
-      render::import::readModel({request.input, request.format, request.folder}, reports.progress);
+  auto built = render::import::readModel(
+      {request.input, request.format, request.folder, request.beside}, reports.progress);
   if (!built) return built.error();
   const render::mesh::Mesh& mesh = built->mesh;
   if (const auto valid = validate(mesh); !valid)
@@ -63,13 +61,11 @@ Result<Imported> importGrid(const Request& request, const Reports& reports) {
   return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
 }
 
-// A file that can be read but not mapped is larger than what the libraries leave of the allowed
-// memory.
+// A file may be larger than what the libraries leave of the allowed memory.
 Result<render::points::PointCloud> readPoints(const std::string& path) {
-  const auto file = MappedFile::open(path);
-  if (!file && file.error().code == Errc::kIo && ::access(path.c_str(), R_OK) == 0)
-    return render::import::needsMoreMemory(path);
-  return render::points::readCloud(path);
+  auto cloud = render::points::readCloud(path);
+  if (!cloud && cloud.error().code == Errc::kNoMemory) return render::import::needsMoreMemory(path);
+  return cloud;
 }
 
 #if defined(MERLIN_POINTS)

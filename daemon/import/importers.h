@@ -27,6 +27,8 @@ struct Request {
   std::string hdu;       // of a FITS file: number or name of the image; empty: the first
   std::string variable;  // of a file of several maps: number or name of one; empty: none is named
   render::points::SurfaceSettings surface{};  // of a point cloud
+  std::vector<std::string>
+      beside{};  // absolute paths of the files beside the input, as Importer::beside has them
 };
 
 // What an importer tells while it works.

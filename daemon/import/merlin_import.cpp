@@ -138,14 +138,14 @@ Result<Imported> runWithinMemory(const Importer& importer, const Request& reques
   }
 }
 
-int run(const Importer& importer, const char* program, const Options& options) {
+int run(const Importer& importer, const char* program, Options options) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with the program that started this one
   ::setenv("TMPDIR", options.request.folder.c_str(), 1);
   if (const auto prepared = importer.prepare(program); !prepared) return failed(prepared.error());
   std::vector<std::string> inputs = {options.request.input};
   if (importer.beside) {
-    const auto beside = importer.beside(options.request.input);
-    inputs.insert(inputs.end(), beside.begin(), beside.end());
+    options.request.beside = importer.beside(options.request.input);
+    inputs.insert(inputs.end(), options.request.beside.begin(), options.request.beside.end());
   }
   const auto closed = closeSandbox(inputs, options.request.folder, options.limits);
   if (!closed) return failed(closed.error());

@@ -17,6 +17,7 @@
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "render/import/assimp_folder.h"
+#include "render/import/assimp_values.h"
 #include "render/import/gltf_check.h"
 #include "render/import/gltf_values.h"
 #include "render/import/model_file.h"
@@ -64,30 +65,29 @@ struct Material {
 
 class SceneReader {
  public:
-  // `values`: features of the vertices of the only mesh; empty if there are none.
   SceneReader(const aiScene& scene, const ModelFile& file, const OnTriangles& on_triangles,
-              std::vector<mesh::Feature> values)
+              OwnValues own)
       : scene_(scene),
         linear_(file.format == "gltf" || file.format == "glb"),
         amf_(file.format == "amf"),
-        textures_(mesh::folderOf(file.path)),
+        textures_(file),
         on_triangles_(on_triangles) {
     for (unsigned m = 0; m < scene.mNumMaterials; ++m)
       materials_.push_back(materialOf(*scene.mMaterials[m]));
-    if (values.empty()) return;
-    rows_ = firstEqualRows(values, scene.mMeshes[0]->mNumVertices);
-    builder_.takeValues(std::move(values));
+    if (own.features.empty()) return;
+    rows_ = firstEqualRows(own.features, own.rows);
+    first_rows_ = std::move(own.first_rows);
+    builder_.takeValues(std::move(own.features));
   }
 
   BuiltModel read() {
     findNodes();
     for (const auto& [node, to_model] : nodes_) {
-      for (unsigned m = 0; m < node->mNumMeshes; ++m)
-        addMesh(*scene_.mMeshes[node->mMeshes[m]], to_model);
+      for (unsigned m = 0; m < node->mNumMeshes; ++m) addMesh(node->mMeshes[m], to_model);
     }
     BuiltModel built = std::move(builder_).finish();
     built.origin = origin_;
-    const auto& notes = textures_.notes();
+    const auto notes = textures_.notes();
     built.notes.insert(built.notes.end(), notes.begin(), notes.end());
     if (transforms_ > 0)
       built.notes.push_back(fmt::format(
@@ -279,7 +279,6 @@ class SceneReader {
   Corner cornerOf(const aiMesh& mesh, const Material& material, const aiColor4D* colour,
                   unsigned v) const {
     Corner corner;
-    if (!rows_.empty()) corner.row = rows_[v];
     corner.colour = colour ? screenColour(*colour * material.factor) : material.colour;
     if (material.texcoords < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
         mesh.mTextureCoords[material.texcoords]) {
@@ -290,7 +289,8 @@ class SceneReader {
     return corner;
   }
 
-  void addMesh(const aiMesh& mesh, const aiMatrix4x4& to_model) {
+  void addMesh(unsigned number, const aiMatrix4x4& to_model) {
+    const aiMesh& mesh = *scene_.mMeshes[number];
     Material material;
     if (mesh.mMaterialIndex < materials_.size()) material = materials_[mesh.mMaterialIndex];
     const bool mapped = material.texcoords < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
@@ -301,6 +301,7 @@ class SceneReader {
     coloured_pictures_ += hasColouredPicture(mesh, material);
     morphs_ = morphs_ || mesh.mNumAnimMeshes > 0;
     const std::vector<aiVector3D> at = positionsOf(mesh, to_model);
+    const std::size_t first_row = rows_.empty() ? 0 : first_rows_[number];
     const bool mirrored = mesh.mNumBones == 0 && to_model.Determinant() < 0;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
@@ -313,6 +314,7 @@ class SceneReader {
         const unsigned v = face.mIndices[mirrored ? 2 - k : k];
         if (v >= mesh.mNumVertices) continue;  // ValidateDataStructure refuses it
         corners[k] = cornerOf(mesh, material, colours ? colours + v : nullptr, v);
+        if (first_row + v < rows_.size()) corners[k].row = rows_[first_row + v];
         corners[k].position = {at[v].x, at[v].y, at[v].z};
       }
       builder_.add(corners);
@@ -332,18 +334,36 @@ class SceneReader {
   std::map<std::string, aiMatrix4x4> by_name_;
   mesh::Origin origin_{};
   ModelBuilder builder_;
-  std::vector<std::uint32_t> rows_;  // by vertex: its row in the builder's values; or empty
+  // By vertex of all meshes: its row in the builder's values, or empty; and by mesh, its first one.
+  std::vector<std::uint32_t> rows_;
+  std::vector<std::size_t> first_rows_;
   std::size_t others_ = 0, meshes_ = 0, transforms_ = 0, coloured_pictures_ = 0;
   bool morphs_ = false;
 };
 
 bool isGltf(const ModelFile& file) { return file.format == "gltf" || file.format == "glb"; }
 
-Result<GltfPromise> checkFirst(const ModelFile& file) {
-  if (!isGltf(file)) return GltfPromise{};
-  const auto bytes = MappedFile::open(file.path);
-  if (!bytes) return GltfPromise{};  // assimp will report it
-  return checkGltf(bytes->text());
+// A glTF file, and what its JSON says; the latter refers to the former.
+struct CheckedGltf {
+  MappedFile file{};
+  std::optional<GltfBuffers> buffers{};
+  GltfPromise promised{};
+};
+
+Result<Ok> checkFirst(const ModelFile& file, CheckedGltf& checked) {
+  if (!isGltf(file)) return Ok{};
+  auto bytes = MappedFile::open(file.path);
+  if (!bytes) return Ok{};  // assimp will report it
+  checked.file = *std::move(bytes);
+  checked.buffers.emplace(checked.file.text(), mesh::folderOf(file.path));
+  auto promised = checkGltf(checked.file.text(), *checked.buffers);
+  if (!promised) return promised.error();
+  checked.promised = *std::move(promised);
+  if (checked.promised.own.empty()) {  // no room is taken beside assimp's
+    checked.buffers.reset();
+    checked.file = MappedFile();
+  }
+  return Ok{};
 }
 
 // Matches each mesh with a primitive that has as many triangles. Returns the primitives that are
@@ -391,25 +411,6 @@ Result<Ok> checkTriangles(std::vector<GltfPrimitive> promised, const aiScene& sc
   return Ok{};
 }
 
-// Returns the file's own values of the vertices if the scene has a single mesh, with the same
-// vertices in the same order; otherwise nothing. Removes them from the promise's `own_attributes`.
-std::vector<mesh::Feature> takeOwnValues(GltfPromise& promised, const aiScene& scene) {
-  GltfValues& own = promised.own;
-  if (own.features.empty() || scene.mNumMeshes != 1) return {};
-  const aiMesh& mesh = *scene.mMeshes[0];
-  if (own.positions.size() != 3 * std::size_t{mesh.mNumVertices}) return {};
-  for (std::size_t v = 0; v < mesh.mNumVertices; ++v) {
-    const aiVector3D& at = mesh.mVertices[v];
-    const float* p = &own.positions[3 * v];
-    if (at.x != p[0] || at.y != p[1] || at.z != p[2]) return {};
-  }
-  for (mesh::Feature& f : own.features) {
-    promised.own_attributes.erase(oneLine(excerpt("_" + f.name)));
-    if (f.name == "colour") std::ranges::transform(f.values, f.values.begin(), toSrgb);
-  }
-  return std::move(own.features);
-}
-
 // Returns the unit that an AMF or 3MF file names; empty for other formats and for AMF files that
 // name none.
 std::string namedUnit(const ModelFile& file) {
@@ -453,8 +454,8 @@ std::string noteOf(const std::string& unit) {
 }  // namespace
 
 Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_triangles) {
-  auto promised = checkFirst(file);
-  if (!promised) return promised.error();
+  CheckedGltf checked;
+  if (const auto good = checkFirst(file, checked); !good) return good.error();
   Assimp::Importer importer;
   auto* const folder = new ModelFolder(file);  // the importer will own it
   importer.SetIOHandler(folder);
@@ -469,13 +470,16 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
   }
   if (!scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
     return Error{Errc::kUnsupported, "holds no surface"};
-  if (const auto whole = checkTriangles(std::move(promised->primitives), *scene); !whole)
+  if (const auto whole = checkTriangles(std::move(checked.promised.primitives), *scene); !whole)
     return whole.error();
-  auto values = takeOwnValues(*promised, *scene);
-  std::string replaced = mesh::replaceNonNumbers(values);
-  BuiltModel built = SceneReader(*scene, file, on_triangles, std::move(values)).read();
+  OwnValues own = takeOwnValues(checked.promised, *scene);
+  for (mesh::Feature& f : own.features) {
+    if (f.name == "colour") std::ranges::transform(f.values, f.values.begin(), toSrgb);
+  }
+  std::string replaced = mesh::replaceNonNumbers(own.features);
+  BuiltModel built = SceneReader(*scene, file, on_triangles, std::move(own)).read();
   if (!replaced.empty()) built.notes.push_back(std::move(replaced));
-  if (std::string note = noteOf(promised->own_attributes); !note.empty())
+  if (std::string note = noteOf(checked.promised.own_attributes); !note.empty())
     built.notes.push_back(std::move(note));
   if (const std::string unit = namedUnit(file); !unit.empty()) built.notes.push_back(noteOf(unit));
   return built;

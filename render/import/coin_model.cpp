@@ -6,6 +6,7 @@
 #include <new>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <Inventor/SbMatrix.h>
@@ -93,11 +94,12 @@ std::vector<Node*> nodesOf(SoNode* root) {
   search.setSearchingAll(TRUE);
   search.apply(root);
   std::vector<Node*> nodes;
+  std::unordered_set<const SoNode*> known;
   for (int i = 0; i < search.getPaths().getLength(); ++i) {
     // The whole path: nodes inside VRML's nodes are hidden from others.
     auto* const path = static_cast<SoFullPath*>(search.getPaths()[i]);
     auto* const node = static_cast<Node*>(path->getTail());
-    if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+    if (known.insert(node).second) nodes.push_back(node);
   }
   return nodes;
 }
@@ -105,7 +107,7 @@ std::vector<Node*> nodesOf(SoNode* root) {
 class GraphReader {
  public:
   GraphReader(const ModelFile& file, const OnTriangles& on_triangles)
-      : textures_(mesh::folderOf(file.path)), on_triangles_(on_triangles) {}
+      : textures_(file), on_triangles_(on_triangles) {}
 
   Result<BuiltModel> read(SoNode* root) {
     prepareTextures(root);
@@ -126,7 +128,7 @@ class GraphReader {
     const std::size_t inlines =
         nodesOf<SoVRMLInline>(root).size() + nodesOf<SoWWWInline>(root).size();
     BuiltModel built = std::move(builder_).finish();
-    const auto& notes = textures_.notes();
+    const auto notes = textures_.notes();
     built.notes.insert(built.notes.end(), notes.begin(), notes.end());
     if (others_ > 0) built.notes.push_back(fmt::format("left out: {} lines and points", others_));
     if (unmade_ > 0)
@@ -344,7 +346,8 @@ Result<std::string> unpacked(const std::string& path) {
   const bool marked = beginning && beginning->text().starts_with('\xEF');
   if (!gzip && !marked) return std::string();
   const auto file = MappedFile::open(path);
-  if (!file) throw std::bad_alloc();  // it could be read, so memory is what lacks
+  if (!file && file.error().code == Errc::kNoMemory) throw std::bad_alloc();
+  if (!file) return Error{file.error().code, "could be read once, and then no more; try again"};
   if (!gzip) return std::string(file->text());
   auto text = mesh::gunzip(file->text(), kMost);
   if (text && text->empty()) return Error{Errc::kMalformed, "gzip: nothing is packed"};

@@ -3,7 +3,6 @@
 #include <charconv>
 
 #include "daemon/base/files.h"
-#include "render/mesh/io/companion_files.h"
 
 namespace merlin::render::import {
 namespace {
@@ -24,10 +23,15 @@ std::string percentDecoded(const std::string& name) {
 
 }  // namespace
 
-std::string companionPath(const std::string& folder, const std::string& name) {
-  std::string path = mesh::pathBeside(folder, name);
+std::string companionPath(mesh::CompanionFinder& files, const std::string& name) {
+  std::string path = files.find(name);
   if (name.find('%') == std::string::npos || fileStamp(path)) return path;
-  return mesh::pathBeside(folder, percentDecoded(name));
+  return files.find(percentDecoded(name));
+}
+
+std::string companionPath(const std::string& folder, const std::string& name) {
+  mesh::CompanionFinder as_written(folder, {});
+  return companionPath(as_written, name);
 }
 
 }  // namespace merlin::render::import

@@ -3,11 +3,16 @@
 
 #include <string>
 
+#include "render/mesh/io/companion_files.h"
+
 namespace merlin::render::import {
 
 // Returns the path of the file that a model in `folder` calls `name`: the name as it is written or,
 // if there is no such file, decoded as a URI, in which "%20" is a blank. Neither can leave the
 // folder, since both pass through pathBeside() of render/mesh/io.
 std::string companionPath(const std::string& folder, const std::string& name);
+
+// The same, but names may also differ in upper and lower case, as `files` finds them.
+std::string companionPath(mesh::CompanionFinder& files, const std::string& name);
 
 }  // namespace merlin::render::import

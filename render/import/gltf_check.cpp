@@ -160,7 +160,7 @@ Result<Ok> checkMesh(const json& accessors, std::size_t number, const json& mesh
 
 }  // namespace
 
-Result<GltfPromise> checkGltf(std::string_view file) {
+Result<GltfPromise> checkGltf(std::string_view file, GltfBuffers& buffers) {
   GltfPromise all;
   const auto text = textOf(file);
   if (!text) return text.error();
@@ -175,7 +175,7 @@ Result<GltfPromise> checkGltf(std::string_view file) {
   for (std::size_t m = 0; m < (*meshes)->size(); ++m) {
     if (const auto good = checkMesh(**accessors, m, (**meshes)[m], all); !good) return good.error();
   }
-  if (file.starts_with("glTF")) all.own = ownValuesOf(model, file);
+  all.own = ownValuesOf(model, buffers);
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/bytes.h"
+#include "render/import/companion_path.h"
 #include "render/import/gltf_json.h"
 #include "render/mesh/io/feature_names.h"
 
@@ -56,12 +57,43 @@ std::string_view binaryChunk(std::string_view glb) {
   return glb.substr(at + kChunkHead, length);
 }
 
+// The value of a digit of base64 (RFC 4648); 64 for any other character.
+std::uint32_t digitOf(char c) {
+  if (c >= 'A' && c <= 'Z') return static_cast<std::uint32_t>(c - 'A');
+  if (c >= 'a' && c <= 'z') return static_cast<std::uint32_t>(c - 'a' + 26);
+  if (c >= '0' && c <= '9') return static_cast<std::uint32_t>(c - '0' + 52);
+  return c == '+' ? 62 : c == '/' ? 63 : 64;
+}
+
+// Returns the bytes of "data:...;base64,..."; nothing if the text is of another form.
+std::optional<std::string> decodedUri(std::string_view uri) {
+  constexpr std::string_view kCoded = ";base64";
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(kCoded))
+    return std::nullopt;
+  std::string_view text = uri.substr(comma + 1);
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t pending = 0, bits = 0;
+  for (const char c : text) {
+    const std::uint32_t digit = digitOf(c);
+    if (digit > 63) return std::nullopt;
+    pending = (pending << 6 | digit) & 0xFFFF;
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes += static_cast<char>(pending >> bits & 0xFF);
+  }
+  return bytes;
+}
+
 class ValueReader {
  public:
-  ValueReader(const json& model, std::string_view chunk) : model_(model), chunk_(chunk) {}
+  ValueReader(const json& model, GltfBuffers& buffers) : model_(model), buffers_(buffers) {}
 
   // Returns the bytes of an accessor of floats, `dimension` per element, without gaps; nothing if
-  // it is of another kind or goes beyond its view or the chunk.
+  // it is of another kind or goes beyond its view or its buffer.
   std::optional<std::string_view> bytesOf(const json* accessor, const char* type,
                                           std::size_t dimension) const {
     if (!accessor || unsignedOf(*accessor, "componentType") != kComponentFloat ||
@@ -85,45 +117,21 @@ class ValueReader {
   std::optional<std::string_view> viewOf(const json& accessor, std::size_t bytes) const {
     const json* view =
         elementOf(memberOf(model_, "bufferViews"), unsignedOf(accessor, "bufferView"));
-    if (!view || unsignedOf(*view, "buffer") != std::uint64_t{0}) return std::nullopt;
+    if (!view) return std::nullopt;
     if (memberOf(*view, "byteStride") && unsignedOf(*view, "byteStride") != bytes)
       return std::nullopt;
+    const auto number = unsignedOf(*view, "buffer");
+    const auto buffer = number ? buffers_.bytesOf(model_, *number) : std::nullopt;
     const auto offset = offsetOf(*view), length = unsignedOf(*view, "byteLength");
-    if (!offset || !length || *offset > chunk_.size() || *length > chunk_.size() - *offset)
+    if (!buffer || !offset || !length || *offset > buffer->size() ||
+        *length > buffer->size() - *offset)
       return std::nullopt;
-    return chunk_.substr(*offset, *length);
+    return buffer->substr(*offset, *length);
   }
 
   const json& model_;
-  std::string_view chunk_;
+  GltfBuffers& buffers_;
 };
-
-std::vector<float> floatsOf(std::string_view bytes) {
-  const auto* p = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  std::vector<float> values(bytes.size() / 4);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = loadLeFloat(p + 4 * i);
-  return values;
-}
-
-// Returns the attributes of the only primitive, shown by one node; null if there are several.
-const json* onlyAttributes(const json& model) {
-  const auto only = [](const json* array) {
-    return array && array->is_array() && array->size() == 1 ? &(*array)[0] : nullptr;
-  };
-  const json* nodes = memberOf(model, "nodes");
-  const auto shows = [](const json& node) { return memberOf(node, "mesh") != nullptr; };
-  if (!nodes || !nodes->is_array() || std::count_if(nodes->begin(), nodes->end(), shows) != 1)
-    return nullptr;
-  const json* mesh = only(memberOf(model, "meshes"));
-  const json* primitive = mesh ? only(memberOf(*mesh, "primitives")) : nullptr;
-  return primitive ? memberOf(*primitive, "attributes") : nullptr;
-}
-
-// Whether the binary chunk is buffer 0.
-bool hasChunk(const json& model) {
-  const json* buffer = elementOf(memberOf(model, "buffers"), 0);
-  return buffer && buffer->is_object() && !memberOf(*buffer, "uri");
-}
 
 // Whether MERLIN wrote vertex colours beside a texture, as its own attribute: glTF's vertex colours
 // would be multiplied with the texture.
@@ -142,27 +150,94 @@ std::size_t dimensionOf(const std::string& name, bool coloured) {
   return other || !mesh::featureNameFault(feature).empty() ? 0 : 1;
 }
 
-}  // namespace
-
-GltfValues ownValuesOf(const json& model, std::string_view glb) {
-  const json* attributes = onlyAttributes(model);
-  if (!attributes || !hasChunk(model)) return {};
-  const ValueReader reader(model, binaryChunk(glb));
-  const json* position = memberOf(*attributes, "POSITION");
+// Returns what can be read of a primitive's own attributes.
+GltfValues valuesOf(const ValueReader& reader, const json& model, const json& attributes) {
+  GltfValues own;
+  const json* position = memberOf(attributes, "POSITION");
   const auto places =
       position ? reader.bytesOf(reader.accessor(*position), "VEC3", 3) : std::nullopt;
-  if (!places) return {};
-  GltfValues own;
-  const bool coloured = hasColoursBesideTexture(model, *attributes);
-  for (const auto& [name, index] : attributes->items()) {
+  if (!places) return own;
+  own.positions = *places;
+  const bool coloured = hasColoursBesideTexture(model, attributes);
+  for (const auto& [name, index] : attributes.items()) {
     const std::size_t n = dimensionOf(name, coloured);
     if (n == 0) continue;
     const auto bytes = reader.bytesOf(reader.accessor(index), n == 1 ? "SCALAR" : "VEC3", n);
     if (bytes && bytes->size() / n == places->size() / 3)
-      own.features.push_back({name.substr(1), n, floatsOf(*bytes)});
+      own.features.push_back({name.substr(1), n, *bytes});
   }
-  if (!own.features.empty()) own.positions = floatsOf(*places);
   return own;
+}
+
+// Returns the attributes of all primitives.
+std::vector<const json*> attributesOf(const json& model) {
+  std::vector<const json*> all;
+  const auto arrayIn = [](const json& object, const char* name) {
+    const json* found = memberOf(object, name);
+    return found && found->is_array() ? found : nullptr;
+  };
+  const json* meshes = arrayIn(model, "meshes");
+  for (std::size_t m = 0; meshes && m < meshes->size(); ++m) {
+    const json* primitives = arrayIn((*meshes)[m], "primitives");
+    for (std::size_t p = 0; primitives && p < primitives->size(); ++p) {
+      const json* attributes = memberOf((*primitives)[p], "attributes");
+      if (attributes && attributes->is_object()) all.push_back(attributes);
+    }
+  }
+  return all;
+}
+
+// Whether a primitive may have values of its own, for which the buffers are worth reading.
+bool hasOwnAttribute(const json& attributes) {
+  for (const auto& [name, index] : attributes.items()) {
+    if (name.starts_with('_')) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<std::string_view> GltfBuffers::bytesOf(const json& model, std::uint64_t number) {
+  const auto known = buffers_.find(number);
+  if (known != buffers_.end()) return known->second.bytes;
+  Buffer& buffer = buffers_[number];
+  read(model, number, buffer);
+  return buffer.bytes;
+}
+
+void GltfBuffers::read(const json& model, std::uint64_t number, Buffer& buffer) const {
+  const json* const entry = elementOf(memberOf(model, "buffers"), number);
+  if (!entry || !entry->is_object()) return;
+  const json* const uri = memberOf(*entry, "uri");
+  if (!uri && number == 0 && file_.starts_with("glTF")) buffer.bytes = binaryChunk(file_);
+  if (!uri || !uri->is_string()) return;
+  const auto& text = uri->get_ref<const std::string&>();
+  if (text.starts_with("data:")) {
+    if (auto decoded = decodedUri(text)) buffer.decoded = *std::move(decoded);
+    buffer.bytes = buffer.decoded;
+  } else if (auto file = MappedFile::open(companionPath(folder_, text))) {
+    buffer.file = *std::move(file);
+    const auto bytes = buffer.file.bytes();
+    buffer.bytes = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+}
+
+std::vector<GltfValues> ownValuesOf(const json& model, GltfBuffers& buffers) {
+  const std::vector<const json*> primitives = attributesOf(model);
+  if (std::ranges::none_of(primitives, [](const json* a) { return hasOwnAttribute(*a); }))
+    return {};
+  const ValueReader reader(model, buffers);
+  std::vector<GltfValues> all;
+  for (const json* attributes : primitives) all.push_back(valuesOf(reader, model, *attributes));
+  const auto has = [](const GltfValues& values) { return !values.features.empty(); };
+  return std::ranges::any_of(all, has) ? all : std::vector<GltfValues>();
+}
+
+std::vector<float> floatsOf(std::string_view bytes) {
+  const auto* p = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  std::vector<float> values(bytes.size() / 4);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = loadLeFloat(p + 4 * i);
+  return values;
 }
 
 std::vector<std::uint32_t> firstEqualRows(const std::vector<mesh::Feature>& features,

@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 
+#include "daemon/base/files.h"
+
 namespace merlin::render::import {
 namespace {
 
@@ -31,6 +33,10 @@ Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triang
   const auto named = [&](Errc code, const std::string& why) {
     return Error{code, file.path + ": " + why};
   };
+  // Opening it takes no memory, and says what the libraries do not: that the file is too large.
+  if (const auto whole = MappedFile::open(file.path);
+      !whole && whole.error().code == Errc::kNoMemory)
+    return needsMoreMemory(file.path);
   try {
     const bool coin = file.format == "iv" || file.format == "wrl";
     auto model = coin ? readByCoin(file, on_triangles) : readByAssimp(file, on_triangles);

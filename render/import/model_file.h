@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "daemon/base/result.h"
 #include "render/import/model_builder.h"
@@ -14,6 +15,8 @@ struct ModelFile {
   std::string path;
   std::string format;  // usual ending of the format, such as "dae", whatever the file's own is
   std::string folder;  // for temporary files
+  // Absolute paths of the files beside it that may be read, since the sandbox lists no folder.
+  std::vector<std::string> beside{};
 };
 
 // Called with the share of the work that is done, 0..1, and the number of triangles so far.

@@ -1,6 +1,7 @@
 #include "render/import/model_textures.h"
 
 #include <cerrno>
+#include <filesystem>
 #include <utility>
 
 #include <fcntl.h>
@@ -18,7 +19,27 @@ bool isForbidden(const std::string& path) {
   return !file.valid() && errno == EACCES;
 }
 
+// The files beside a model, as paths that begin with its folder as it is written.
+std::vector<std::string> filesBeside(const ModelFile& model) {
+  const std::string folder = mesh::folderOf(model.path);
+  const std::string whole = mesh::folderOf(std::filesystem::absolute(model.path).string());
+  std::vector<std::string> files;
+  for (const std::string& file : model.beside) {
+    if (file.starts_with(whole)) files.push_back(folder + file.substr(whole.size()));
+  }
+  return files;
+}
+
 }  // namespace
+
+ModelTextures::ModelTextures(const ModelFile& model)
+    : files_(mesh::folderOf(model.path), filesBeside(model)) {}
+
+std::vector<std::string> ModelTextures::notes() const {
+  std::vector<std::string> notes = notes_;
+  if (std::string other = files_.note(); !other.empty()) notes.push_back(std::move(other));
+  return notes;
+}
 
 const image::ImageFile* ModelTextures::once(const std::string& name,
                                             const std::function<Result<image::ImageFile>()>& read) {
@@ -36,7 +57,7 @@ const image::ImageFile* ModelTextures::named(const std::string& name) {
   return once(name, [&]() -> Result<image::ImageFile> {
     if (name.empty() || name.find('\0') != std::string::npos)
       return Error{Errc::kMalformed, "an empty name of a texture image"};
-    const std::string path = companionPath(folder_, name);
+    const std::string path = companionPath(files_, name);
     auto image = image::readImage(path);
     if (!image && isForbidden(path))
       return Error{image.error().code,

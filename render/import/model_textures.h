@@ -12,13 +12,15 @@
 #include <vector>
 
 #include "render/image/image_file.h"
+#include "render/import/model_file.h"
+#include "render/mesh/io/companion_files.h"
 
 namespace merlin::render::import {
 
 class ModelTextures {
  public:
-  // folder: the model's folder; texture images are searched for in it and below it.
-  explicit ModelTextures(std::string folder) : folder_(std::move(folder)) {}
+  // Texture images are searched for in the model's folder and below it.
+  explicit ModelTextures(const ModelFile& model);
 
   // Returns the image that the model calls `name`; null if it cannot be read, and a note says why.
   const image::ImageFile* named(const std::string& name);
@@ -31,13 +33,13 @@ class ModelTextures {
   // If that fails, returns the image itself, and a note says so.
   const image::ImageFile* tinted(const image::ImageFile& image, const std::array<float, 3>& factor);
 
-  const std::vector<std::string>& notes() const noexcept { return notes_; }
+  std::vector<std::string> notes() const;
 
  private:
   const image::ImageFile* once(const std::string& name,
                                const std::function<Result<image::ImageFile>()>& read);
 
-  std::string folder_;
+  mesh::CompanionFinder files_;
   std::map<std::string, std::unique_ptr<image::ImageFile>> images_;
   std::map<std::pair<const image::ImageFile*, std::array<float, 3>>, image::ImageFile> tinted_;
   std::vector<std::string> notes_;

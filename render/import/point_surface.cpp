@@ -238,7 +238,7 @@ Result<PointSurface> surfaceOf(const PointCloud& cloud, points::SurfaceSettings 
   try {
     return reconstruct(cloud, said, on_progress);
   } catch (const std::bad_alloc&) {
-    return Error{Errc::kIo,
+    return Error{Errc::kNoMemory,
                  fmt::format("a surface of its {} points does not fit into the memory; give more "
                              "by --memory, or a smaller --depth",
                              cloud.size())};

@@ -27,12 +27,22 @@ std::vector<std::uint32_t> coincidentVerticesBySorting(std::span<const float> po
   return next;
 }
 
+namespace {
+
+std::size_t tableSize(std::size_t vertices) { return std::bit_ceil(2 * vertices + 1); }
+
+}  // namespace
+
+std::size_t bytesForCoincident(std::size_t vertices) {
+  return sizeof(std::uint32_t) * (vertices + tableSize(vertices));
+}
+
 // Uses a hash table with open addressing; its entries are positions, each with the last vertex
 // found there so far, whose next vertex is the first one.
 std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions) {
   constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
   const std::size_t n = positions.size() / 3;
-  std::vector<std::uint32_t> next(n), last(std::bit_ceil(2 * n + 1), kEmpty);
+  std::vector<std::uint32_t> next(n), last(tableSize(n), kEmpty);
   std::iota(next.begin(), next.end(), 0U);
   const auto at = [&](std::uint32_t v) { return positions.data() + 3 * std::size_t{v}; };
   // More probes than this mean positions that were crafted to collide.
@@ -41,7 +51,10 @@ std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions) 
     std::size_t k = hashOfPlace(at(v)) & (last.size() - 1);
     while (last[k] != kEmpty && !std::equal(at(v), at(v) + 3, at(last[k]))) {
       k = (k + 1) & (last.size() - 1);
-      if (--steps_left == 0) return coincidentVerticesBySorting(positions);
+      if (--steps_left > 0) continue;
+      next = std::vector<std::uint32_t>();  // makes room for what sorting takes
+      last = std::vector<std::uint32_t>();
+      return coincidentVerticesBySorting(positions);
     }
     if (last[k] != kEmpty) {
       next[v] = next[last[k]];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,6 +26,10 @@ inline std::uint64_t hashOfPlace(const float* position) noexcept {
 //   positions  vertices x 3, none of them NaN
 // Expected O(n), with a hash table; O(n log n) if positions were crafted to collide. Reentrant.
 std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions);
+
+// Memory that coincidentVertices() takes at most, with its result [bytes]: 12 to 20 for each
+// vertex.
+std::size_t bytesForCoincident(std::size_t vertices);
 
 // Same result as coincidentVertices(), always in O(n log n).
 std::vector<std::uint32_t> coincidentVerticesBySorting(std::span<const float> positions);

@@ -39,13 +39,21 @@ bool holds(const Box& outer, const Box& inner) {
 
 class PartFinder {
  public:
-  explicit PartFinder(const Mesh& mesh)
-      : mesh_(mesh), sets_(mesh.vertexCount()), ends_(mesh.vertexCount()) {}
+  // Takes kByVertex bytes for each vertex.
+  PartFinder(const Mesh& mesh, std::size_t most_bytes)
+      : mesh_(mesh),
+        most_bytes_(most_bytes),
+        sets_(mesh.vertexCount()),
+        ends_(mesh.vertexCount()) {}
 
-  Parts run() {
+  static constexpr std::size_t kByVertex = 12;  // sets_, ends_ and the hashes, later part_of
+  // parts, first_, the area, boxes_, and the order and the list of the search for inner walls
+  static constexpr std::size_t kByPart = sizeof(Part) + 4 + 8 + sizeof(Box) + 8 + 8;
+
+  // Nothing if it would take more memory than is allowed.
+  std::optional<Parts> run() {
     connect();
-    joinEnds();
-    numberParts();
+    if (!joinEnds() || !numberParts()) return std::nullopt;
     findClosed();
     const bool any = std::any_of(result_.parts.begin(), result_.parts.end(),
                                  [](const Part& part) { return part.closed; });
@@ -61,8 +69,8 @@ class PartFinder {
 
   bool hasCornersAtOnePlace(const std::uint32_t* triangle) const;
   void connect();
-  void joinEnds();
-  void numberParts();
+  bool joinEnds();
+  bool numberParts();
   void findClosed();
   void measure();
   void findBoxes();
@@ -71,6 +79,7 @@ class PartFinder {
   void findInwards();
 
   const Mesh& mesh_;
+  std::size_t most_bytes_;  // of memory
   Parts result_;
   DisjointSets sets_;  // vertices that are connected
   // By vertex: the sum of the hashes of the vertices to which edges lead from it, less those of the
@@ -104,11 +113,14 @@ void PartFinder::connect() {
 }
 
 // Connects coincident vertices where the surface ends, and adds their sums up at the last of them.
-void PartFinder::joinEnds() {
+// False if that takes too much memory.
+bool PartFinder::joinEnds() {
   std::vector<std::uint32_t> vertices;
   std::vector<float> positions;
   const std::size_t ends =
       ends_.size() - static_cast<std::size_t>(std::count(ends_.begin(), ends_.end(), 0U));
+  constexpr std::size_t kByEnd = 4 + 12;  // in `vertices` and `positions`
+  if (8 * ends_.size() + kByEnd * ends + bytesForCoincident(ends) > most_bytes_) return false;
   vertices.reserve(ends);
   positions.reserve(3 * ends);
   for (std::uint32_t v = 0; v < ends_.size(); ++v) {
@@ -117,28 +129,34 @@ void PartFinder::joinEnds() {
     positions.insert(positions.end(), at(v), at(v) + 3);
   }
   if (!std::all_of(positions.begin(), positions.end(), [](float x) { return std::isfinite(x); }))
-    return;
+    return true;
   const std::vector<std::uint32_t> next = coincidentVertices(positions);
   for (std::uint32_t i = 0; i < vertices.size(); ++i) {
     if (next[i] <= i) continue;
     sets_.unite(vertices[i], vertices[next[i]]);
     ends_[vertices[next[i]]] += std::exchange(ends_[vertices[i]], 0);
   }
+  return true;
 }
 
-void PartFinder::numberParts() {
+// False if there are so many parts that they take too much memory.
+bool PartFinder::numberParts() {
   std::vector<std::uint32_t>& part_of = result_.part_of;
   part_of.assign(mesh_.vertexCount(), Parts::kNone);
+  std::uint32_t parts = 0;
   for (std::uint32_t v = 0; v < part_of.size(); ++v) {
     const std::uint32_t root = sets_.rootOf(v);
     if (root == v) continue;  // its number comes with the next vertex of its set
-    if (part_of[root] == Parts::kNone) {
-      part_of[root] = static_cast<std::uint32_t>(result_.parts.size());
-      result_.parts.emplace_back();
-      first_.push_back(root);
-    }
+    if (part_of[root] == Parts::kNone) part_of[root] = parts++;
     part_of[v] = part_of[root];
   }
+  if (kByVertex * part_of.size() + kByPart * parts > most_bytes_) return false;
+  result_.parts.resize(parts);
+  first_.resize(parts);
+  for (std::uint32_t v = 0; v < part_of.size(); ++v) {
+    if (part_of[v] != Parts::kNone && sets_.rootOf(v) == v) first_[part_of[v]] = v;
+  }
+  return true;
 }
 
 void PartFinder::findClosed() {
@@ -219,9 +237,12 @@ void PartFinder::findInwards() {
   std::vector<Part>& parts = result_.parts;
   std::vector<std::size_t> order, outer;
   std::size_t left = kMostComparisons;
+  order.reserve(static_cast<std::size_t>(
+      std::count_if(parts.begin(), parts.end(), [](const Part& part) { return part.closed; })));
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (parts[p].closed) order.push_back(p);
   }
+  outer.reserve(order.size());
   const std::size_t axis = sweepAxis(order);
   std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
     return std::pair(boxes_[p].low[axis], -parts[p].volume) <
@@ -269,7 +290,14 @@ void turnNormals(const Parts& parts, const std::vector<float>& positions,
 
 }  // namespace
 
-Parts partsOf(const Mesh& mesh) { return PartFinder(mesh).run(); }
+std::optional<Parts> partsWithin(std::size_t most_bytes, const Mesh& mesh) {
+  if (PartFinder::kByVertex * mesh.vertexCount() > most_bytes) return std::nullopt;
+  return PartFinder(mesh, most_bytes).run();
+}
+
+Parts partsOf(const Mesh& mesh) {
+  return *partsWithin(std::numeric_limits<std::size_t>::max(), mesh);
+}
 
 Facing facingOf(const Parts& parts) {
   Facing facing;

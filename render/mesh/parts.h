@@ -19,6 +19,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "render/mesh/mesh.h"
@@ -44,9 +45,14 @@ struct Parts {
 // of 2^-64 or less, unless the positions were crafted for it. If a coordinate of a vertex where the
 // surface ends is not finite, no coincident vertices are joined. Expected O(n), and O(p log p) for
 // p closed parts that do not overlap along some axis, O(p^2) for others up to 10^9 comparisons of
-// boxes: parts that were not examined by then count as inner walls. 16 bytes per vertex, and up to
-// 60 more where surfaces end. REQUIRES: every index is in range.
+// boxes: parts that were not examined by then count as inner walls. Memory: 12 bytes per vertex,
+// and 76 per part; before that, 8 per vertex and up to 36 per vertex where surfaces end (all
+// vertices, if triangles share none). REQUIRES: every index is in range.
 Parts partsOf(const Mesh& mesh);
+
+// The same, but nothing if that takes more than `most_bytes` of memory beside the mesh, which are
+// never exceeded.
+std::optional<Parts> partsWithin(std::size_t most_bytes, const Mesh& mesh);
 
 // Counts of closed parts.
 struct Facing {

@@ -65,6 +65,12 @@ struct RangeImage {
   std::vector<Plane> planes{};
 
   std::size_t pixels() const noexcept { return width * height; }
+  // Memory of the pixels, with those of the planes and the rays.
+  std::size_t bytes() const noexcept {
+    std::size_t numbers = range.size() + geometry.rays.size();
+    for (const Plane& plane : planes) numbers += plane.values.size();
+    return sizeof(float) * numbers;
+  }
   bool join_ends = true;  // false: a full turn has a seam, which a texture needs
   std::string unit{};     // of the ranges, "m"; empty: not known
 

@@ -1,4 +1,5 @@
 // daemon/base: files, text, clocks.
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/base/random.h"
+#include "daemon/base/sanitizer.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin {
@@ -103,6 +105,27 @@ TEST(MappedFile, IsTheFilesBytes) {
   moved = *MappedFile::open(dir / "empty");
   EXPECT_EQ(moved.text(), "");
 }
+
+#if !defined(MERLIN_ANY_SANITIZER)  // which need terabytes
+TEST(MappedFile, AFileThatIsLargerThanTheAllowedMemoryIsAnErrorOfItsOwn) {
+  const test::TempDir dir;
+  test::writeText(dir / "vast", "");
+  // A sparse file: 4 TiB without blocks on the disk.
+  ASSERT_EQ(::truncate((dir / "vast").c_str(), off_t{1} << 42), 0);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_AS, &before), 0);
+  const rlimit less{std::min(rlim_t{1} << 41, before.rlim_cur), before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_AS, &less), 0);
+  const auto vast = MappedFile::open(dir / "vast");
+  ASSERT_EQ(::setrlimit(RLIMIT_AS, &before), 0);
+  ASSERT_FALSE(vast);
+  EXPECT_EQ(vast.error().code, Errc::kNoMemory);
+  EXPECT_NE(vast.error().what.find("vast: its 4398046511104 bytes take more memory than this "
+                                   "program may use (a limit such as ulimit -v)"),
+            std::string::npos)
+      << vast.error().what;
+}
+#endif
 
 TEST(MappedFile, ItsTextBeginsBehindAByteOrderMark) {
   const test::TempDir dir;

@@ -183,6 +183,21 @@ TEST(Atlas, KeepsTheFileOfTheOnlyPicture) {
   EXPECT_TRUE(none.texture.empty());
 }
 
+TEST(Atlas, NamesPicturesThatNoTriangleHas) {
+  const ImageFile a = waves(8, 8, 0), b = waves(8, 8, 1), c = waves(8, 8, 2), unread;
+  Mesh mesh = trianglesWith({0, 0, 9, 0, 0, 9});
+  const JoinedTextures kept = joinTextures(mesh, {{{&a}, {&b}, {&unread}, {nullptr}}, {0}});
+  EXPECT_EQ(mesh.texture, a.file);
+  EXPECT_EQ(kept.notes(),
+            std::vector<std::string>{"the texture that is on all triangles is kept as it is; "
+                                     "1 texture is on no triangle and is left out"});
+  Mesh two = trianglesWith({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const SurfaceTextures textures{{{&a}, {&b}, {&c}, {&a, Wrap::kClamp, Wrap::kClamp}}, {0, 2}};
+  const auto notes = joinTextures(two, textures).notes();
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[1], "1 texture is on no triangle and is left out") << "b; a is on one";
+}
+
 TEST(Atlas, GivesTrianglesWithoutAPictureTheirColour) {
   const ImageFile a = waves(8, 8, 0);
   Mesh mesh = trianglesWith({0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, NAN, 0, 0, 0});

@@ -337,6 +337,15 @@ TEST(MeshFileSize, CountsPolygonsAsTheTrianglesThatTheyBecome) {
       "property list uchar uchar vertex_indices\nend_header\n" +
       std::string(36, '\0') + "\xC8" + std::string(200, '\1');
   EXPECT_EQ(sizeOf("b.ply", fan).triangles, 198U);
+  std::string coloured =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 20\n"
+      "property list uchar uchar vertex_indices\nproperty uchar red\nproperty uchar green\n"
+      "property uchar blue\nend_header\n" +
+      std::string(36, '\0');
+  for (int face = 0; face < 20; ++face) coloured += "\xC8" + std::string(203, '\1');
+  EXPECT_EQ(sizeOf("c.ply", coloured).vertices, 3U * 20 * 198)
+      << "one for each corner, which are more than the file has bytes";
 }
 
 TEST(ReadMesh, SaysWhichFileIsBrokenAndHow) {

@@ -355,7 +355,68 @@ TEST_F(TexturedObj, OpensNothingOutsideItsFolder) {
   EXPECT_TRUE(loaded->notes[1].starts_with(dir_ / "model/four.png:")) << loaded->notes[1];
 }
 
-// The file is a pipe without a writer; the reader must not block on it.
+TEST_F(TexturedObj, FindsFilesWhoseNamesDifferInCapitals) {
+  ::mkdir((dir_ / "Skins").c_str(), 0700);
+  writePngFile(dir_ / "Skins/Four.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.mtl", "newmtl skin\nmap_Kd SKINS\\FOUR.PNG\n");
+  const std::string text =
+      std::string("mtllib A.MTL\n") + kSquare + kMiddles + "usemtl skin\nf 1/1 2/2 4/4 3/3\n";
+  const auto loaded = read(text);
+  EXPECT_EQ(std::string(loaded.mesh.texture.begin(), loaded.mesh.texture.end()),
+            test::readText(dir_ / "Skins/Four.png"));
+  EXPECT_EQ(notesOf(loaded),
+            Names{"a.mtl: is read in place of A.MTL, which is not there and differs only in "
+                  "capitals; the same holds for 1 more"});
+  const auto size = mesh::meshFileSize(dir_ / "a.obj");
+  ASSERT_TRUE(size);
+  EXPECT_EQ(size->pictures, Names{dir_ / "Skins/Four.png"});
+}
+
+TEST_F(TexturedObj, PrefersTheNameAsItIsWrittenAndThenTheFirst) {
+  test::writeText(dir_ / "b.mtl", "newmtl m\nKd 0 0 1\n");
+  test::writeText(dir_ / "A.mtl", "newmtl m\nKd 0 1 0\n");
+  const auto diffuseOf = [&] {
+    const auto loaded = read(std::string("mtllib a.mtl\nmtllib B.mtl\n") + kSquare + kMiddles +
+                             "usemtl m\nf 1/1 2/2 4/4 3/3\n");
+    const mesh::Feature* const colour = loaded.mesh.find("colour");
+    return colour ? Floats(colour->values.begin(), colour->values.begin() + 3) : Floats();
+  };
+  EXPECT_EQ(diffuseOf(), (Floats{0, 0, 1})) << "of b.mtl, which is read last";
+  test::writeText(dir_ / "B.MTL", "newmtl m\nKd 1 1 1\n");
+  EXPECT_EQ(diffuseOf(), (Floats{1, 1, 1})) << "B.MTL is before b.mtl";
+  test::writeText(dir_ / "B.mtl", "newmtl m\nKd 1 0 0\n");
+  EXPECT_EQ(diffuseOf(), (Floats{1, 0, 0}));
+}
+
+TEST_F(TexturedObj, MayBeAPlyWhosePictureDiffersInCapitals) {
+  writePngFile(dir_ / "four.png", 2, 2, kFour);
+  test::writeText(dir_ / "a.ply",
+                  "ply\nformat ascii 1.0\ncomment TextureFile FOUR.PNG\nelement vertex 3\nproperty "
+                  "float x\nproperty float y\nproperty float z\nproperty float s\nproperty float "
+                  "t\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                  "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n3 0 1 2\n");
+  const auto loaded = mesh::readMesh(dir_ / "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_FALSE(loaded->mesh.texture.empty());
+  EXPECT_EQ(notesOf(*loaded),
+            Names{"four.png: is read in place of FOUR.PNG, which is not there and "
+                  "differs only in capitals"});
+  EXPECT_EQ(mesh::meshFileSize(dir_ / "a.ply")->pictures, Names{dir_ / "four.png"});
+}
+
+TEST_F(TexturedObj, NotesAreFewWhateverItsMaterialsLack) {
+  std::string materials, text = std::string("mtllib a.mtl\n") + kSquare + kMiddles;
+  for (int m = 0; m < 100; ++m) {
+    materials += fmt::format("newmtl m{0}\nmap_Kd none{0}.png\n", m);
+    text += fmt::format("usemtl m{}\nf 1/1 2/2 4/4\n", m);
+  }
+  test::writeText(dir_ / "a.mtl", materials);
+  const auto loaded = read(text);
+  ASSERT_EQ(loaded.notes.size(), 17u);
+  EXPECT_EQ(loaded.notes.back(), "84 more notes about its materials are left out");
+}
+
+// A pipe without a writer: the reader must not block on it.
 TEST_F(TexturedObj, WaitsForNoPipe) {
   ASSERT_EQ(::mkfifo((dir_ / "x.mtl").c_str(), 0600), 0);
   const auto loaded = read(std::string("mtllib x.mtl\nusemtl red\n") + kSquare + "f 1 2 3\n");

@@ -184,6 +184,19 @@ TEST(Parts, WhatIsNoNumberJoinsNothing) {
   expectFacing(soup, 0, 0, 0);
 }
 
+// The limits are those of parts.h, for 8 vertices and for 36 at which the surface ends.
+TEST(Parts, AreNotLookedForWithLessMemoryThanThatTakes) {
+  EXPECT_FALSE(partsWithin(12 * 8 - 1, test::cube()));
+  EXPECT_FALSE(partsWithin(12 * 8 + 76 - 1, test::cube()));
+  EXPECT_TRUE(partsWithin(12 * 8 + 76, test::cube()));
+  const Mesh soup = soupOf(insideOut(test::cube()));
+  constexpr std::size_t kTable = 4 * 128;
+  EXPECT_FALSE(partsWithin((8 + 16 + 4) * 36 + kTable - 1, soup));
+  const auto found = partsWithin((8 + 16 + 4) * 36 + kTable, soup);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(facingOf(*found).inwards, 1u);
+}
+
 // The normal of a cube's vertex is its position, scaled.
 Mesh withNormals(Mesh mesh, float length) {
   Feature normal{"normal", 3, mesh.positions};

@@ -38,6 +38,18 @@ void expectFault(const std::string& bytes, const std::string& with) {
   EXPECT_NE(fault.find(with), std::string::npos) << fault;
 }
 
+TEST(PlyCloud, HasAsManyPointsAsOtherFormatsAtMost) {
+  const auto withCount = [](std::size_t count) {
+    return fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
+        "float z\nend_header\n",
+        count);
+  };
+  expectFault(withCount(points::kMostPoints + 1),
+              "268435457 points; up to 268435456 are read; thin it with: ");
+  expectFault(withCount(points::kMostPoints), "cut short");
+}
+
 std::vector<float> valuesOf(const points::PointCloud& cloud, const char* name) {
   const auto* feature = cloud.find(name);
   return feature ? feature->values : std::vector<float>{};

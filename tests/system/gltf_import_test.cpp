@@ -323,6 +323,19 @@ TEST_F(GltfImport, ValuesThatMerlinWroteComeBack) {
   EXPECT_EQ(mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 4, 5, 6}));
 }
 
+TEST_F(GltfImport, ValuesInBase64ComeBackToo) {
+  writeText(dir_ / "hot.ply", kHot);
+  ASSERT_EQ(run({kMerlin, "mesh", "export", dir_ / "hot.ply", "-o", dir_ / "a.gltf"}).status, 0);
+  const Outcome done = run({kMerlin, "mesh", "import", dir_ / "a.gltf", "-o", out_, "--json"});
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_EQ(done.output.find("left out"), std::string::npos) << done.output;
+  const auto loaded = render::mesh::readMesh(out_);
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const auto* heat = loaded->mesh.find("heat");
+  ASSERT_TRUE(heat);
+  EXPECT_EQ(heat->values, (std::vector<float>{-4.5, 20.25, 3, 7, 21, 9, 8}));
+}
+
 TEST_F(GltfImport, ColoursThatMerlinWroteBesideATextureComeBack) {
   picture("red.png");
   writeText(dir_ / "a.mtl", "newmtl m\nmap_Kd red.png\n");
@@ -380,6 +393,78 @@ TEST_F(GltfImport, ValuesBeyondTheBinaryChunkAreLeftOut) {
     EXPECT_NE(said(json).find("that glTF does not define (_heat)"), std::string::npos)
         << pointer << " " << value;
   }
+}
+
+// Two triangles, at z = 0 and z = 1, in two meshes; each has the attribute _heat, in a.bin.
+Json twoHotTriangles() {
+  Json json = triangle("a.bin");
+  std::string bin = kTriangle;
+  const auto add = [&](const std::vector<float>& numbers, int dimension) {
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", 4 * numbers.size()}});
+    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                                 {"componentType", 5126},
+                                 {"count", numbers.size() / static_cast<std::size_t>(dimension)},
+                                 {"type", dimension == 3 ? "VEC3" : "SCALAR"}});
+    for (const float x : numbers) appendLeFloat(bin, x);
+    return json["accessors"].size() - 1;
+  };
+  Json second = json["meshes"][0];
+  json["meshes"][0]["primitives"][0]["attributes"]["_heat"] = add({1, 2, 3}, 1);
+  auto& attributes = second["primitives"][0]["attributes"];
+  attributes["POSITION"] = add({0, 0, 1, 1, 0, 1, 0, 1, 1}, 3);
+  json["accessors"].back()["min"] = {0, 0, 1};
+  json["accessors"].back()["max"] = {1, 1, 1};
+  attributes["_heat"] = add({4, 5, 6}, 1);
+  json["meshes"].push_back(second);
+  json["nodes"].insert(json["nodes"].begin(), Json{{"mesh", 1}});  // shown first
+  json["scenes"] = {{{"nodes", Json::array()}}};
+  for (std::size_t n = 0; n < json["nodes"].size(); ++n) json["scenes"][0]["nodes"].push_back(n);
+  json["buffers"][0]["byteLength"] = bin.size();
+  return Json::array({json, bin});
+}
+
+TEST_F(GltfImport, ValuesOfSeveralMeshesAreKeptIfAllHaveThem) {
+  const Json made = twoHotTriangles();
+  writeText(dir_ / "a.bin", made[1].get<std::string>());
+  EXPECT_EQ(report(made[0].dump())["notes"].dump(), "[]");
+  const auto loaded = render::mesh::readMesh(out_);
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  const auto* heat = loaded->mesh.find("heat");
+  ASSERT_TRUE(heat);
+  ASSERT_EQ(heat->values.size(), 6U);
+  for (std::size_t v = 0; v < 6; ++v) {
+    const float* at = &loaded->mesh.positions[3 * v];
+    EXPECT_EQ(heat->values[v], 1 + 3 * at[2] + at[0] + 2 * at[1]) << "vertex " << v;
+  }
+}
+
+TEST_F(GltfImport, ValuesThatNotAllMeshesHaveAreNamed) {
+  const Json made = twoHotTriangles();
+  writeText(dir_ / "a.bin", made[1].get<std::string>());
+  const auto expectNote = [&](const Json& json) {
+    EXPECT_NE(report(json.dump())["notes"].dump().find("that glTF does not define (_heat)"),
+              std::string::npos)
+        << json;
+    const auto loaded = render::mesh::readMesh(out_);
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    EXPECT_EQ(loaded->mesh.find("heat"), nullptr);
+  };
+  Json one = made[0];
+  one["meshes"][1]["primitives"][0]["attributes"].erase("_heat");
+  expectNote(one);
+  // Both at the same places, so that it cannot be said which one assimp shows.
+  Json same = made[0];
+  same["meshes"][1]["primitives"][0]["attributes"]["POSITION"] =
+      same["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
+  expectNote(same);
+  same["meshes"][1]["primitives"][0]["attributes"].erase("_heat");
+  expectNote(same);
+  Json missing = made[0];
+  missing["buffers"].push_back({{"uri", "none.bin"}, {"byteLength", 12}});
+  for (const std::size_t view : {3U, 5U}) missing["bufferViews"][view]["buffer"] = 1;
+  writeText(dir_ / "none.bin", std::string(8, 'x'));  // shorter than its views
+  expectNote(missing);
 }
 
 TEST_F(GltfImport, FaultsOfItsJsonAreSaid) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "daemon/base/bytes.h"
 #include "tests/support/meshes.h"
 #include "tests/system/merlind.h"
 
@@ -99,6 +100,42 @@ TEST_F(MeshOutwards, NothingIsSaidOfAnOpenSurfaceUnlessItIsToBeTurned) {
   EXPECT_NE(asked.output.find("open.obj: no part is closed; --outwards turned nothing\n"),
             std::string::npos)
       << asked.output;
+}
+
+// 99 bytes per triangle are counted for reading it, of which 12 are left for the search.
+TEST_F(MeshOutwards, TrianglesThatShareNoVerticesAreNotExaminedWithTooLittleMemory) {
+  constexpr std::uint32_t kTriangles = 100'000;
+  std::string soup = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float "
+      "y\nproperty float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      3 * kTriangles, kTriangles);
+  for (std::uint32_t v = 0; v < 3 * kTriangles; ++v) {
+    for (const std::uint32_t x : {v / 3, v % 3 == 1 ? 1U : 0U, v % 3 == 2 ? 1U : 0U})
+      appendLeFloat(soup, static_cast<float>(x));
+  }
+  for (std::uint32_t t = 0; t < kTriangles; ++t) {
+    soup += '\3';
+    for (std::uint32_t v = 3 * t; v < 3 * t + 3; ++v) appendLe32(soup, v);
+  }
+  const std::string file = dir_ / "soup.ply";
+  writeText(file, soup);
+  const Outcome made = make({"import", file, "-o", ply_, "--memory", "44M", "--json"});
+  EXPECT_NE(made.output.find("soup.ply: whether closed parts face inwards was not examined, since "
+                             "that takes more than the 4 MiB that the limit (--memory, by default "
+                             "the free memory) leaves\n"),
+            std::string::npos)
+      << made.output;
+  EXPECT_TRUE(jsonOf(made)["parts_inwards"].is_null());
+  EXPECT_EQ(make({"import", file, "-o", ply_, "--memory", "80M"}).output.find("examined"),
+            std::string::npos);
+  const Outcome refused = run(
+      {kMerlin, "mesh", "import", file, "-o", dir_ / "none.ply", "--outwards", "--memory", "44M"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.output.find("soup.ply: finding the parts that --outwards turns takes more than "
+                                "the 4 MiB that the limit"),
+            std::string::npos)
+      << refused.output;
+  EXPECT_EQ(readText(dir_ / "none.ply"), "");
 }
 
 TEST_F(MeshOutwards, FuseTakesTheOptionAndShowRefusesItForANameOfAContent) {

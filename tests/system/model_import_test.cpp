@@ -123,11 +123,11 @@ std::string le(float x) {
   return bytes;
 }
 
-// The same with a texture; its coordinates are scaled by `scale`.
-std::string threeDsWithPicture(float scale) {
+// The same with a picture, whose coordinates are to be scaled.
+std::string threeDsWithPicture(float scale, const std::string& picture = "t.png") {
   const std::string named("m\0", 2);
   const std::string material =
-      chunk(0xA000, named) + chunk(0xA200, chunk(0xA300, std::string("t.png\0", 6)) +
+      chunk(0xA000, named) + chunk(0xA200, chunk(0xA300, picture + '\0') +
                                                chunk(0xA354, le(scale)) + chunk(0xA356, le(scale)));
   std::string vertices, faces, coordinates, of_material = named;
   for (std::string* counted : {&vertices, &coordinates}) appendLe16(*counted, 3);
@@ -270,6 +270,24 @@ TEST_F(ModelImport, AScaledTextureOf3dsIsLeftAsItIsWithANote) {
   EXPECT_NE(report("a.3ds", threeDsWithPicture(0.25F))["notes"].dump().find(
                 "left out: the scales, offsets and rotations of 1 textures"),
             std::string::npos);
+}
+
+// Names of DOS come in capitals, whatever the file beside the model is called.
+TEST_F(ModelImport, ATextureIsFoundWhoseNameDiffersInCapitals) {
+  const std::vector<std::uint8_t> red = {255, 0, 0, 255};
+  fs::create_directory(dir_ / "Maps");
+  ASSERT_TRUE(render::image::writePng(dir_ / "Maps/T.png", 1, 1, red));
+  std::string model = threeDsWithPicture(1, "MAPS\\T.PNG");
+  const auto found = report("a.3ds", model);
+  EXPECT_GT(found["texture_bytes"], 60) << found;
+  EXPECT_NE(found["notes"].dump().find("/Maps/T.png: is read in place of MAPS/T.PNG, which is not "
+                                       "there and differs only in capitals\""),
+            std::string::npos)
+      << found["notes"];
+  ASSERT_TRUE(render::image::writePng(dir_ / "T.PNG", 1, 1, red));
+  const auto exact = report("a.3ds", threeDsWithPicture(1, "T.PNG"));
+  EXPECT_GT(exact["texture_bytes"], 60) << exact;
+  EXPECT_EQ(exact["notes"].dump().find("capitals"), std::string::npos) << exact["notes"];
 }
 
 TEST_F(ModelImport, GltfColoursComeBackAsTheyWere) {
@@ -461,6 +479,16 @@ TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
   for (int i = 0; i < 20'000; ++i) large += "Translation { translation 1 0 0 } USE A\n";
   expectRefused("large.iv", large, "takes more memory than the 150 MB that are allowed (--memory,",
                 {"--memory", "150M"});
+  // A file of more bytes than may be used, of which only the first are there.
+  writeText(dir_ / "large.glb", std::string("glTF\2\0\0\0", 8));
+  std::filesystem::resize_file(dir_ / "large.glb", std::size_t{101} << 20);
+  const Outcome outcome = run(
+      {kMerlin, "mesh", "import", dir_ / "large.glb", "-o", dir_ / "x.ply", "--memory", "100M"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.output.find("large.glb: reading it takes more memory than the 100 MB that are "
+                                "allowed (--memory, by default the free memory)"),
+            std::string::npos)
+      << outcome.output;
 #endif
 }
 

@@ -13,6 +13,7 @@
 #include "daemon/cli/mesh/input_kinds.h"
 #include "daemon/cli/mesh/late_bar.h"
 #include "daemon/cli/mesh/mesh.h"
+#include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/mesh/outwards.h"
 #include "daemon/cli/mesh/pose_file.h"
 #include "daemon/cli/mesh/reduction_step.h"
@@ -274,8 +275,15 @@ Result<Ok> checkFuse(MeshFuse& options) {
   return Ok{};
 }
 
+std::size_t bytesOfScans(const Scans& scans) {
+  std::size_t bytes = 0;
+  for (const auto& image : scans.images) bytes += image.bytes();
+  return bytes;
+}
+
 int fuseFiles(MeshFuse& options) {
   const SystemClock clock;
+  const std::size_t limit = options.limit();
   FusedFile file;
   if (const auto good = checkFuse(options); !good) return fail(good.error());
   const Timestamp began = clock.now();
@@ -287,7 +295,11 @@ int fuseFiles(MeshFuse& options) {
   if (fused->not_numbers > 0)
     printNote(fmt::format("{}: {} vertices have 0 in a feature that no scan has there",
                           options.output, fused->not_numbers));
-  file.outwards = faceOutwards(options.output, options.outwards, fused->mesh);
+  const auto outwards =
+      faceOutwards(options.output, options.outwards,
+                   roomBeside(fused->mesh, bytesOfScans(*scans), limit), fused->mesh);
+  if (!outwards) return fail(outwards.error());
+  file.outwards = *outwards;
   const Timestamp done = clock.now();
   if (const auto written = writeFused(options, *scans, fused->mesh, file); !written)
     return fail(written.error());

@@ -128,13 +128,13 @@ Result<Ok> checkImageOptions(const MeshImport& options) {
 
 Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>& kind) {
   if (const auto good = checkImageOptions(options); !good) return good;
+  const std::size_t limit = limitOf(options);
   const SystemClock clock;
   Stopwatch watch(clock);
   ImportTimes times;
   auto range = loadRange(
       options.input(), options.range, !options.texture.empty(),
-      readerOf(kind,
-               {{}, options.output, limitOf(options), options.range.hdu, options.range.variable}));
+      readerOf(kind, {{}, options.output, limit, options.range.hdu, options.range.variable}));
   if (!range) return range.error();
   for (const std::string& note : range->notes) printNote(options.input() + ": " + note);
   times.reading = watch.lap();
@@ -150,7 +150,9 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
   if (!meshed) return meshed.error();
   bar.finish();
   render::mesh::Mesh& mesh = range->mesh.mesh;
-  faceOutwards(options.input(), options.outwards, mesh);
+  const std::size_t room = roomBeside(mesh, range->image.bytes(), limit);
+  if (const auto faced = faceOutwards(options.input(), options.outwards, room, mesh); !faced)
+    return faced.error();
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   if (range->mesh.not_numbers > 0)
     printNote(fmt::format("{}: {} values of features were not numbers and were replaced by 0",
@@ -222,13 +224,16 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
   Stopwatch watch(clock);
   ImportTimes times;
   if (const auto good = checkMeshInput(options, kind); !good) return good.error();
-  auto model =
-      loadModel(options.input(), *kind, {options.output, limitOf(options), options.points.surface});
+  const std::size_t limit = limitOf(options);
+  auto model = loadModel(options.input(), *kind, {options.output, limit, options.points.surface});
   if (!model) return model.error();
   render::mesh::Mesh& mesh = model->loaded.mesh;
   const auto scaled = scale(options.input(), options.range.scale.value_or(1), *model);
   if (!scaled) return scaled.error();
-  model->outwards = faceOutwards(options.input(), options.outwards, mesh);
+  const auto outwards =
+      faceOutwards(options.input(), options.outwards, roomBeside(mesh, 0, limit), mesh);
+  if (!outwards) return outwards.error();
+  model->outwards = *outwards;
   if (const auto added = addTexture(options, mesh); !added) return added.error();
   times.reading = watch.lap();
   const auto written =

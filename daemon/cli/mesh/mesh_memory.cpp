@@ -10,15 +10,17 @@
 #include "render/reduce/memory.h"
 
 namespace merlin::cli {
-namespace {
 
-// A number of bytes as a text for a person, "7.5 GiB".
 std::string sizeText(std::size_t bytes) {
   const double mib = static_cast<double>(bytes) / (1 << 20);
   return mib < 1000 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.1f} GiB", mib / 1024);
 }
 
-}  // namespace
+std::size_t roomBeside(const render::mesh::Mesh& mesh, std::size_t others, std::size_t limit) {
+  const std::size_t used =
+      render::reduce::kProgramBytes + sizeOf(mesh).bytes() + mesh.texture.size() + others;
+  return limit - std::min(limit, used);
+}
 
 Result<std::size_t> roomForReduction(const render::mesh::MeshSize& mesh, std::size_t file_size,
                                      const render::reduce::ReduceSettings& settings,

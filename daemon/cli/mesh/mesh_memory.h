@@ -18,6 +18,13 @@ Result<std::size_t> roomForReduction(const render::mesh::MeshSize& mesh, std::si
                                      const render::reduce::ReduceSettings& settings,
                                      std::size_t limit);
 
+// What the limit of a whole command leaves while the mesh, and `others` bytes of other data, are in
+// memory [bytes].
+std::size_t roomBeside(const render::mesh::Mesh& mesh, std::size_t others, std::size_t limit);
+
+// A number of bytes as a text for a person, "7.5 GiB".
+std::string sizeText(std::size_t bytes);
+
 // Checks that the texture file `picture` can be decoded within `limit` bytes while the mesh is in
 // memory. Errors: kInvalidArgument. A file that cannot be read is not an error here; the step that
 // reads it reports that.

@@ -153,7 +153,10 @@ int reduceMesh(const ReduceOptions& options) {
     return fail(fits.error());
   auto loaded = loadMesh(options.input);
   if (!loaded) return fail(loaded.error());
-  usage.outwards = faceOutwards(options.input, options.outwards, loaded->mesh);
+  const std::size_t room = roomBeside(loaded->mesh, 0, usage.limit);
+  const auto outwards = faceOutwards(options.input, options.outwards, room, loaded->mesh);
+  if (!outwards) return fail(outwards.error());
+  usage.outwards = *outwards;
   if (const auto done = addTexture(options, loaded->mesh, usage.limit); !done)
     return fail(done.error());
   if (const auto named = render::lod::checkNames(loaded->mesh); !named)

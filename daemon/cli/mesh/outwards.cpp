@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/print.h"
 
 namespace merlin::cli {
@@ -20,19 +21,40 @@ std::string textOf(const render::mesh::Facing& facing, bool turned) {
                      one ? "it" : "them");
 }
 
+Error tooLittle(const std::string& file, std::size_t room) {
+  return {Errc::kInvalidArgument,
+          fmt::format("{}: finding the parts that --outwards turns takes more than the {} that the "
+                      "limit (--memory, by default the free memory) leaves: allow more, or leave "
+                      "the option out",
+                      file, sizeText(room))};
+}
+
 }  // namespace
 
 void Outwards::addTo(nlohmann::ordered_json& json) const {
-  json["parts_inwards"] = facing.inwards;
-  json["triangles_turned"] = turned ? facing.triangles : 0;
+  if (facing)
+    json["parts_inwards"] = facing->inwards;
+  else
+    json["parts_inwards"] = nullptr;
+  json["triangles_turned"] = facing && turned ? facing->triangles : 0;
 }
 
-Outwards faceOutwards(const std::string& file, bool turn, render::mesh::Mesh& mesh) {
-  const render::mesh::Parts parts = render::mesh::partsOf(mesh);
-  const render::mesh::Facing facing = render::mesh::facingOf(parts);
-  if (turn && facing.inwards > 0) render::mesh::turnOutwards(parts, mesh);
+Result<Outwards> faceOutwards(const std::string& file, bool turn, std::size_t room,
+                              render::mesh::Mesh& mesh) {
+  const auto parts = render::mesh::partsWithin(room, mesh);
+  if (!parts && turn) return tooLittle(file, room);
+  if (!parts) {
+    printNote(
+        fmt::format("{}: whether closed parts face inwards was not examined, since that takes "
+                    "more than the {} that the limit (--memory, by default the free memory) "
+                    "leaves",
+                    file, sizeText(room)));
+    return Outwards{};
+  }
+  const render::mesh::Facing facing = render::mesh::facingOf(*parts);
+  if (turn && facing.inwards > 0) render::mesh::turnOutwards(*parts, mesh);
   if (turn || facing.inwards > 0) printNote(fmt::format("{}: {}", file, textOf(facing, turn)));
-  return {facing, turn};
+  return Outwards{facing, turn};
 }
 
 void addOutwards(Command command, bool& outwards) {

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,6 +33,22 @@ const image::ImageFile* onlyPicture(const SurfaceTextures& textures) {
     return t != kNoTexture && textures.textures[t] == first;
   });
   return only && repeats(first) && !first.picture->file.empty() ? first.picture : nullptr;
+}
+
+// Counts the pictures that no triangle has.
+std::size_t unusedPictures(const SurfaceTextures& textures) {
+  std::set<const image::ImageFile*> unused;
+  for (const SurfaceTexture& t : textures.textures) {
+    if (t.picture && !t.picture->pixels.empty()) unused.insert(t.picture);
+  }
+  std::vector<bool> used(textures.textures.size());
+  for (const std::uint32_t t : textures.of_triangle) {
+    if (t != kNoTexture) used[t] = true;
+  }
+  for (std::size_t t = 0; t < used.size(); ++t) {
+    if (used[t]) unused.erase(textures.textures[t].picture);
+  }
+  return unused.size();
 }
 
 // Splits vertices so that each triangle has corners with its own place in the atlas.
@@ -174,7 +191,13 @@ std::string counted(std::size_t n, const char* one, const char* several) {
 std::vector<std::string> JoinedTextures::notes() const {
   if (baked)
     return {"its textures are too many for one picture: they are baked into the vertices' colours"};
-  if (pictures + colours == 0) return {};
+  if (pictures + colours == 0 && unused == 0) return {};
+  const std::string left_out = unused == 0
+                                   ? std::string()
+                                   : counted(unused, "texture is on no triangle and is left out",
+                                             "textures are on no triangle and are left out");
+  if (pictures + colours == 0)
+    return {"the texture that is on all triangles is kept as it is; " + left_out};
   std::vector<std::string> all;
   std::string text = counted(pictures, "texture", "textures");
   if (colours > 0) text += " and " + counted(colours, "plain colour", "plain colours");
@@ -192,6 +215,7 @@ std::vector<std::string> JoinedTextures::notes() const {
   if (rounded_colours > 0)
     all.push_back(fmt::format("{} without texture in rounded colours, since there are too many",
                               counted(rounded_colours, "triangle is", "triangles are")));
+  if (unused > 0) all.push_back(left_out);
   return all;
 }
 
@@ -202,9 +226,13 @@ JoinedTextures joinTextures(Mesh& mesh, const SurfaceTextures& textures,
   assert(mesh.find("texcoord") && mesh.find("texcoord")->dimension == 2);
   if (const image::ImageFile* const picture = onlyPicture(textures)) {
     mesh.texture = picture->file;
-    return {};
+    JoinedTextures joined;
+    joined.unused = unusedPictures(textures);
+    return joined;
   }
-  return makeAtlas(mesh, textures, limits);
+  JoinedTextures joined = makeAtlas(mesh, textures, limits);
+  joined.unused = unusedPictures(textures);
+  return joined;
 }
 
 }  // namespace merlin::render::mesh

@@ -56,6 +56,7 @@ struct JoinedTextures {
   std::size_t reduced = 0;          // images with a smaller scale, because they are repeated often
   std::size_t mean_coloured = 0;    // triangles that repeat their image too often
   std::size_t rounded_colours = 0;  // triangles without image whose colour was rounded
+  std::size_t unused = 0;           // images that are on no triangle and are left out
   std::size_t split = 0;            // vertices that were added, at new seams
   bool baked = false;               // no atlas is possible: the images are not kept
 

@@ -2,12 +2,35 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "daemon/base/printable_text.h"
 
 namespace merlin::render::mesh {
+namespace {
+
+constexpr std::size_t kMostNames = 65536;  // that are looked at in a folder
+
+std::string inLowerCase(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+// Of names that differ only in case, the first one by its bytes is kept.
+void addName(const std::string& name, std::map<std::string, std::string>& names) {
+  const auto [found, fresh] = names.try_emplace(inLowerCase(name), name);
+  if (!fresh) found->second = std::min(found->second, name);
+}
+
+}  // namespace
 
 std::string folderOf(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
 
@@ -19,6 +42,68 @@ std::string pathBeside(const std::string& folder, std::string_view name) {
   if (leaves) path = path.substr(path.find_last_of('/') + 1);
   while (path.starts_with("./")) path.erase(0, 2);
   return folder + path;
+}
+
+CompanionFinder::CompanionFinder(std::string folder, const std::vector<std::string>& files)
+    : folder_(std::move(folder)), lists_(false) {
+  for (const std::string& file : files) {
+    if (!file.starts_with(folder_)) continue;
+    std::string above = folder_;
+    for (std::size_t at = folder_.size(), end = 0; end != std::string::npos; at = end + 1) {
+      end = file.find('/', at);
+      const std::string name = file.substr(at, end - at);
+      addName(name, folders_[above]);
+      above += name + '/';
+    }
+  }
+}
+
+const CompanionFinder::Names& CompanionFinder::namesIn(const std::string& folder) {
+  const auto [found, fresh] = folders_.try_emplace(folder);
+  if (!fresh || !lists_) return found->second;
+  std::error_code error;
+  std::filesystem::directory_iterator entries(folder.empty() ? "." : folder, error), end;
+  for (std::size_t n = 0; !error && entries != end && n < kMostNames; ++n) {
+    addName(entries->path().filename().string(), found->second);
+    entries.increment(error);
+  }
+  return found->second;
+}
+
+// The same path if there is nothing like it.
+std::string CompanionFinder::inAnyCase(const std::string& path) {
+  std::string found = folder_;
+  for (std::size_t at = folder_.size(), end = 0; end != std::string::npos; at = end + 1) {
+    end = path.find('/', at);
+    std::string name = path.substr(at, end - at);
+    if (!exists(found + name)) {
+      const Names& names = namesIn(found);
+      const auto like = names.find(inLowerCase(name));
+      if (like == names.end()) return path;
+      name = like->second;
+    }
+    found += end == std::string::npos ? name : name + '/';
+  }
+  return found;
+}
+
+std::string CompanionFinder::find(std::string_view name) {
+  std::string path = pathBeside(folder_, name);
+  if (exists(path)) return path;
+  std::string found = inAnyCase(path);
+  if (found != path) other_.try_emplace(std::move(path), found);
+  return found;
+}
+
+std::string CompanionFinder::note() const {
+  if (other_.empty()) return {};
+  const auto& [named, found] = *other_.begin();
+  const std::string others = other_.size() == 1
+                                 ? std::string()
+                                 : fmt::format("; the same holds for {} more", other_.size() - 1);
+  return fmt::format(
+      "{}: is read in place of {}, which is not there and differs only in capitals{}", found,
+      named.substr(folder_.size()), others);
 }
 
 std::string plainName(const std::string& path) {

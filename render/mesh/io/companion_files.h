@@ -2,8 +2,11 @@
 // or below (materials, texture images).
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace merlin::render::mesh {
 
@@ -14,6 +17,34 @@ std::string folderOf(const std::string& path);
 // machine or be hostile: if `name` is absolute or could leave the folder ("..", ":"), only its last
 // component is used.
 std::string pathBeside(const std::string& folder, std::string_view name);
+
+// Finds the companion files that a mesh file in `folder` names, also those whose names differ in
+// upper and lower case (of ASCII letters), as names from DOS and Windows may. Thread-bound.
+class CompanionFinder {
+ public:
+  // Lists folders when that is needed, each once.
+  explicit CompanionFinder(std::string folder) : folder_(std::move(folder)), lists_(true) {}
+  // Takes names from `files` instead, for a process that may not list folders. Paths that do not
+  // begin with `folder` are ignored.
+  CompanionFinder(std::string folder, const std::vector<std::string>& files);
+
+  // Returns pathBeside() if something is there, else the first path (by its bytes) that differs
+  // from it only in case; if there is none, pathBeside() again.
+  std::string find(std::string_view name);
+
+  // Says which file was found in place of another name, and how many more; empty if none was.
+  std::string note() const;
+
+ private:
+  using Names = std::map<std::string, std::string>;  // by the name in lower case
+  const Names& namesIn(const std::string& folder);
+  std::string inAnyCase(const std::string& path);
+
+  std::string folder_;
+  bool lists_;
+  std::map<std::string, Names> folders_;      // by path, with a trailing slash
+  std::map<std::string, std::string> other_;  // path found, by the path that was named
+};
 
 // Name prefix of the companion files of `path`: its file name, in which each byte that could end a
 // name in the file that refers to it (a blank, a quote, ...) becomes "=" and two hexadecimal

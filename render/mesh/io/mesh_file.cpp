@@ -190,7 +190,8 @@ std::optional<MeshFileSize> meshFileSize(const std::string& path) {
   if (!file) return std::nullopt;
   auto size = reader->size(file->text(), folderOf(path));
   const std::size_t bytes = file->text().size();
-  if (!size || size->mesh.vertices > bytes || size->mesh.triangles > bytes) return std::nullopt;
+  // Colours of faces may need a vertex for each corner of its triangles.
+  if (!size || size->mesh.vertices > 3 * bytes || size->mesh.triangles > bytes) return std::nullopt;
   return size;
 }
 

@@ -35,7 +35,7 @@ std::string readableClouds();
 // place: kMalformed, kUnsupported.
 Result<PointCloud> parseCloud(std::string_view bytes);
 
-// As parseCloud(). Errors: with the file's name; kNotFound, kIo.
+// As parseCloud(). Errors: with the file's name; kNotFound, kIo, kNoMemory (the file is too large).
 Result<PointCloud> readCloud(const std::string& path);
 
 }  // namespace merlin::render::points

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "daemon/base/printable_text.h"
 #include "render/mesh/io/ply/ply.h"
 #include "render/mesh/io/ply/ply_body.h"
@@ -71,6 +73,20 @@ void readExactly(std::string_view bytes, PointCloud& cloud) {
   }
 }
 
+// Errors: kUnsupported (more points than are read). Faults of the header are found by the parser.
+Result<Ok> checkCount(std::string_view bytes) {
+  const auto header = mesh::ply::parseHeader(bytes);
+  if (!header) return Ok{};
+  for (const Element& e : header->elements) {
+    if (e.name == "vertex" && e.count > kMostPoints)
+      return Error{Errc::kUnsupported,
+                   fmt::format("{} points; up to {} are read; thin it with: pdal translate IN "
+                               "OUT.las sample --filters.sample.radius=0.1",
+                               e.count, kMostPoints)};
+  }
+  return Ok{};
+}
+
 }  // namespace
 
 bool isPlyCloud(std::string_view bytes) {
@@ -88,6 +104,7 @@ bool isPlyCloud(std::string_view bytes) {
 }
 
 Result<PointCloud> parsePlyCloud(std::string_view bytes) {
+  if (const auto few = checkCount(bytes); !few) return few.error();
   auto loaded = mesh::ply::parse(bytes);
   // It quotes the file.
   if (!loaded) return Error{loaded.error().code, oneLine(loaded.error().what)};

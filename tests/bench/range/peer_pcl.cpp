@@ -2,9 +2,9 @@
 //
 //   range_peer_pcl IN.pcd OUT.ply MOST_EDGE ROUNDS
 //
-// reads the cloud, applies a median filter, triangulates and writes it ROUNDS times, and prints the
-// medians of the steps as one JSON object [ms]. It filters no spikes and computes no normals, so it
-// does less than MERLIN.
+// reads, median-filters, triangulates and writes so many times, and prints the medians of the steps
+// as one JSON object [ms]. It has no filter for spikes and computes no normals, so it does less.
+// Why it is the only peer: render/range/README.md.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

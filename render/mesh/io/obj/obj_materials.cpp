@@ -33,14 +33,14 @@ class Library {
   // opens  whether images are read; else only their paths are kept
   Library(const std::vector<std::string>& names, std::string folder,
           std::vector<std::string>& notes, bool opens)
-      : folder_(std::move(folder)), notes_(notes), materials_(names.size()), opens_(opens) {
+      : files_(std::move(folder)), notes_(notes), materials_(names.size()), opens_(opens) {
     for (std::size_t i = 0; i < names.size(); ++i) numbers_.emplace(names[i], i);
   }
 
   void read(const std::string& name) {
-    const auto file = MappedFile::open(pathBeside(folder_, name));
+    const auto file = MappedFile::open(files_.find(name));
     if (!file) {
-      notes_.push_back(file.error().what + "; its materials are left out");
+      note(file.error().what + "; its materials are left out");
       return;
     }
     ObjMaterial* material = nullptr;  // null: a material that no face uses
@@ -56,7 +56,13 @@ class Library {
     }
   }
 
-  std::vector<ObjMaterial> take() { return std::move(materials_); }
+  std::vector<ObjMaterial> take() {
+    if (std::string other = files_.note(); !other.empty()) notes_.push_back(std::move(other));
+    if (noted_ > kMostNotes)
+      notes_.push_back(
+          fmt::format("{} more notes about its materials are left out", noted_ - kMostNotes));
+    return std::move(materials_);
+  }
 
   std::vector<std::string> paths() const {
     std::vector<std::string> paths;
@@ -65,6 +71,12 @@ class Library {
   }
 
  private:
+  static constexpr std::size_t kMostNotes = 16;
+
+  void note(std::string text) {
+    if (++noted_ <= kMostNotes) notes_.push_back(std::move(text));
+  }
+
   ObjMaterial* find(std::string_view name) {
     const auto at = numbers_.find(name);
     return at == numbers_.end() || name.empty() ? nullptr : &materials_[at->second];
@@ -86,7 +98,7 @@ class Library {
       int words = wordsOf(option);
       if (words < 0) break;  // a file name that begins with '-'
       if (option == "-s" || option == "-o")
-        notes_.push_back(fmt::format("map_Kd {}: the option {} is ignored", excerpt(line), option));
+        note(fmt::format("map_Kd {}: the option {} is ignored", excerpt(line), option));
       float number = 0;
       for (bool first = true; words > 0; --words, first = false) {
         std::string_view next = after;
@@ -98,7 +110,7 @@ class Library {
       }
       rest = trimmed(after);
     }
-    material.picture = pictureOf(pathBeside(folder_, rest));
+    material.picture = pictureOf(files_.find(rest));
   }
 
   std::shared_ptr<const image::ImageFile> pictureOf(const std::string& path) {
@@ -109,14 +121,15 @@ class Library {
     if (auto read = reading_.read(path))
       picture = std::make_shared<const image::ImageFile>(*std::move(read));
     else
-      notes_.push_back(read.error().what + "; its colours are left out");
+      note(read.error().what + "; its colours are left out");
     pictures_[path] = picture;
     return picture;
   }
 
   std::map<std::string, std::size_t, std::less<>> numbers_;  // by name
-  std::string folder_;
+  CompanionFinder files_;
   std::vector<std::string>& notes_;
+  std::size_t noted_ = 0;
   std::vector<ObjMaterial> materials_;
   bool opens_;
   TexturePictures reading_;

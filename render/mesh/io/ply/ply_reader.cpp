@@ -26,18 +26,20 @@ std::vector<image::ImageFile> picturesOf(const std::vector<std::string>& names,
                                          std::vector<std::string>& notes) {
   std::vector<image::ImageFile> pictures;
   TexturePictures reading;
+  CompanionFinder files(folder);
   for (const std::string& name : names) {
     pictures.emplace_back();
     if (name.find('\0') != std::string::npos) {
       notes.push_back(name + ": is not a valid file name; the texture image is left out");
       continue;
     }
-    auto picture = reading.read(pathBeside(folder, name));
+    auto picture = reading.read(files.find(name));
     if (picture)
       pictures.back() = *std::move(picture);
     else
       notes.push_back(picture.error().what + "; the texture image is left out");
   }
+  if (std::string note = files.note(); !note.empty()) notes.push_back(std::move(note));
   return pictures;
 }
 
@@ -156,8 +158,9 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
   if (header->pictures.empty()) return found;
   constexpr std::size_t kTextured = 40;  // bytes per triangle: coordinates, texture number
   found.meanwhile = kTextured * found.mesh.triangles;
+  CompanionFinder files(folder);
   for (const std::string& name : header->pictures)
-    if (name.find('\0') == std::string::npos) found.pictures.push_back(pathBeside(folder, name));
+    if (name.find('\0') == std::string::npos) found.pictures.push_back(files.find(name));
   return found;
 }
 
