@@ -98,6 +98,7 @@ class Thumbnails {
   shm::SegmentFollower<shm::SegmentReader<shm::WallSegment>> wall_;
   rfb::ShownPicture picture_;
   ShowingWatch watch_;
+  bool unwritable_ = false;  // whether the last file could not be written
   WatchedThread thread_;
 };
 
