@@ -72,6 +72,34 @@ TEST_F(MeshCli, PicturesModelsSideBySide) {
   EXPECT_NE(picture.output.find("p.png: 128 x 48"), std::string::npos) << picture.output;
 }
 
+// The lengths are those of the reduction, so other weights give another picture.
+TEST_F(MeshCli, PicturesEdgesByTheirWeights) {
+  const auto drawn = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {kMerlin, "mesh", "picture", scan_, "--edges", "-o", dir_ / name,
+                               "--width", "160", "--height", "120"});
+    const Outcome done = run(std::move(more));
+    EXPECT_EQ(done.status, 0) << done.output;
+    expectPicture(dir_ / name, 50);
+    return readText(dir_ / name);
+  };
+  const std::string typical = drawn("a.png", {"--preset", "typical1998"});
+  EXPECT_TRUE(drawn("b.png", {"--preset", "typical1998"}) == typical);
+  EXPECT_FALSE(drawn("c.png", {"--preset", "typical1998", "--weight", "curvature=0"}) == typical);
+  EXPECT_FALSE(drawn("d.png", {}) == typical) << "default weights";
+  const auto refusal = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {kMerlin, "mesh", "picture", scan_, "-o", dir_ / "e.png"});
+    const Outcome done = run(std::move(more));
+    EXPECT_EQ(done.status, 1) << done.output;
+    return done.output;
+  };
+  EXPECT_NE(refusal({"--weight", "colour=1"}).find("--preset and --weight: need --edges"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--edges", "--wireframe"}).find("cannot be combined with --wireframe"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--edges", "--weight", "heat=1"}).find("weight heat: the mesh has no such"),
+            std::string::npos);
+}
+
 // A square of two triangles in the plane z = `height`, as ASCII PLY.
 std::string squarePly(double height) {
   return fmt::format(
