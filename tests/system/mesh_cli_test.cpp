@@ -1,5 +1,6 @@
 // `merlin mesh` commands that succeed, with formats, repairs and labels: their output and files.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -31,6 +32,15 @@ TEST_F(MeshCli, ReduceInfoExportAgree) {
       nlohmann::json::parse(reduced.output.substr(reduced.output.find("{\"output\"")));
   EXPECT_EQ(report["triangles"], 69612) << "and 24 with two corners at one place";
   EXPECT_GT(report["collapses_per_second"], 0);
+  const auto box = infoOf(dir_ / "a.mrm")["box"];
+  double squares = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    squares += std::pow(box["high"][k].get<double>() - box["low"][k].get<double>(), 2);
+  const double estimate = report["error_estimate"];
+  EXPECT_GT(estimate, 0);
+  EXPECT_NEAR(report["error_estimate_percent"].get<double>(), 100 * estimate / std::sqrt(squares),
+              1e-4)
+      << "of the diagonal of the original's box";
   EXPECT_NE(reduced.output.find("collapses/s"), std::string::npos)
       << "progress, also without a terminal";
 
