@@ -9,7 +9,9 @@ void describePreset(render::room::RoomPresetSettings& p, SettingsVisitor& v) {
   v.oneOf("name", p.name, render::room::kRoomPresetNames,
           "Shape of the wall. none: the room has panels and displays of its own. flat: a row of "
           "panels in one plane. three_160, three_120: three panels, hinged at 160 or 120 degrees. "
-          "six: two rows of three frames. hexagon: six panels, closed around the viewer.");
+          "six: two rows of three frames. hexagon: six panels, closed around the viewer. arc_160: "
+          "three panels that fill 160 degrees of the viewer's horizontal view. arc_120: six panels "
+          "that fill 120 degrees of it.");
   v.integer("panels", p.panels, {0, render::room::kMostPanels},
             "Number of panels of preset flat; 0: three panels. Other presets have a fixed number.");
   v.number("panel_width_m", p.panel_width_m, {0.01, 1000}, "Width of each panel in metres.");

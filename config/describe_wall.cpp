@@ -53,6 +53,9 @@ void describeRate(render::governor::GovernorSettings& governor, SettingsVisitor&
       "The frame rate, and limits of the number of triangles, which is adapted to keep the rate.",
       [&] {
         v.number("rate_hz", governor.rate_hz, {1, 240}, "Frames per second while anything moves.");
+        v.number("min_rate_hz", governor.min_rate_hz, {1, 240},
+                 "Lowest frame rate to which the wall goes down while not even the coarsest detail "
+                 "is drawn in time. A rate of less than twice this one is never lowered.");
         v.integer("min_triangles", governor.min_triangles, {4, 1e6},
                   "Minimum number of triangles of a model per frame while anything moves, even if "
                   "frames are late.");

@@ -42,7 +42,7 @@ constexpr Described kWall[] = {
     {"oscillation", "oscillation_ratio", "(p95 - p5) / mean of the last 100 moving frames' costs."},
     {"detail_step", "", "Step of the content's detail; 0 is full detail."},
     {"budget", "", "Cost that the next moving frame may have."},
-    {"rate_divisor", "", "1; 2 or 4 while even the coarsest detail takes too long."},
+    {"rate_divisor", "", "1; 2 to 4 while even the coarsest detail takes too long."},
     {"scale_divisor", "", "2 while moving tiles are drawn at half size, otherwise 1."},
     {"operator_coarser", "", "1 while the operator's view is coarser to save time."},
     {"ladder_steps_total", "", "Changes of rate_divisor, scale_divisor and operator_coarser."},

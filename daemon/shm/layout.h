@@ -135,7 +135,7 @@ struct WallStats {
   char posture[20];                // current posture; empty: none
   std::uint32_t scale_divisor;     // 2 while moving tiles are drawn at half size, otherwise 1
   float rate_now_hz;               // desired rate divided by rate_divisor
-  std::uint32_t rate_divisor;      // 1; 2 or 4 while even the coarsest detail takes too long
+  std::uint32_t rate_divisor;      // 1; 2 to 4 while even the coarsest detail takes too long
   std::uint32_t operator_coarser;  // 1 while the operator's view is coarser to save time
   std::uint32_t ladder_steps;      // changes of these degradations, up and down, since the start
   std::uint32_t budget;            // cost that the next moving frame may have

@@ -248,8 +248,8 @@ void DeviceFeed::readHand(const shm::DeviceSlots& devices, const actions::Action
 std::optional<TrackerSample> DeviceFeed::predicted(const shm::DeviceSlots& devices,
                                                    const FollowedHand& followed, Timestamp now) {
   auto hand = station(devices, followed.place, now);
-  if (hand && settings_.ahead > Duration::zero())
-    predictPose(devices.hand(followed.name), now + settings_.ahead, *hand);
+  if (hand && until_visible_ > Duration::zero())
+    predictPose(devices.hand(followed.name), now + until_visible_, *hand);
   return hand;
 }
 

@@ -28,6 +28,7 @@ class DeviceFeed final : public InputFeed {
       : devices_(std::move(segment_name)), settings_(std::move(settings)), turns_(settings_.turn) {}
 
   WallInput read(Timestamp now) override;
+  void lookAhead(Duration until_visible) override { until_visible_ = until_visible; }
   void configure(const FeedSettings& settings) override {
     settings_ = settings;
     turns_.setAfter(settings.turn);
@@ -69,6 +70,7 @@ class DeviceFeed final : public InputFeed {
   shm::SegmentFollower<shm::DevicesReader> devices_;
   FeedSettings settings_;
   Turns turns_;
+  Duration until_visible_ = Duration::zero();
   std::optional<std::string> holder_;  // who has the wall
   std::size_t hand_ = 0;               // the hand that acted last: index of settings_.hands
   bool other_hand_ = false;            // hand_ changed at the last read

@@ -51,8 +51,6 @@ struct FeedSettings {
   FollowedStation head;              // on the viewer's head
   // Age at which samples of tracker and glove count as missing.
   Duration stale_after{};
-  // Time from the start of a frame until it is visible; the hand's pose is predicted for that time.
-  Duration ahead{};
   // While a person acts, and this long after, other people's input does not count.
   Duration turn{};
 };
@@ -64,6 +62,10 @@ class InputFeed {
 
   // Reads the newest input of every device that works; never waits.
   virtual WallInput read(Timestamp now) = 0;
+
+  // Sets the time from the start of a frame until it is visible, from the next read() on: poses of
+  // hands are predicted for then. Zero, as at the start: they are not predicted.
+  virtual void lookAhead(Duration until_visible) { static_cast<void>(until_visible); }
 
   // Replaces the settings, from the next read() on.
   virtual void configure(const FeedSettings& settings) { static_cast<void>(settings); }

@@ -1,11 +1,15 @@
 #include "daemon/wall/pace.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 namespace merlin::wall {
 namespace {
 
 constexpr std::string_view kTriangles = "triangles";  // the unit of models and of min_triangles
+constexpr int kSmallerTiles = 1;  // the ladder's step on which tiles are smaller at the full rate
+constexpr int kMostRateDivisor = 4;  // whatever min_rate_hz is
 
 }  // namespace
 
@@ -14,6 +18,7 @@ Pace::Pace(render::governor::Governor& governor)
       configured_hz_(1 / toSeconds(governor.period())),
       asked_hz_(configured_hz_),
       period_(governor.period()) {
+  limitLadder();
   noteLimits();
 }
 
@@ -47,6 +52,7 @@ bool Pace::update() {
   governor_.hold(held < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(held)));
   const double set_hz = set_rate_hz_.load();
   asked_hz_ = set_hz > 0 ? set_hz : configured_hz_;
+  limitLadder();
   const double now_hz = asked_hz_ / rateDivisor();
   if (period_ == fromSeconds(1 / now_hz)) return false;
   governor_.setRate(now_hz);
@@ -66,11 +72,30 @@ void Pace::observeOperator(bool coarser) {
   if (operator_ladder_.observe(coarser, true, true)) ++changes_;
 }
 
+// The largest divisor of the rate that keeps it at min_rate_hz or above; 1 if there is none.
+int Pace::mostDivisor() const noexcept {
+  constexpr double kRounding = 1e-6;  // periods are whole nanoseconds
+  const double times = std::floor(asked_hz_ / governor_.minRateHz() + kRounding);
+  return static_cast<int>(std::clamp(times, 1.0, double{kMostRateDivisor}));
+}
+
+int Pace::divisorAt(int step) const noexcept {
+  return std::min(1 << std::max(step - kSmallerTiles, 0), mostDivisor());
+}
+
+// Leaves out the steps that would not lower the rate any further.
+void Pace::limitLadder() noexcept {
+  const int slower = std::min(mostDivisor() - 1, 2);
+  if (ladder_.setMost(kSmallerTiles + slower)) ++changes_;
+}
+
 // Whether there is room for the next better pace: at full size a frame costs at most four times as
-// much, and at twice the rate its period is half as long.
+// much, and at a higher rate its period is shorter.
 bool Pace::betterFits() const {
   const double needed_s = governor_.predict(governor_.least());
-  const double times = ladder_.step() > 1 ? 2 : 4;
+  const int step = ladder_.step();
+  const double times =
+      step > kSmallerTiles ? double(divisorAt(step)) / double(divisorAt(step - 1)) : 4;
   return times * needed_s < toSeconds(period_) * (1 - governor_.headRoom());
 }
 

@@ -1,11 +1,11 @@
 // Pace: decides the frame rate, and the size of the tiles, while something moves.
 //
 // A person may fix the rate and the detail. If not even frames of the coarsest detail meet their
-// deadlines, tiles are drawn at half their width and height; after that the rate is halved, at most
-// twice (render/governor/degradation_ladder.h).
+// deadlines, tiles are drawn at half their width and height; after that at half the rate, then at a
+// quarter (render/governor/degradation_ladder.h). The rate stays at least Governor::minRateHz():
+// of 30 Hz, 15 and 10 Hz remain.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <optional>
@@ -59,12 +59,15 @@ class Pace {
   Duration period() const noexcept { return period_; }
   double askedHz() const noexcept { return asked_hz_; }
   int sizeDivisor() const noexcept { return ladder_.step() > 0 ? 2 : 1; }
-  int rateDivisor() const noexcept { return 1 << std::max(ladder_.step() - 1, 0); }
+  int rateDivisor() const noexcept { return divisorAt(ladder_.step()); }
   bool operatorIsCoarser() const noexcept { return operator_ladder_.step() > 0; }
   // Changes of the tiles' size, the rate and the operator's view, since the start.
   std::uint32_t changes() const noexcept { return changes_; }
 
  private:
+  int mostDivisor() const noexcept;
+  int divisorAt(int step) const noexcept;
+  void limitLadder() noexcept;
   bool betterFits() const;
   void noteLimits() noexcept;
 
@@ -73,7 +76,7 @@ class Pace {
   double configured_hz_;
   double asked_hz_;
   Duration period_;
-  // The first step halves the size of the tiles, each further one halves the rate.
+  // The first step halves the size of the tiles, each further one lowers the rate.
   render::governor::DegradationLadder ladder_{3};
   render::governor::DegradationLadder operator_ladder_{1};
   std::uint32_t changes_ = 0;

@@ -43,12 +43,14 @@ void WallLoop::calibrate() { turns_.calibrate(view_.T_eye_model); }
 
 void WallLoop::run(const std::stop_token& stop, const std::function<void()>& first_frame) {
   parts_.frame_clock.start(parts_.clock.now(), pace_.period());
+  parts_.feed.lookAhead(pace_.period());
   bool first = true;
   for (std::int64_t k = 0; parts_.frame_clock.waitFor(k, stop);) {
     const Timestamp began = parts_.clock.now();
     applyRequests();
     if (pace_.update()) {
       parts_.frame_clock.start(parts_.frame_clock.begin(k), pace_.period());
+      parts_.feed.lookAhead(pace_.period());  // a frame is visible when the next one begins
       k = 0;
     }
     readInput(k, began);

@@ -204,7 +204,6 @@ FeedSettings WallRole::feedSettings(const Settings& settings) {
   const render::stereo::HeadSettings& head = settings.wall.stereo.head;
   feed.head = {head.tracker, head.station};
   feed.stale_after = fromSeconds(settings.devices.stale_after_s);
-  feed.ahead = fromSeconds(1 / settings.wall.governor.rate_hz);
   feed.turn = fromSeconds(settings.devices.turn_s);
   return feed;
 }
@@ -217,7 +216,7 @@ void WallRole::reload(const Settings& settings, const WallChanges& changes) {
     tuning.places = placesOf(entries_, settings.wall.playlist.contents);
   }
   if (changes.scene) tuning.scene = settings.wall.scene;
-  if (changes.rate || changes.input) tuning.feed = feedSettings(settings);
+  if (changes.input) tuning.feed = feedSettings(settings);
   if (WallLoop* loop = loop_.load()) loop->tune(std::move(tuning));
   if (!changes.corrections) return;
   for (const render::out::OutputSettings& output : settings.wall.outputs)

@@ -25,6 +25,11 @@ bool DegradationLadder::observe(bool late, bool least, bool higher_fits) noexcep
   return false;
 }
 
+bool DegradationLadder::setMost(int most) noexcept {
+  most_ = most;
+  return step_ > most && go(most);
+}
+
 bool DegradationLadder::go(int step) noexcept {
   step_ = step;
   evidence_ = 0;

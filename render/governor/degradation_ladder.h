@@ -25,6 +25,10 @@ class DegradationLadder {
 
   int step() const noexcept { return step_; }  // 0: full quality
 
+  // Replaces the number of the lowest step; if the ladder is further down, it goes up to that step.
+  // Returns whether the step has changed. REQUIRES: most >= 0.
+  bool setMost(int most) noexcept;
+
  private:
   bool go(int step) noexcept;
 

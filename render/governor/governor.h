@@ -104,6 +104,8 @@ class Governor {
     return std::min(settings_.min_triangles, least_useful_.value_or(settings_.min_triangles));
   }
   std::size_t most() const noexcept { return settings_.max_triangles; }  // its upper limit
+  // The lowest rate that the caller may set because frames are late.
+  double minRateHz() const noexcept { return settings_.min_rate_hz; }
 
  private:
   struct Model {

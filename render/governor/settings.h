@@ -9,6 +9,10 @@ namespace merlin::render::governor {
 
 struct GovernorSettings {
   double rate_hz = 30;  // frames per second while anything moves
+  // Lowest frame rate that is tried while not even frames of the coarsest detail are in time; a
+  // rate of less than twice this one is never lowered. [GOURLEY98] B.3: a person needs 10 frames a
+  // second.
+  double min_rate_hz = 10;
   // Lower limit of the budget, even if frames are late. For a content whose detail is not measured
   // in triangles, the limit is lowered to the cost at which the content is still recognisable.
   std::size_t min_triangles = 500;

@@ -35,6 +35,7 @@
 #include <Inventor/nodes/SoNurbsSurface.h>
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoShape.h>
+#include <Inventor/nodes/SoText2.h>
 #include <Inventor/nodes/SoTexture2.h>
 #include <Inventor/nodes/SoWWWInline.h>
 #include <fmt/format.h>
@@ -116,7 +117,7 @@ class GraphReader {
     action.addPreCallback(root->getTypeId(), leaveOutNormals, nullptr);
     action.addPreCallback(shape, beginShape, this);
     for (const SoType type :
-         {SoImage::getClassTypeId(), SoNurbsSurface::getClassTypeId(),
+         {SoImage::getClassTypeId(), SoText2::getClassTypeId(), SoNurbsSurface::getClassTypeId(),
           SoIndexedNurbsSurface::getClassTypeId(), SoNurbsCurve::getClassTypeId(),
           SoIndexedNurbsCurve::getClassTypeId()})
       action.addPreCallback(type, leaveOut, this);
@@ -133,7 +134,9 @@ class GraphReader {
     if (others_ > 0) built.notes.push_back(fmt::format("left out: {} lines and points", others_));
     if (unmade_ > 0)
       built.notes.push_back(
-          fmt::format("left out: {} images and NURBS, for which Coin needs a display", unmade_));
+          fmt::format("left out: {} images, flat texts (Text2) and NURBS, for which Coin needs a "
+                      "display",
+                      unmade_));
     if (inlines > 0)
       built.notes.push_back(fmt::format("left out: {} other files that it includes", inlines));
     return built;

@@ -2,20 +2,22 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "daemon/base/result.h"
 #include "render/lod/dendrogram.h"
+#include "render/mesh/io/mesh_file.h"
 
 namespace merlin::render::inventor {
 
 // Writes Open Inventor 2.1 ASCII, with frame rate control on. For programs without the SoMRFaceSet
 // module, the file also holds a plain surface of at most `kAlternateTriangles` triangles
-// (alternateRep), which is small compared with the model. The file appears whole or not at all.
-// Returns the names of the features that the file cannot hold. Errors: kIo, kNotFound, kUnsupported
-// (no triangles; more nodes or triangle corners than 2^31 - 1).
-Result<std::vector<std::string>> writeMultiresolution(const std::string& path,
-                                                      const lod::Dendrogram& model);
+// (alternateRep), which is small compared with the model. The texture image of a model with texture
+// coordinates becomes a companion file, as in mesh::writeMesh(). The files appear whole or not at
+// all. Returns what was written, and what the file cannot hold. Errors: kIo, kNotFound,
+// kUnsupported (no triangles; more nodes or triangle corners than 2^31 - 1), kInvalidArgument (the
+// companion file exists with different content).
+Result<mesh::WrittenMesh> writeMultiresolution(const std::string& path,
+                                               const lod::Dendrogram& model);
 
 inline constexpr std::size_t kAlternateTriangles = 10'000;
 inline constexpr double kWrittenFrameRate_hz = 30;

@@ -17,6 +17,8 @@ constexpr const char* kLower[] = {"lower_left", "lower_centre", "lower_right"};
 constexpr const char* kAround[] = {"rear_left",   "front_left", "front",
                                    "front_right", "rear_right", "rear"};
 
+constexpr std::size_t kArcFrames = 6;
+
 // A row of equal panels, each hinged at the same angle to its left neighbour.
 struct Chain {
   std::vector<std::string> names;
@@ -40,12 +42,25 @@ double distanceOfMiddle(double width, double hinge_deg) {
   return width / 2 / std::tan((180 - hinge_deg) / 2 * kRadian<double>);
 }
 
+// The same for a chain at whose front is a seam: the distance of the seam.
+double distanceOfSeam(double width, double hinge_deg) {
+  return width / 2 / std::sin((180 - hinge_deg) / 2 * kRadian<double>);
+}
+
+// The angle at which `count` equal panels fill `view_deg` of the view of somebody who is equally
+// far from all of them.
+double hingeOfArc(std::size_t count, double view_deg) {
+  return 180 - view_deg / static_cast<double>(count);
+}
+
 // Adds the panels; the front one is `distance` ahead, with its lower edge at height `bottom` [m].
 void addChain(const Chain& chain, const RoomPresetSettings& p, double distance, double bottom,
               std::vector<PanelSettings>& panels) {
   const double turn_deg = 180 - chain.hinge_deg;
-  // Walks from the middle of the front along the lower edges to the chain's left end.
-  double x = 0, z = -distance, yaw_deg = 0;
+  // Walks from the middle of the front along the lower edges to the chain's left end. Left of a
+  // seam at the front, half of the turn lies on either side.
+  const bool seam = std::fmod(chain.front, 1.0) > 0;
+  double x = 0, z = -distance, yaw_deg = seam ? turn_deg / 2 : 0;
   for (double left = chain.front + 0.5; left > 0;) {
     const double part = std::fmod(left, 1.0) > 0 ? std::fmod(left, 1.0) : 1.0;
     x -= part * p.panel_width_m * std::cos(yaw_deg * kRadian<double>);
@@ -88,6 +103,17 @@ std::vector<PanelSettings> panelsOf(const RoomPresetSettings& p) {
     case RoomPreset::kHexagon:
       add({listOf(kAround), 120, 2}, distanceOfMiddle(width, 120), bottom);
       break;
+    case RoomPreset::kArc160: {
+      const double hinge_deg = hingeOfArc(panelCount(p), 160);
+      add({listOf(kThree), hinge_deg, 1}, distanceOfMiddle(width, hinge_deg), bottom);
+      break;
+    }
+    case RoomPreset::kArc120: {
+      Chain chain = flatRow(panelCount(p));
+      chain.hinge_deg = hingeOfArc(panelCount(p), 120);
+      add(chain, distanceOfSeam(width, chain.hinge_deg), bottom);
+      break;
+    }
   }
   return panels;
 }
@@ -131,9 +157,11 @@ std::size_t panelCount(const RoomPresetSettings& preset) {
     case RoomPreset::kFlat:
       return preset.panels > 0 ? static_cast<std::size_t>(preset.panels) : std::size(kThree);
     case RoomPreset::kThree160:
-    case RoomPreset::kThree120: return std::size(kThree);
+    case RoomPreset::kThree120:
+    case RoomPreset::kArc160: return std::size(kThree);
     case RoomPreset::kSix: return std::size(kUpper) + std::size(kLower);
     case RoomPreset::kHexagon: return std::size(kAround);
+    case RoomPreset::kArc120: return kArcFrames;
   }
   return 0;
 }

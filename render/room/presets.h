@@ -5,6 +5,8 @@
 //   three_120  three panels, hinged at 120 degrees; the viewer is equally far from all
 //   six        two rows of three panels in one plane; the viewer's distance is their width
 //   hexagon    six panels, hinged at 120 degrees, closed around the viewer in the middle
+//   arc_160    three panels that fill 160 degrees of the view; the viewer is equally far from all
+//   arc_120    six panels that fill 120 degrees of the view; the viewer is equally far from all
 #pragma once
 
 #include "render/room/settings.h"

@@ -23,9 +23,9 @@ inline constexpr std::size_t kLongestDisplayName = 15;
 inline constexpr const char* kOperatorTile = "operator";
 
 // In the order of kRoomPresetNames.
-enum class RoomPreset { kNone, kFlat, kThree160, kThree120, kSix, kHexagon };
-inline constexpr const char* kRoomPresetNames[] = {"none",      "flat", "three_160",
-                                                   "three_120", "six",  "hexagon"};
+enum class RoomPreset { kNone, kFlat, kThree160, kThree120, kSix, kHexagon, kArc160, kArc120 };
+inline constexpr const char* kRoomPresetNames[] = {"none", "flat",    "three_160", "three_120",
+                                                   "six",  "hexagon", "arc_160",   "arc_120"};
 inline constexpr const char* nameOf(RoomPreset preset) {
   return kRoomPresetNames[static_cast<int>(preset)];
 }

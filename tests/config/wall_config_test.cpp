@@ -75,13 +75,15 @@ TEST(WallConfig, WhatIsWrongWithARoomIsSaidOnce) {
             "eye is 1.000 m behind it; check eye_m, yaw_deg and the hinges\n");
   EXPECT_EQ(wallIs(R"("room": {"eye_m": [0, 1, 0]})"),
             "f.json:1: /wall/room cannot be used: the room has no panels: list them in /panels, or "
-            "choose a preset in /preset/name (flat, three_160, three_120, six, hexagon)\n");
+            "choose a preset in /preset/name (flat, three_160, three_120, six, hexagon, "
+            "arc_160, arc_120)\n");
   EXPECT_EQ(wallIs(R"("room": {"preset": {"name": "cave"}})"),
             "f.json:1: /wall/room/preset/name is the string \"cave\"; allowed is one of none, "
-            "flat, three_160, three_120, six, hexagon\n");
-  EXPECT_EQ(wallIs(R"("room": {"preset": {"name": 3}})"),
-            "f.json:1: /wall/room/preset/name is the number 3; allowed is one of \"none\", "
-            "\"flat\", \"three_160\", \"three_120\", \"six\", \"hexagon\"\n");
+            "flat, three_160, three_120, six, hexagon, arc_160, arc_120\n");
+  EXPECT_EQ(
+      wallIs(R"("room": {"preset": {"name": 3}})"),
+      "f.json:1: /wall/room/preset/name is the number 3; allowed is one of \"none\", "
+      "\"flat\", \"three_160\", \"three_120\", \"six\", \"hexagon\", \"arc_160\", \"arc_120\"\n");
 }
 
 // Three projectors on a hinged screen. The measured figures are rounded, so left and right are

@@ -1,9 +1,9 @@
-// The images of `merlin mesh compare`, as far as they need no OpenGL.
-#include "daemon/cli/mesh/compare_pictures.h"
-
+// The images of `merlin mesh compare`: the parts that need no OpenGL.
 #include <gtest/gtest.h>
 
+#include "daemon/cli/mesh/edge_bands.h"
 #include "render/image/picture_difference.h"
+#include "render/reduce/edge_lengths.h"
 #include "tests/support/meshes.h"
 
 namespace merlin::cli {
@@ -42,7 +42,7 @@ TEST(PictureDifference, CountsPixelsOfWhichAChannelHasChangedByMoreThan15Percent
 TEST(EdgeBands, AreRedWhereAnEdgeIsShortAndBlueWhereItIsLong) {
   // Sides of length 3, 5 and 4.
   const render::mesh::Mesh triangle{{0, 0, 0, 3, 0, 0, 0, 4, 0}, {}, {0, 1, 2}};
-  const render::mesh::Mesh bands = edgeBands(triangle, View{});
+  const render::mesh::Mesh bands = edgeBands(triangle, ranksOf(lengthsInSpace(triangle)), View{});
   ASSERT_EQ(bands.vertexCount(), 3 * 4 + 3u);
   ASSERT_EQ(bands.triangleCount(), 3 * 2 + 1u);
   const std::vector<float>& colours = bands.find("colour")->values;
@@ -65,13 +65,65 @@ TEST(EdgeBands, AreRedWhereAnEdgeIsShortAndBlueWhereItIsLong) {
 }
 
 TEST(EdgeBands, GiveEqualEdgesOneColour) {
-  const render::mesh::Mesh bands = edgeBands(test::sphere(0), View{});
+  const render::mesh::Mesh sphere = test::sphere(0);
+  const render::mesh::Mesh bands = edgeBands(sphere, ranksOf(lengthsInSpace(sphere)), View{});
   const std::vector<float>& colours = bands.find("colour")->values;
   for (std::size_t t = 0; t < 8; ++t) {
     for (std::size_t v = 0; v < 12; ++v)
       EXPECT_TRUE(
           std::equal(&colours[3 * (15 * t + v)], &colours[3 * (15 * t + v) + 3], &colours[0]));
   }
+}
+
+// The place of every band's edge on the scale, by its colour: 0 red, 1 blue, else 0.5.
+std::vector<double> placesOf(const render::mesh::Mesh& bands) {
+  const std::vector<float>& colours = bands.find("colour")->values;
+  std::vector<double> places;
+  for (std::size_t first = 0; first < colours.size(); first += 3 * 15) {
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      const float* rgb = &colours[first + 3 * 4 * edge];
+      const bool pure = rgb[1] < 0.001F, red = pure && rgb[0] > 0.999F,
+                 blue = pure && rgb[2] > 0.999F;
+      places.push_back(red ? 0 : blue ? 1 : 0.5);
+    }
+  }
+  return places;
+}
+
+// [GOURLEY98] 5.1 and figure 5.1, (4) and (1): with the boundary's weight alone, edges inside are
+// red, and those that lead to the border, which are reduced last, are blue; the same edges in space
+// are of two lengths.
+TEST(EdgeBands, ShowWhatAWeightDoes) {
+  render::mesh::Mesh grid = test::grid(4, 4);
+  render::mesh::ensureNormals(grid);
+  const auto shown = [&](const render::reduce::Weights& weights) {
+    return placesOf(edgeBands(grid, sizesOf(*render::reduce::edgeLengths(grid, weights)), View{}));
+  };
+  const auto isInside = [&](std::uint32_t v) {
+    return v % 5 > 0 && v % 5 < 4 && v / 5 > 0 && v / 5 < 4;
+  };
+  const std::vector<double> by_boundary = shown({{"boundary", 2}}),
+                            by_space = shown({{"geometry", 1}});
+  ASSERT_EQ(by_boundary.size(), grid.triangles.size());
+  for (std::size_t i = 0; i < grid.triangles.size(); ++i) {
+    const std::uint32_t a = grid.triangles[i], b = grid.triangles[i - i % 3 + (i + 1) % 3];
+    EXPECT_EQ(by_boundary[i], isInside(a) != isInside(b) ? 1 : 0) << a << " " << b;
+    const bool diagonal = a / 5 != b / 5 && a % 5 != b % 5;
+    EXPECT_EQ(by_space[i], diagonal ? 1 : 0) << a << " " << b;
+  }
+}
+
+TEST(EdgeBands, AreColouredBySizeBetweenThePercentiles) {
+  EXPECT_EQ(sizesOf(std::vector<float>{2, 3, 6}), (std::vector<float>{0, 0.25F, 1}));
+  EXPECT_EQ(sizesOf(std::vector<float>{7, 7}), (std::vector<float>{0, 0}));
+  EXPECT_TRUE(sizesOf({}).empty());
+  std::vector<float> lengths(200, 1);  // flat parts
+  lengths[0] = 9;
+  EXPECT_EQ(sizesOf(lengths)[0], 1) << "one edge, above the 99th percentile, is still blue";
+  EXPECT_EQ(sizesOf(lengths)[1], 0);
+  for (std::size_t i = 0; i < 100; ++i) lengths[i] = 2;
+  lengths[0] = 1000;
+  EXPECT_EQ(sizesOf(lengths)[1], 1) << "one extreme edge does not make all others red";
 }
 
 }  // namespace

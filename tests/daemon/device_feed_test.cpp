@@ -64,9 +64,8 @@ class DeviceFeedTest : public testing::Test {
 // A hand that moves at 1 m/s, measured 3 ms ago, predicted to the end of the next frame, 33 ms
 // ahead.
 TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
-  FeedSettings ahead = settings();
-  ahead.ahead = milliseconds(33);
-  DeviceFeed feed(name_, ahead);
+  DeviceFeed feed(name_, settings());
+  feed.lookAhead(milliseconds(33));
   TrackerSample measured{};
   measured.received_ns = toNanoseconds(now_ - milliseconds(3));
   measured.position_m[0] = 0.5F;
@@ -81,6 +80,9 @@ TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   (*segment_)->hand[0].publish(hand);
   segment_->writeHeartbeat(now_);
   EXPECT_NEAR(feed.read(now_).scene.hand->position_m[0], 0.49 + 0.003 + 0.033 + 0.010, 1e-5);
+  feed.configure(settings());
+  feed.lookAhead(milliseconds(66));
+  EXPECT_NEAR(feed.read(now_).scene.hand->position_m[0], 0.49 + 0.003 + 0.066 + 0.010, 1e-5);
   EXPECT_EQ(read().scene.hand->position_m[0], 0.5F) << "not asked to look ahead";
   measured.received_ns += 1000;  // a newer tracker record, for which there is no HandSample yet
   (*segment_)->tracker[0].stations[1].publish(measured);

@@ -1,7 +1,10 @@
-// How the wall keeps its rate, and what it reports about that, on a virtual clock: calibration,
-// feed-forward, the degradation ladder, limits set by a person.
+// What the wall gives for its rate, and what it says of it: calibration, feed-forward, the ladder,
+// by hand; on a virtual clock.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
+#include "daemon/wall/pace.h"
 #include "tests/support/fake_wall.h"
 
 namespace merlin::wall {
@@ -146,7 +149,77 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   EXPECT_GT(frames_.frames.back().cost, 2300u);
 }
 
-// The smallest number that a person may set has to be the number that is then used.
+// Poses are predicted for the end of the frame, which comes later at a lower rate, whoever set it.
+TEST_F(WallPaceTest, PosesArePredictedForThePeriodInForce) {
+  std::vector<Duration> ahead;
+  run(4, [&](Timestamp) {
+    if (since() < std::chrono::seconds(static_cast<int>(ahead.size()))) return;
+    ahead.push_back(feed_.ahead);
+    if (ahead.size() == 1) loop_->setRate(60);
+    if (ahead.size() == 2) loop_->setRate(20);
+    if (ahead.size() == 3) loop_->setRate(std::nullopt);
+  });
+  EXPECT_EQ(ahead, (std::vector<Duration>{kPeriod, fromSeconds(1.0 / 60), fromSeconds(1.0 / 20),
+                                          kPeriod}));
+}
+
+// 100 triangles take 44 ms: 15 Hz are held instead of 30.
+TEST_F(WallPaceTest, PosesArePredictedForThePeriodThatTheWallWentDownTo) {
+  painter_.slow = 40;
+  run(5);
+  EXPECT_EQ(stats().rate_divisor, 2u);
+  EXPECT_EQ(feed_.ahead, fromSeconds(1.0 / 15));
+}
+
+// What a load that never fits makes of the rate, step by step, in Hz. At each rate, ten late frames
+// in a row are one step.
+std::vector<double> ratesWhileLate(const render::governor::GovernorSettings& settings,
+                                   std::optional<double> by_hand = std::nullopt) {
+  render::governor::Governor governor(settings);
+  Pace pace(governor);
+  pace.setRate(by_hand);
+  std::vector<double> rates;
+  for (int frame = 0; frame < 200; ++frame) {
+    pace.update();
+    const double hz = std::round(100 / toSeconds(pace.period())) / 100;
+    if (rates.empty() || rates.back() != hz) rates.push_back(hz);
+    pace.observe(true, true);
+  }
+  EXPECT_EQ(pace.sizeDivisor(), 2);
+  return rates;
+}
+
+// [GOURLEY98] B.3: at least 10 frames a second, unless a person has set less.
+TEST(Pace, GoesDownToTenHertzAndNotBelow) {
+  using Rates = std::vector<double>;
+  EXPECT_EQ(ratesWhileLate({}), (Rates{30, 15, 10}));
+  EXPECT_EQ(ratesWhileLate({.rate_hz = 60}), (Rates{60, 30, 15}));
+  EXPECT_EQ(ratesWhileLate({.rate_hz = 24}), (Rates{24, 12}));
+  EXPECT_EQ(ratesWhileLate({.rate_hz = 20}), (Rates{20, 10}));
+  EXPECT_EQ(ratesWhileLate({.rate_hz = 19}), (Rates{19}));
+  EXPECT_EQ(ratesWhileLate({.rate_hz = 5}), (Rates{5}));
+  EXPECT_EQ(ratesWhileLate({.min_rate_hz = 5}), (Rates{30, 15, 7.5}));
+  EXPECT_EQ(ratesWhileLate({.min_rate_hz = 31}), (Rates{30}));
+  EXPECT_EQ(ratesWhileLate({}, 25), (Rates{25, 12.5}));
+}
+
+TEST(Pace, LeavesTheStepsThatARateByHandDoesNotHave) {
+  render::governor::Governor governor({});
+  Pace pace(governor);
+  for (int frame = 0; frame < 200; ++frame) {
+    pace.update();
+    pace.observe(true, true);
+  }
+  EXPECT_EQ(pace.rateDivisor(), 3);
+  const std::uint32_t changes = pace.changes();
+  pace.setRate(12);
+  pace.update();
+  EXPECT_EQ(pace.rateDivisor(), 1);
+  EXPECT_EQ(pace.sizeDivisor(), 2);
+  EXPECT_EQ(pace.changes(), changes + 1);
+}
+
+// The number that a person may set is the number that is used.
 TEST_F(WallPaceTest, TheLimitsOfTrianglesByHandAreThoseOfTheContent) {
   contents_.push_back({&picture_, &painter_});
   std::vector<std::size_t> least;

@@ -130,6 +130,23 @@ TEST(Error, IsTheWayToTheNewVertexWhereNoFaceIsLeft) {
   EXPECT_EQ(r.log.error, (Floats{3}));
 }
 
+// The diagonal of the original's box is sqrt(4 + 4 + 0.5625) = 2.92617, of which 0.75 is 25.6 %.
+TEST(Error, IsLimitedInPercentOfTheOriginalsDiagonal) {
+  const mesh::Mesh mesh = tent(0.75F);
+  const auto reduced = [&](double percent) {
+    auto result = reduce::reduce(
+        mesh,
+        {.cost = "pattern", .weights = {weightOf(mesh, "order")}, .max_error_percent = percent});
+    EXPECT_TRUE(result);
+    return *std::move(result);
+  };
+  const reduce::Reduction refused = reduced(25.6), taken = reduced(25.7);
+  EXPECT_STREQ(refused.report.stopped, "error");
+  EXPECT_EQ(refused.log.error, Floats{});
+  ASSERT_FALSE(taken.log.error.empty());
+  EXPECT_EQ(taken.log.error[0], 0.75F);
+}
+
 // 0 3 6 is a degenerate triangle without a plane.
 TEST(Error, IsNotMeasuredAgainstAFaceWithoutArea) {
   mesh::Mesh mesh = tent(0.75F);

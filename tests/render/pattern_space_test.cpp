@@ -1,6 +1,7 @@
 #include "render/reduce/pattern_space.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
@@ -124,6 +125,38 @@ TEST(Weights, OfNineteenNinetyEight) {  // figure 5.2
                                                                             {"label", 10.0F},
                                                                             {"boundary", 15.0F},
                                                                             {"curvature", 1.0F}}));
+}
+
+// Geometry, normal, the data's own feature, boundary and curvature ([GOURLEY98] 5.2); a mesh
+// without the feature is weighted without it.
+TEST(Weights, OfEachDataSetOfNineteenNinetyEight) {
+  const struct {
+    const char* name;
+    float geometry, normal;
+    const char* feature;
+    float of_feature, boundary, curvature;
+  } kExpected[] = {{"typical1998", 1, 0.5F, "colour", 1, 2, 1.5F},
+                   {"plane1998", 5, 0.5F, "", 0, 6, 3},
+                   {"perceptron-segmented1998", 50, 1, "label", 10, 15, 1},
+                   {"perceptron-colour1998", 50, 1, "colour", 50, 25, 1},
+                   {"coleman1998", 20, 0.1F, "confidence", 2, 10, 0.25F},
+                   {"elevation1998", 15, 0.1F, "", 0, 10, 2},
+                   {"mug1998", 4, 1, "", 0, 0, 3}};
+  mesh::Mesh all = richGrid();
+  all.features.push_back({"confidence", 1, Floats(all.vertexCount(), 1)});
+  ASSERT_EQ(reduce::presets().size(), std::size(kExpected));
+  for (std::size_t i = 0; i < std::size(kExpected); ++i) {
+    const auto& e = kExpected[i];
+    const reduce::Preset& preset = reduce::presets()[i];
+    EXPECT_STREQ(preset.name, e.name);
+    reduce::Weights weights{{"geometry", e.geometry},
+                            {"normal", e.normal},
+                            {"boundary", e.boundary},
+                            {"curvature", e.curvature}};
+    EXPECT_EQ(reduce::presetWeights(preset, test::cube()), weights) << e.name;
+    if (*e.feature != '\0') weights[e.feature] = e.of_feature;
+    EXPECT_EQ(reduce::presetWeights(preset, all), weights) << e.name;
+  }
 }
 
 TEST(Weights, WhereNobodySaysOtherwise) {

@@ -52,7 +52,7 @@ void usePreset(room::RoomSettings& room, room::RoomPreset name) {
 const Fault kPanels[] = {
     {"NoPanels", [](room::RoomSettings& r) { r.panels.clear(); }, "",
      "the room has no panels: list them in /panels, or choose a preset in /preset/name (flat, "
-     "three_160, three_120, six, hexagon)"},
+     "three_160, three_120, six, hexagon, arc_160, arc_120)"},
     {"BehindTheViewer", [](room::RoomSettings& r) { r.eye_m[2] = -4; }, "/panels/0",
      "panel left does not face the viewer: the eye is 1.000 m behind it; check eye_m, yaw_deg and "
      "the hinges"},

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -272,7 +273,8 @@ TEST(RoomPresets, TheFrontIsStraightAheadAsFarAsSuggested) {
   const Front expected[] = {{room::RoomPreset::kFlat, 3, "panel_2", 4.8, 18.925},
                             {room::RoomPreset::kThree160, 3, "centre", 4.53703, 20},
                             {room::RoomPreset::kThree120, 3, "centre", 1.38564, 60},
-                            {room::RoomPreset::kHexagon, 6, "front", 1.38564, 60}};
+                            {room::RoomPreset::kHexagon, 6, "front", 1.38564, 60},
+                            {room::RoomPreset::kArc160, 3, "centre", 1.59293, 53.3333}};
   for (const Front& e : expected) {
     const Wall wall = wallOf(presetRoom(e.name));
     EXPECT_EQ(wall.settings.tiles.size(), e.panels + 1) << "and the operator's";
@@ -289,6 +291,31 @@ TEST(RoomPresets, TheFrontIsStraightAheadAsFarAsSuggested) {
   room::RoomSettings near = presetRoom(room::RoomPreset::kThree160);
   near.preset.distance_m = 2;
   EXPECT_NEAR(wallOf(near).of("centre").screen_m[2], -2, 1e-12);
+}
+
+// [GOURLEY98] 2.4.1, 2.4.4: three flat screens with a field of view of 160 degrees, and six frames
+// with 120 degrees; all equally far from the viewer, as on a circle.
+TEST(RoomPresets, AnArcFillsItsShareOfTheView) {
+  for (const auto& [name, panels, view_deg, distance_m] :
+       {std::tuple(room::RoomPreset::kArc160, 3U, 160.0, 1.59293),
+        std::tuple(room::RoomPreset::kArc120, 6U, 120.0, 4.53703)}) {
+    const Wall wall = wallOf(presetRoom(name));
+    ASSERT_EQ(wall.settings.tiles.size(), panels + 1);
+    double sum_deg = 0, left_deg = 0;
+    for (const room::TileFigures& f : room::tileTable(wall.settings, wall.plan)) {
+      if (!f.screen) continue;
+      EXPECT_NEAR(f.screen->distance_m, distance_m, 1e-5) << nameOf(name) << " " << f.name;
+      EXPECT_NEAR(f.horizontal_deg, view_deg / panels, 1e-3) << f.name;
+      EXPECT_NEAR(f.pitch_deg, 0, 1e-4);
+      left_deg = std::max(left_deg, double{f.yaw_deg});
+      sum_deg += f.horizontal_deg;
+    }
+    EXPECT_NEAR(sum_deg, view_deg, 1e-3);
+    EXPECT_NEAR(left_deg, (view_deg - view_deg / panels) / 2, 1e-3) << "as far left as right";
+  }
+  const Wall arc = wallOf(presetRoom(room::RoomPreset::kArc120));
+  for (int i = 1; i < 6; ++i)
+    expectSeam(arc, "panel_" + std::to_string(i), "panel_" + std::to_string(i + 1));
 }
 
 TEST(RoomPresets, AFlatRowHasAsManyPanelsAsAskedFor) {

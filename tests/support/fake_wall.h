@@ -68,11 +68,13 @@ class FakePainter final : public render::frame::FramePainter {
 class FakeFeed final : public InputFeed {
  public:
   WallInput read(Timestamp now) override;
+  void lookAhead(Duration until_visible) override { ahead = until_visible; }
   Duration age() const noexcept override { return milliseconds(7); }
 
   bool pushed = true;
   WallInput actions;  // actions that are held, and those requested since the last read
   std::optional<TrackerSample> hand;
+  Duration ahead{};  // how far poses are to be predicted
   std::function<void(Timestamp)> on_begin;
   std::vector<Timestamp> begins;
 };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/base/bytes.h"
 #include "tests/system/merlind.h"
@@ -112,6 +113,36 @@ TEST_F(CoinImport, ACoordinateThatIsNotThereIsRefused) {
   expectRefused(vrml97("IndexedFaceSet { coordIndex [ 0 1 2 -1 ] }"),
                 "IndexedFaceSet: its coordIndex has 0, and there are 0 coordinates");
   EXPECT_EQ(vertices(inventor("IndexedFaceSet { coordIndex [ 0, 1, 2, 3 ] }")).size(), 4U);
+}
+
+// A reader who misses something in the model finds it here.
+TEST_F(CoinImport, WhatIsLeftOutIsNoted) {
+  const std::string square = "IndexedFaceSet { coordIndex [ 0, 1, 2, 3, -1 ] } ";
+  const auto notes = [&](const std::string& content) {
+    const Outcome done = import(content);
+    EXPECT_EQ(done.status, 0) << done.output << content;
+    const auto brace = done.output.find("{\"");
+    if (brace == std::string::npos) return std::vector<std::string>{done.output};
+    return nlohmann::json::parse(done.output.substr(brace))["notes"]
+        .get<std::vector<std::string>>();
+  };
+  using Notes = std::vector<std::string>;
+  EXPECT_EQ(notes(inventor(square)), Notes{});
+  EXPECT_EQ(notes(inventor(square + "LineSet { numVertices 3 } PointSet { numPoints 2 }")),
+            Notes{"left out: 4 lines and points"})
+      << "two lines and two points";
+  EXPECT_EQ(
+      notes(inventor(square +
+                     "Image { image 1 1 3 0xff0000 } Text2 { string \"hall\" }\n"
+                     "NurbsSurface { numUControlPoints 2 numVControlPoints 2 uKnotVector [ 0, 0, "
+                     "1, 1 ] vKnotVector [ 0, 0, 1, 1 ] }\n"
+                     "NurbsCurve { numControlPoints 2 knotVector [ 0, 0, 1, 1 ] }")),
+      Notes{"left out: 4 images, flat texts (Text2) and NURBS, for which Coin needs a display"});
+  EXPECT_EQ(notes(inventor(square + "WWWInline { name \"a.iv\" } WWWInline { name \"b.iv\" }")),
+            Notes{"left out: 2 other files that it includes"});
+  const Notes missing = notes(faceSet("coordIndex [ 0 1 2 3 -1 ]") + "Inline { url \"c.wrl\" }\n");
+  ASSERT_FALSE(missing.empty());
+  EXPECT_EQ(missing[0], "left out: 1 other files that it includes");
 }
 
 TEST_F(CoinImport, AByteOrderMarkIsPassedOver) {

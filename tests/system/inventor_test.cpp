@@ -13,6 +13,7 @@
 #include <Inventor/actions/SoWriteAction.h>
 #include <Inventor/details/SoFaceDetail.h>
 #include <Inventor/nodes/SoShape.h>
+#include <Inventor/nodes/SoTexture2.h>
 #include <Inventor/sensors/SoNodeSensor.h>
 #include <gtest/gtest.h>
 
@@ -304,6 +305,62 @@ TEST_F(Inventor, TheRateNeverLeavesMinimumAndMaximum) {
   EXPECT_EQ(current(), 300);
   for (int i = 0; i < 500; ++i) frame(200);
   EXPECT_EQ(current(), kTriangles);
+}
+
+// A PNG of one blue pixel.
+constexpr char kBluePng[] =
+    "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00"
+    "\x00\x01\x08\x02\x00\x00\x00\x90\x77\x53\xde\x00\x00\x00\x0c\x49\x44\x41\x54\x78\x9c\x63"
+    "\x10\x50\xf8\x00\x00\x01\x64\x01\x21\x8d\x40\x2d\x6a\x00\x00\x00\x00\x49\x45\x4e\x44\xae"
+    "\x42\x60\x82";
+
+// The hills with texture coordinates, as a PLY file.
+std::string hillsWithTexture() {
+  std::string text = hills();
+  text.insert(text.find("element face"), "property float s\nproperty float t\n");
+  const std::string end = "200 0\n";
+  for (std::size_t at = 0; (at = text.find(end, at)) != std::string::npos; at += end.size() + 8)
+    text.insert(at + end.size() - 1, " 0.25 .5");
+  return text;
+}
+
+// The image is a node before the model, in a file of its own, and viewers multiply no colours by
+// it.
+TEST_F(Inventor, ATextureIsANodeBeforeTheModel) {
+  writeText(dir_ / "blue.ply", hillsWithTexture());
+  writeText(dir_ / "blue.png", {kBluePng, sizeof kBluePng - 1});
+  ASSERT_EQ(run({kMerlin, "mesh", "reduce", dir_ / "blue.ply", "--texture", dir_ / "blue.png", "-o",
+                 dir_ / "blue.mrm"})
+                .status,
+            0);
+  const Outcome done =
+      run({kMerlin, "mesh", "export", dir_ / "blue.mrm", "--multiresolution", "-o", dir_ / "b.iv"});
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_NE(done.output.find("companion files: " + (dir_ / "b.iv.png")), std::string::npos)
+      << done.output;
+  EXPECT_NE(done.output.find("cannot store them: colour"), std::string::npos) << done.output;
+  EXPECT_TRUE(readText(dir_ / "b.iv.png") == readText(dir_ / "blue.png"));
+  SoSeparator* textured = read(readText(dir_ / "b.iv"));
+  ASSERT_NE(textured, nullptr);
+  textured->ref();
+  SoNode* node = find(textured);
+  ASSERT_NE(node, nullptr);
+  const int nodes = static_cast<SoMFVec3f*>(node->getField("vertex"))->getNum();
+  EXPECT_EQ(static_cast<SoMFVec2f*>(node->getField("texCoord"))->getNum(), nodes);
+  EXPECT_EQ(static_cast<SoMFColor*>(node->getField("diffuseColor"))->getNum(), 0);
+  const int place = textured->findChild(node);
+  ASSERT_GT(place, 0);
+  auto* const texture = dynamic_cast<SoTexture2*>(textured->getChild(place - 1));
+  ASSERT_NE(texture, nullptr);
+  EXPECT_EQ(texture->filename.getValue(), "b.iv.png");
+  auto* const plain = dynamic_cast<SoSeparator*>(
+      static_cast<SoSFNode*>(node->getField("alternateRep"))->getValue());
+  ASSERT_NE(plain, nullptr);
+  EXPECT_GE(plain->findChild(texture), 0) << "its image is read once";
+  SoGetPrimitiveCountAction count;
+  count.apply(textured);
+  EXPECT_EQ(count.getTriangleCount(), kTriangles);
+  textured->unref();
 }
 
 TEST_F(Inventor, WithoutTheModuleAPlainSurfaceIsShown) {

@@ -1,5 +1,6 @@
 // `merlin mesh` commands that succeed, with formats, repairs and labels: their output and files.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -31,6 +32,15 @@ TEST_F(MeshCli, ReduceInfoExportAgree) {
       nlohmann::json::parse(reduced.output.substr(reduced.output.find("{\"output\"")));
   EXPECT_EQ(report["triangles"], 69612) << "and 24 with two corners at one place";
   EXPECT_GT(report["collapses_per_second"], 0);
+  const auto box = infoOf(dir_ / "a.mrm")["box"];
+  double squares = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    squares += std::pow(box["high"][k].get<double>() - box["low"][k].get<double>(), 2);
+  const double estimate = report["error_estimate"];
+  EXPECT_GT(estimate, 0);
+  EXPECT_NEAR(report["error_estimate_percent"].get<double>(), 100 * estimate / std::sqrt(squares),
+              1e-4)
+      << "of the diagonal of the original's box";
   EXPECT_NE(reduced.output.find("collapses/s"), std::string::npos)
       << "progress, also without a terminal";
 
@@ -70,6 +80,34 @@ TEST_F(MeshCli, PicturesModelsSideBySide) {
   const Outcome picture = run({kMerlin, "mesh", "picture", dir_ / "a.ply", dir_ / "a.ply", "-o",
                                dir_ / "p.png", "--width", "64", "--height", "48"});
   EXPECT_NE(picture.output.find("p.png: 128 x 48"), std::string::npos) << picture.output;
+}
+
+// The lengths are those of the reduction, so other weights give another picture.
+TEST_F(MeshCli, PicturesEdgesByTheirWeights) {
+  const auto drawn = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {kMerlin, "mesh", "picture", scan_, "--edges", "-o", dir_ / name,
+                               "--width", "160", "--height", "120"});
+    const Outcome done = run(std::move(more));
+    EXPECT_EQ(done.status, 0) << done.output;
+    expectPicture(dir_ / name, 50);
+    return readText(dir_ / name);
+  };
+  const std::string typical = drawn("a.png", {"--preset", "typical1998"});
+  EXPECT_TRUE(drawn("b.png", {"--preset", "typical1998"}) == typical);
+  EXPECT_FALSE(drawn("c.png", {"--preset", "typical1998", "--weight", "curvature=0"}) == typical);
+  EXPECT_FALSE(drawn("d.png", {}) == typical) << "default weights";
+  const auto refusal = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {kMerlin, "mesh", "picture", scan_, "-o", dir_ / "e.png"});
+    const Outcome done = run(std::move(more));
+    EXPECT_EQ(done.status, 1) << done.output;
+    return done.output;
+  };
+  EXPECT_NE(refusal({"--weight", "colour=1"}).find("--preset and --weight: need --edges"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--edges", "--wireframe"}).find("cannot be combined with --wireframe"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--edges", "--weight", "heat=1"}).find("weight heat: the mesh has no such"),
+            std::string::npos);
 }
 
 // A square of two triangles in the plane z = `height`, as ASCII PLY.

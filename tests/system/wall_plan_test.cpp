@@ -82,7 +82,8 @@ TEST_F(WallPlan, APresetsProjectorsMayOverlap) {
 }
 
 TEST_F(WallPlan, APresetIsPrintedAsPanelsThatMakeTheSameWall) {
-  for (const char* const preset : {"flat", "three_160", "three_120", "six", "hexagon"}) {
+  for (const char* const preset :
+       {"flat", "three_160", "three_120", "six", "hexagon", "arc_160", "arc_120"}) {
     const Outcome printed = run({kMerlin, "wall", "plan", "--preset", preset, "--panels"});
     ASSERT_EQ(printed.status, 0) << printed.output;
     for (const char* noise : {"00000", "99999", "camera", "\"view\""})

@@ -8,16 +8,12 @@
 
 namespace merlin::cli {
 
-// Returns a mesh that shows the edge lengths of `mesh`: in each triangle a coloured band along each
-// edge, from red (shortest) to blue (longest), by the rank of its length ([GOURLEY98] figure 5.1).
-// The normals point at the light of `view`, so that the colours are drawn without shading.
-render::mesh::Mesh edgeBands(const render::mesh::Mesh& mesh, const View& view);
-
 // Writes a.png, b.png, a_wire.png, b_wire.png (wireframes), beside.png (a and b side by side),
-// difference.png and edges.png (edgeBands() of b) into `folder`, which is created if necessary; all
-// from the same viewpoint and at the same scale. Returns the percentage of the model's pixels that
-// differ visibly (PictureDifference::changed_percent). Memory: about 0.6 kB per triangle of b.
-// Errors: kIo, kNotFound (the folder), kUnsupported (no GL).
+// difference.png and edges.png (edgeBands() of b, by the rank of lengths in space) into `folder`,
+// which is created if necessary; all from the same viewpoint and at the same scale. Returns the
+// percentage of the model's pixels that differ visibly (PictureDifference::changed_percent).
+// Memory: about 0.6 kB per triangle of b. Errors: kIo, kNotFound (the folder), kUnsupported (no
+// GL).
 Result<double> writePictures(const std::string& folder, const render::mesh::Mesh& a,
                              const render::mesh::Mesh& b, const View& view);
 

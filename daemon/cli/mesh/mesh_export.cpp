@@ -70,13 +70,13 @@ int exportAll(const MeshExportOptions& options) {
   render::mesh::Origin origin{};
   const auto model = openModel(options.model, &origin);
   if (!model) return fail(model.error());
-  const auto left_out = render::inventor::writeMultiresolution(options.output, *model);
-  if (!left_out) return fail(left_out.error());
+  auto written = render::inventor::writeMultiresolution(options.output, *model);
+  if (!written) return fail(written.error());
   printOut("{}: {} to {} triangles, {} levels\n", options.output,
            model->trianglesAt(model->levels() - 1), model->triangleCount(), model->levels());
-  const render::mesh::WrittenMesh written{"iv", *left_out, {}, origin};
-  printOrigin(origin, options.local, written);
-  printWritten(written);
+  written->relative_to = origin;
+  printOrigin(origin, options.local, *written);
+  printWritten(*written);
   return kExitDone;
 }
 

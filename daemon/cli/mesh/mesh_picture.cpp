@@ -4,10 +4,14 @@
 #include <fmt/format.h>
 
 #include "daemon/cli/exit_status.h"
+#include "daemon/cli/mesh/edge_bands.h"
 #include "daemon/cli/mesh/mesh.h"
 #include "daemon/cli/mesh/view_options.h"
+#include "daemon/cli/mesh/weight_options.h"
 #include "daemon/cli/print.h"
 #include "render/image/png_writer.h"
+#include "render/lod/finest_level.h"
+#include "render/reduce/edge_lengths.h"
 
 namespace merlin::cli {
 namespace {
@@ -17,25 +21,71 @@ struct PictureOptions {
   std::vector<double> percents = {100};
   std::string output;
   View view;
+  bool edges = false;
+  WeightOptions weights;
 };
+
+// Appends each level's edges, coloured by their weighted lengths; all at the finest level's scale.
+Result<Ok> appendEdges(const PictureOptions& options, const std::string& path,
+                       const render::lod::Dendrogram& model, std::size_t level,
+                       render::image::Image& strip) {
+  render::mesh::Mesh mesh = render::lod::extract(model, level);
+  render::mesh::ensureNormals(mesh);
+  const auto weights = options.weights.weightsFor("pattern", mesh);
+  if (!weights) return weights.error();
+  const auto lengths = render::reduce::edgeLengths(mesh, *weights);
+  if (!lengths) return Error{lengths.error().code, path + ": " + lengths.error().what};
+  render::mesh::Mesh bands = edgeBands(mesh, sizesOf(*lengths), options.view);
+  if (level > 0) bands = framed(std::move(bands), render::lod::extract(model, 0));
+  const render::lod::Dendrogram shown = render::lod::oneLevel(bands);
+  const SystemClock clock;
+  auto painter =
+      render::frame::OffscreenModel::make(shown, bandView(options.view).asAsked(), clock);
+  if (!painter) return painter.error();
+  strip.append(painter->draw(0));
+  return Ok{};
+}
+
+Result<Ok> appendSurface(const PictureOptions& options, const render::lod::Dendrogram& model,
+                         const std::vector<std::size_t>& levels, render::image::Image& strip) {
+  const SystemClock clock;
+  auto painter = render::frame::OffscreenModel::make(model, options.view.asAsked(), clock);
+  if (!painter) return painter.error();
+  for (const std::size_t level : levels) strip.append(painter->draw(level));
+  return Ok{};
+}
 
 Result<Ok> appendModel(const PictureOptions& options, const std::string& path,
                        render::image::Image& strip) {
   const auto model = openModel(path);
   if (!model) return model.error();
-  const SystemClock clock;
-  auto painter = render::frame::OffscreenModel::make(*model, options.view.asAsked(), clock);
-  if (!painter) return painter.error();
+  std::vector<std::size_t> levels;
   for (const double percent : options.percents) {
-    const std::size_t level = model->levelFor(
-        static_cast<std::size_t>(percent / 100 * static_cast<double>(model->triangleCount())));
-    strip.append(painter->draw(level));
-    printOut("{}: {} of {} triangles\n", path, model->trianglesAt(level), model->triangleCount());
+    levels.push_back(model->levelFor(
+        static_cast<std::size_t>(percent / 100 * static_cast<double>(model->triangleCount()))));
   }
+  Result<Ok> done = Ok{};
+  if (!options.edges) done = appendSurface(options, *model, levels, strip);
+  for (std::size_t i = 0; options.edges && done && i < levels.size(); ++i)
+    done = appendEdges(options, path, *model, levels[i], strip);
+  if (!done) return done;
+  for (const std::size_t level : levels)
+    printOut("{}: {} of {} triangles\n", path, model->trianglesAt(level), model->triangleCount());
+  return Ok{};
+}
+
+Result<Ok> checkEdges(const PictureOptions& options) {
+  const bool weighted = options.weights.hasPreset() || !options.weights.weights.empty();
+  if (weighted && !options.edges)
+    return Error{Errc::kInvalidArgument, "--preset and --weight: need --edges"};
+  if (options.edges &&
+      (options.view.model.style.wireframe || !options.view.model.show.feature.empty()))
+    return Error{Errc::kInvalidArgument, "--edges: cannot be combined with --wireframe or --show"};
   return Ok{};
 }
 
 int picture(const PictureOptions& options) {
+  if (const auto good = checkEdges(options); !good) return fail(good.error());
   for (const std::string& model : options.models) {
     if (const auto writable = checkOutputs(model, {options.output}); !writable)
       return fail(writable.error());
@@ -80,6 +130,18 @@ void addMeshPicture(Command mesh, Run& run) {
       .showDefault();
   options->view.addTo(command);
   command.flag("--wireframe", options->view.model.style.wireframe, "Draw edges instead of faces");
+  command.flag(
+      "--edges", options->edges,
+      "Draw the edges coloured by their weighted lengths, from red for the shortest, which "
+      "`merlin mesh reduce --cost pattern` collapses first, to blue for the longest: shows "
+      "what weights do before a reduction");
+  options->weights.addTo(
+      command,
+      "With --edges: initial weights of the features: default (those of --cost pattern), or "
+      "weights that Gourley's dissertation of 1998 used for its data",
+      "With --edges: weight of a feature: geometry, normal, curvature, boundary, colour or any "
+      "other "
+      "feature of the mesh. 0 ignores the feature");
   command.callback([options, &run] { run = [options] { return picture(*options); }; });
 }
 

@@ -12,6 +12,7 @@
 #include "daemon/cli/mesh/mesh_memory.h"
 #include "daemon/cli/mesh/outwards.h"
 #include "daemon/cli/mesh/reduction_step.h"
+#include "daemon/cli/mesh/weight_options.h"
 #include "daemon/cli/print.h"
 #include "render/image/image_file.h"
 #include "render/lod/io/mrm_file.h"
@@ -23,8 +24,8 @@ namespace merlin::cli {
 namespace {
 
 struct ReduceOptions {
-  std::string input, output, texture, preset = "default";
-  std::vector<std::string> weights;
+  std::string input, output, texture;
+  WeightOptions weights;
   render::reduce::ReduceSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   bool lock_borders = false;
@@ -38,18 +39,6 @@ struct Usage {
   std::size_t limit = 0;         // memory limit [bytes]
   Outwards outwards{};
 };
-
-Result<render::reduce::Weights> weightsOf(const ReduceOptions& options,
-                                          const render::mesh::Mesh& mesh) {
-  render::reduce::Weights weights = render::reduce::findCost(options.settings.cost)->weights(mesh);
-  for (const render::reduce::Preset& preset : render::reduce::presets()) {
-    if (preset.name == options.preset) weights = render::reduce::presetWeights(preset, mesh);
-  }
-  for (const std::string& text : options.weights) {
-    if (const auto set = setWeight(text, weights); !set) return set.error();
-  }
-  return weights;
-}
 
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1 << 20); }
 
@@ -102,7 +91,7 @@ void report(const ReduceOptions& options, const render::mesh::LoadedMesh& loaded
 Result<render::reduce::Reduction> reduceLoaded(const ReduceOptions& options,
                                                const render::mesh::Mesh& mesh, Usage& usage) {
   render::reduce::ReduceSettings settings = options.settings;
-  auto weights = weightsOf(options, mesh);
+  auto weights = options.weights.weightsFor(settings.cost, mesh);
   if (!weights) return weights.error();
   settings.weights = *std::move(weights);
   if (options.lock_borders) settings.locked = render::mesh::borderVertices(mesh);
@@ -132,8 +121,9 @@ Result<Ok> addTexture(const ReduceOptions& options, render::mesh::Mesh& mesh, st
 Result<Ok> checkOptions(const ReduceOptions& options) {
   const bool pattern = options.settings.cost == "pattern";
   if (const auto named = checkEnding(options.output, "model", ".mrm"); !named) return named;
-  if (options.preset != "default" && !pattern)
-    return Error{Errc::kInvalidArgument, "--preset " + options.preset + ": needs --cost pattern"};
+  if (options.weights.hasPreset() && !pattern)
+    return Error{Errc::kInvalidArgument,
+                 "--preset " + options.weights.preset + ": needs --cost pattern"};
   if (options.settings.fast && pattern)
     return Error{Errc::kInvalidArgument, "--fast: needs --cost quadric"};
   if (options.lock_borders && pattern)
@@ -191,21 +181,13 @@ void addMeshReduce(Command mesh, Run& run) {
     help += fmt::format("; {}: {}", cost.name, cost.help);
   }
   command.option("--cost", options->settings.cost, help).oneOf(names).showDefault();
-  std::vector<std::string> presets = {"default"};
-  for (const render::reduce::Preset& preset : render::reduce::presets())
-    presets.emplace_back(preset.name);
-  command
-      .option("--preset", options->preset,
-              "Initial weights of the features: default (those of the selected --cost), or, with "
-              "--cost pattern only, weights that Gourley's dissertation of 1998 used for its data")
-      .oneOf(presets)
-      .showDefault();
-  command
-      .option("--weight", options->weights,
-              "Weight of a feature: geometry, colour or any other feature of the mesh; with --cost "
-              "pattern also normal, curvature and boundary. 0 ignores the feature. Regions with "
-              "different values of the feature label stay separate unless label has a weight")
-      .typeName("FEATURE=W");
+  options->weights.addTo(
+      command,
+      "Initial weights of the features: default (those of the selected --cost), or, with "
+      "--cost pattern only, weights that Gourley's dissertation of 1998 used for its data",
+      "Weight of a feature: geometry, colour or any other feature of the mesh; with --cost "
+      "pattern also normal, curvature and boundary. 0 ignores the feature. Regions with "
+      "different values of the feature label stay separate unless label has a weight");
   command
       .option("--texture", options->texture,
               "Texture image, which is stored in the model; the default is the image that the "

@@ -4,31 +4,38 @@
 #include <cctype>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
+#include "render/mesh/io/writer.h"
 
 namespace merlin::render::mesh {
 namespace {
 
-constexpr std::size_t kMostNames = 65536;  // that are looked at in a folder
+// Writes files, and removes them in its destructor unless keep() was called.
+class WrittenFiles {
+ public:
+  WrittenFiles() = default;
+  ~WrittenFiles() {
+    std::error_code gone;
+    for (const std::string& path : paths_) std::filesystem::remove(path, gone);
+  }
+  WrittenFiles(const WrittenFiles&) = delete;
+  WrittenFiles& operator=(const WrittenFiles&) = delete;
 
-std::string inLowerCase(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
+  Result<Ok> make(const CompanionFile& file) {
+    const auto done = writeFile(file.path, file.content);
+    if (done) paths_.push_back(file.path);
+    return done;
+  }
+  void keep() { paths_.clear(); }
 
-bool exists(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
-}
-
-// Of names that differ only in case, the first one by its bytes is kept.
-void addName(const std::string& name, std::map<std::string, std::string>& names) {
-  const auto [found, fresh] = names.try_emplace(inLowerCase(name), name);
-  if (!fresh) found->second = std::min(found->second, name);
-}
+ private:
+  std::vector<std::string> paths_;
+};
 
 }  // namespace
 
@@ -116,6 +123,35 @@ std::string plainName(const std::string& path) {
     name += plain ? std::string(1, c) : fmt::format("={:02X}", byte);
   }
   return name;
+}
+
+std::optional<CompanionFile> pictureBeside(const Mesh& mesh, const std::string& path) {
+  if (!isTextured(mesh)) return std::nullopt;
+  const std::string name = pictureName(mesh, plainName(path));
+  return CompanionFile{name, folderOf(path) + name, {mesh.texture.begin(), mesh.texture.end()}};
+}
+
+Result<bool> isThere(const CompanionFile& file) {
+  std::error_code absent;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file.path, absent))) return false;
+  const auto there = MappedFile::open(file.path);
+  if (there && there->text() == file.content) return true;
+  return Error{Errc::kInvalidArgument,
+               file.path + ": exists with different content; remove it or name another output"};
+}
+
+Result<Ok> writeBeside(std::span<const CompanionFile> files,
+                       const std::function<Result<Ok>()>& write) {
+  WrittenFiles written;
+  for (const CompanionFile& file : files) {
+    const auto there = isThere(file);
+    if (!there) return there.error();
+    const auto done = *there ? Result<Ok>(Ok{}) : written.make(file);
+    if (!done) return done;
+  }
+  const auto done = write();
+  if (done) written.keep();
+  return done;
 }
 
 }  // namespace merlin::render::mesh

@@ -1,6 +1,8 @@
 // Writes a mesh as Open Inventor text: for a file of its own or as a part of a larger one.
 #pragma once
 
+#include <string>
+
 #include "render/mesh/io/text_sink.h"
 #include "render/mesh/mesh.h"
 
@@ -14,10 +16,13 @@ inline constexpr std::string_view kInventorHints =
     "  ShapeHints {\n    vertexOrdering COUNTERCLOCKWISE\n"
     "    shapeType UNKNOWN_SHAPE_TYPE\n    faceType CONVEX\n  }\n";
 
+// The node that applies the texture image of this file name to the shapes that follow it.
+std::string textureNode(const std::string& picture);
+
 // Writes "Separator { ... }" with an IndexedFaceSet and the features "normal", "colour" and
-// "texcoord" that the mesh has in their usual dimensions. `picture`: file name of the texture
-// image, or empty. A textured mesh is written without colours, since viewers multiply the texture
-// by them.
-void printSeparator(TextSink& out, const Mesh& mesh, const std::string& picture = "");
+// "texcoord" that the mesh has in their usual dimensions. `texture`: the textureNode(), or a
+// reference to one that was written before; empty: none. A textured mesh is written without
+// colours, since viewers multiply the texture by them.
+void printSeparator(TextSink& out, const Mesh& mesh, const std::string& texture = "");
 
 }  // namespace merlin::render::mesh

@@ -4,9 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -104,54 +102,19 @@ std::string endingsOf(const Rows& rows) {
   return list;
 }
 
-struct CompanionFile {
-  std::string path, content;
-};
-
 // The companion files that the mesh file refers to: the texture image and the material file.
 std::vector<CompanionFile> companionsOf(const MeshWriter& writer, const Mesh& mesh,
                                         const std::string& path) {
-  if (!isTextured(mesh) || writer.picture != PicturePlace::kCompanionFile) return {};
-  const std::string name = plainName(path), folder = folderOf(path);
-  std::vector<CompanionFile> files = {
-      {folder + pictureName(mesh, name), {mesh.texture.begin(), mesh.texture.end()}}};
-  if (writer.material) files.push_back({folder + name + ".mtl", writer.material(mesh, name)});
+  if (writer.picture != PicturePlace::kCompanionFile) return {};
+  auto picture = pictureBeside(mesh, path);
+  if (!picture) return {};
+  std::vector<CompanionFile> files = {*std::move(picture)};
+  if (writer.material) {
+    const std::string name = plainName(path), own = name + ".mtl";
+    files.push_back({own, folderOf(path) + own, writer.material(mesh, name)});
+  }
   return files;
 }
-
-// Whether the companion file exists already, with the same content. Its name was not given by the
-// user, so a file with different content is not overwritten. Errors: kInvalidArgument (different
-// content).
-Result<bool> isThere(const CompanionFile& file) {
-  std::error_code absent;
-  if (!std::filesystem::exists(std::filesystem::symlink_status(file.path, absent))) return false;
-  const auto there = MappedFile::open(file.path);
-  if (there && there->text() == file.content) return true;
-  return Error{Errc::kInvalidArgument,
-               file.path + ": exists with different content; remove it or name another output"};
-}
-
-// Writes files, and removes them in its destructor unless keep() was called.
-class WrittenFiles {
- public:
-  WrittenFiles() = default;
-  ~WrittenFiles() {
-    std::error_code gone;
-    for (const std::string& path : paths_) std::filesystem::remove(path, gone);
-  }
-  WrittenFiles(const WrittenFiles&) = delete;
-  WrittenFiles& operator=(const WrittenFiles&) = delete;
-
-  Result<Ok> make(const CompanionFile& file) {
-    const auto done = writeFile(file.path, file.content);
-    if (done) paths_.push_back(file.path);
-    return done;
-  }
-  void keep() { paths_.clear(); }
-
- private:
-  std::vector<std::string> paths_;
-};
 
 }  // namespace
 
@@ -266,18 +229,13 @@ Result<WrittenMesh> writeMesh(const std::string& path, const Mesh& mesh, const O
   }
   const std::string name = plainName(path);
   WrittenMesh written{writer.ending, {}, {}, writer.exact ? Origin{} : origin};
-  WrittenFiles files;
-  for (const CompanionFile& file : companionsOf(writer, mesh, path)) {
-    const auto there = isThere(file);
-    if (!there) return there.error();
-    const auto done = *there ? Result<Ok>(Ok{}) : files.make(file);
-    if (!done) return done.error();
-    written.companions.push_back(file.path);
-  }
-  const auto done = writeFile(
-      path, [&](const WriteBytes& bytes) { return writer.write(mesh, added, name, bytes); });
+  const std::vector<CompanionFile> companions = companionsOf(writer, mesh, path);
+  const auto done = writeBeside(companions, [&] {
+    return writeFile(
+        path, [&](const WriteBytes& bytes) { return writer.write(mesh, added, name, bytes); });
+  });
   if (!done) return done.error();
-  files.keep();
+  for (const CompanionFile& file : companions) written.companions.push_back(file.path);
   for (const Feature& f : mesh.features) {
     if (!writer.carries(mesh, f)) written.left_out.push_back(f.name);
   }

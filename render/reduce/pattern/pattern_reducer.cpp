@@ -271,9 +271,7 @@ void PatternReducer::makePattern(std::uint32_t v) {
   }
 }
 
-// [GOURLEY98] equation 4.3.
-float PatternReducer::lengthOf(std::uint32_t edge) const noexcept {
-  const auto [a, b] = surface_.ends(edge);
+float PatternReducer::patternDistance(std::uint32_t a, std::uint32_t b) const noexcept {
   const std::size_t d = space_.dimension();
   double sum = 0;
   for (std::size_t k = 0; k < d; ++k) {

@@ -37,6 +37,10 @@ class PatternReducer {
   std::size_t collapses() const noexcept { return result_.log.children.size(); }
   std::size_t triangles() const noexcept { return surface_.liveTriangles(); }
 
+  // Distance of the present weighted pattern vectors of two vertices: the length of an edge between
+  // them, equation 4.3.
+  float patternDistance(std::uint32_t a, std::uint32_t b) const noexcept;
+
   // Returns the result and leaves the reducer empty. The caller must fill `stopped` and `about`.
   Reduction finish() &&;
 
@@ -63,7 +67,10 @@ class PatternReducer {
   void mixFeatures(const Plan& plan);
   void recordNode(const Plan& plan, float error);
   void makePattern(std::uint32_t v);
-  float lengthOf(std::uint32_t edge) const noexcept;
+  float lengthOf(std::uint32_t edge) const noexcept {
+    const auto [a, b] = surface_.ends(edge);
+    return patternDistance(a, b);
+  }
   void lengthen(std::uint32_t edge);
 
   WorkingMesh surface_;

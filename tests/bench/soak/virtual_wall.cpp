@@ -204,7 +204,6 @@ wall::FeedSettings VirtualWall::feedSettings(const Settings& settings) {
   for (const DeviceSettings& device : settings.devices.list)
     feed.devices.push_back({device.name, device.person});
   feed.stale_after = fromSeconds(settings.devices.stale_after_s);
-  feed.ahead = fromSeconds(1 / settings.wall.governor.rate_hz);
   feed.turn = fromSeconds(settings.devices.turn_s);
   return feed;
 }
@@ -215,7 +214,7 @@ void VirtualWall::reload(const Settings& settings, bool rate, bool playlist, boo
   if (rate) tuning.governor = settings.wall.governor;
   if (playlist) tuning.playlist = settings.wall.playlist;
   if (scene) tuning.scene = settings.wall.scene;
-  if (rate || input) tuning.feed = feedSettings(settings);
+  if (input) tuning.feed = feedSettings(settings);
   loop_->tune(std::move(tuning));
 }
 

@@ -1,6 +1,8 @@
 // Writes Open Inventor 2.1 ASCII. Normals, colours and texture coordinates are bound per indexed
 // vertex; they have no index lists of their own, so coordIndex applies. J. Wernecke, "The Inventor
 // Mentor", 1994.
+#include <fmt/format.h>
+
 #include "render/mesh/io/inventor_text.h"
 #include "render/mesh/io/writer.h"
 
@@ -22,17 +24,21 @@ bool carries(const Mesh& mesh, const Feature& f) {
 bool write(const Mesh& mesh, const Origin&, const std::string& name, const WriteBytes& bytes) {
   TextSink out(bytes);
   out.print("{}", kInventorHeader);
-  printSeparator(out, mesh, isTextured(mesh) ? pictureName(mesh, name) : "");
+  printSeparator(out, mesh, isTextured(mesh) ? textureNode(pictureName(mesh, name)) : "");
   return out.finish();
 }
 
 }  // namespace
 
-void printSeparator(TextSink& out, const Mesh& mesh, const std::string& picture) {
+std::string textureNode(const std::string& picture) {
+  return fmt::format("Texture2 {{ filename \"{}\" }}", picture);
+}
+
+void printSeparator(TextSink& out, const Mesh& mesh, const std::string& texture) {
   out.print("Separator {{\n{}", kInventorHints);
   const Feature* colour = findOf(mesh, "colour", 3);
-  if (!picture.empty()) {
-    out.print("  Texture2 {{ filename \"{}\" }}\n", picture);
+  if (!texture.empty()) {
+    out.print("  {}\n", texture);
   } else if (colour) {
     printNode(out, "Material", "diffuseColor", colour->values, 3);
     out.print("  MaterialBinding {{ value PER_VERTEX_INDEXED }}\n");
