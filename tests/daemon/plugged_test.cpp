@@ -106,6 +106,16 @@ TEST_F(PluggedTest, AnInputDevicesEntryHasItsDriverAndALastingName) {
   EXPECT_TRUE(found[0].readable);
 }
 
+// /sys may have named a device a moment ago whose file is gone.
+TEST_F(PluggedTest, AnInputDeviceThatIsGoneIsNotListedAndTheOthersAre) {
+  addInput(1, "gone", {{BTN_SOUTH}, {ABS_X}});
+  addInput(2, "pad", {{BTN_SOUTH}, {ABS_X}});
+  fs::remove(root() + "/dev/input/event1");
+  const auto found = findPlugged(root());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].name, "pad");
+}
+
 TEST_F(PluggedTest, ATouchScreenAndAMouseServeAsTouchFrames) {
   addInput(1, "a mouse", {{BTN_LEFT}, {}, {REL_X, REL_Y}});
   addInput(2, "frame", {{BTN_TOUCH}, {ABS_X, ABS_Y, ABS_MT_POSITION_X}});
