@@ -102,6 +102,11 @@ void describeHand(HandSettings& h, SettingsVisitor& v) {
          "glove, for example because it holds a tracked wand.");
   v.text("tracker", h.tracker,
          "Name of the tracker whose receiver is on the hand. Empty: the first tracker.");
+  v.text("buttons", h.buttons,
+         "Name of the device whose buttons the hand holds, for example those of a tracked wand "
+         "(driver vrpn_pad) or of a remote control (evdev): its inputs that are bound to grab, fly "
+         "or point_at then act with this hand. Empty: none. A device that no hand holds acts with "
+         "the first hand, unless another one holds such an action.");
   v.integer(
       "station", h.station, {1, 4},
       "Tracker station that is worn on the hand, 1 to 4; it moves the model while the action "

@@ -313,6 +313,23 @@ void checkGloves(LoadedSettings& loaded) {
   }
 }
 
+// Buttons are in one hand.
+void checkButtons(LoadedSettings& loaded) {
+  const DevicesSettings& d = loaded.settings.devices;
+  std::map<std::string, std::size_t> held;
+  for (std::size_t i = 0; i < d.hands.size(); ++i) {
+    const std::string& buttons = d.hands[i].buttons;
+    if (buttons.empty()) continue;
+    checkNamed(buttons, SampleKind::kBall, handAt(i) + "/buttons", loaded);
+    const auto [first, fresh] = held.emplace(buttons, i);
+    if (!fresh)
+      loaded.addFinding(
+          handAt(i) + "/buttons",
+          fmt::format("is \"{}\", whose buttons the hand at {} holds; a device is in one hand",
+                      excerpt(buttons), handAt(first->second)));
+  }
+}
+
 // A station whose poses cannot come: a hand there would never be seen.
 void checkStationComes(const std::string& tracker, int station, const std::string& at,
                        LoadedSettings& loaded) {
@@ -381,6 +398,7 @@ void checkDevices(LoadedSettings& loaded) {
     checkNamed(d.hands[i].tracker, SampleKind::kTracker, handAt(i) + "/tracker", loaded);
   }
   checkGloves(loaded);
+  checkButtons(loaded);
   checkInputs(loaded);
   checkStations(loaded);
 }

@@ -401,8 +401,48 @@ TEST(Architecture, EveryIncludeFollowsTheRules) {
   EXPECT_GT(files, 100);
 }
 
-// Whether a file of `folder`, or of a folder that is private to it, includes the folder or header
-// that the rule names.
+// Whether the file names the driver: its folder, its name in the registry, or its word in CMake's
+// list.
+bool namesDriver(const fs::path& file, const std::string& driver) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    const bool listed =
+        line.starts_with("set(MERLIN_DRIVERS ") &&
+        (line.ends_with(' ' + driver + ')') || line.find(' ' + driver + ' ') != std::string::npos);
+    if (listed || line.find("drivers/" + driver + '/') != std::string::npos ||
+        line.find("{\"" + driver + "\", SampleKind::") != std::string::npos ||
+        line.find("merlin::" + driver + ' ') != std::string::npos)
+      return true;
+  }
+  return false;
+}
+
+// What drivers/README.md says of a new driver of a known kind. `sample` has no settings of its own,
+// `spacenav` has some; nothing else knows either.
+TEST(Architecture, ADriverOfAKnownKindIsNamedInTwoFilesAndWithSettingsInThree) {
+  const fs::path root = MERLIN_SOURCE_DIR;
+  const auto namedIn = [&](const std::string& driver) {
+    std::set<std::string> files;
+    for (const char* top : {"daemon", "drivers", "nn", "render", "config"}) {
+      for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+        const std::string file = fs::relative(entry.path(), root).generic_string();
+        const auto extension = entry.path().extension();
+        const bool is_code = extension == ".h" || extension == ".cpp" || extension == ".txt";
+        if (is_code && !file.starts_with("drivers/" + driver + '/') &&
+            namesDriver(entry.path(), driver))
+          files.insert(file);
+      }
+    }
+    return files;
+  };
+  EXPECT_EQ(namedIn("sample"),
+            (std::set<std::string>{"drivers/CMakeLists.txt", "drivers/registry.cpp"}));
+  EXPECT_EQ(namedIn("spacenav"),
+            (std::set<std::string>{"drivers/CMakeLists.txt", "drivers/registry.cpp",
+                                   "drivers/registry.h"}));
+}
+
+// Whether a file of `folder`, or of a folder that is private to it, includes what the rule names.
 bool isUsed(const fs::path& root, const std::string& folder, const std::string& rule) {
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const auto extension = entry.path().extension();

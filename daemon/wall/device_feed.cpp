@@ -31,24 +31,33 @@ void predictPose(const shm::DeviceSlots::Hand* slots, Timestamp seen, TrackerSam
   std::copy(pose.orientation_wxyz.begin(), pose.orientation_wxyz.end(), hand.orientation_wxyz);
 }
 
-// Whether this glove's posture holds the action point_at.
-bool points(const shm::DeviceSlots& devices, const actions::Actions& actions,
-            const std::string& glove) {
-  const auto* const slots = devices.glove(glove);
-  for (std::size_t i = 0; slots && i < devices.actions.size(); ++i) {
-    if (devices.actions[i].source == slots->name)
-      return actions.by_source[i].held[actionIndex("point_at")];
-  }
-  return false;
-}
-
 // The actions by which a hand moves the model. While a hand only points, another one may move the
 // model.
 constexpr std::array kMoving = {actionIndex("grab"), actionIndex("fly")};
 constexpr std::array kOfHand = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
 
+constexpr std::array kPointing = {actionIndex("point_at")};
+
 bool holdsOneOf(const actions::ActionCounts& counts, std::span<const std::size_t> actions) {
   return std::any_of(actions.begin(), actions.end(), [&](std::size_t i) { return counts.held[i]; });
+}
+
+// Whether actions of this source are the hand's: it is the glove that the hand wears, or has the
+// buttons that the hand holds.
+bool isOfHand(const shm::DeviceSlots& devices, const FollowedHand& hand,
+              const std::string& source) {
+  const auto* const glove = devices.glove(hand.glove);
+  return (glove && glove->name == source) || (!hand.buttons.empty() && hand.buttons == source);
+}
+
+// Whether the hand holds one of these actions.
+bool holdsOneOf(const shm::DeviceSlots& devices, const actions::Actions& actions,
+                const FollowedHand& hand, std::span<const std::size_t> of) {
+  for (std::size_t i = 0; i < devices.actions.size(); ++i) {
+    if (isOfHand(devices, hand, devices.actions[i].source) && holdsOneOf(actions.by_source[i], of))
+      return true;
+  }
+  return false;
 }
 
 render::scene::HeldMotion motionOf(const actions::ActionCounts& used) {
@@ -207,11 +216,7 @@ void DeviceFeed::takeTurns(const shm::DeviceSlots& devices, const Acts& now_acts
 std::size_t DeviceFeed::handThatActs(const shm::DeviceSlots& devices,
                                      const actions::Actions& actions) {
   const auto holds = [&](std::size_t hand, std::span<const std::size_t> of) {
-    const auto* const glove = devices.glove(settings_.hands[hand].glove);
-    for (std::size_t i = 0; glove && i < devices.actions.size(); ++i) {
-      if (devices.actions[i].source == glove->name) return holdsOneOf(actions.by_source[i], of);
-    }
-    return false;
+    return holdsOneOf(devices, actions, settings_.hands[hand], of);
   };
   const auto mayAct = [&](std::size_t hand) {
     return !holder_ || settings_.hands[hand].person == *holder_;
@@ -234,8 +239,9 @@ void DeviceFeed::readHand(const shm::DeviceSlots& devices, const actions::Action
                           Timestamp now, WallInput& input) {
   const std::size_t acting = handThatActs(devices, actions);
   for (std::size_t i = 0; i < settings_.hands.size(); ++i) {
-    if (i == acting || !points(devices, actions, settings_.hands[i].glove)) continue;
-    if (const auto other = predicted(devices, settings_.hands[i], now))
+    const FollowedHand& hand = settings_.hands[i];
+    if (i == acting || !holdsOneOf(devices, actions, hand, kPointing)) continue;
+    if (const auto other = predicted(devices, hand, now))
       input.scene.other_pointers.push_back(*other);
   }
   if (acting >= settings_.hands.size()) return;
@@ -264,11 +270,17 @@ void DeviceFeed::readPosture(const shm::DeviceSlots& devices, const std::string&
   if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
 }
 
-// Whether `source` is the glove of a hand other than the acting one; its actions are then ignored.
+// Whether `source` is the glove, or has the buttons, of a hand other than the acting one; the
+// actions by which it would move the model or point are then ignored. So are those of a glove on no
+// hand if the acting hand wears another one.
 bool DeviceFeed::isOfAnotherHand(const shm::DeviceSlots& devices, const std::string& source) const {
-  if (hand_ >= settings_.hands.size() || !isGlove(devices, source)) return false;
-  const auto* const acting = devices.glove(settings_.hands[hand_].glove);
-  return acting && acting->name != source;
+  if (hand_ >= settings_.hands.size()) return false;
+  const FollowedHand& acting = settings_.hands[hand_];
+  if (isOfHand(devices, acting, source)) return false;
+  return (devices.glove(acting.glove) && isGlove(devices, source)) ||
+         std::ranges::any_of(settings_.hands, [&](const FollowedHand& hand) {
+           return isOfHand(devices, hand, source);
+         });
 }
 
 // Returns whether a ball moves a corner.

@@ -20,8 +20,8 @@ namespace merlin::wall {
 // Among several balls the one that is pushed counts, among several hands the one that holds an
 // action, otherwise the first of each; among several touch surfaces the one that is touched, and
 // each mouse's wheel. The actions of all devices count, but only the hand that acts grabs, flies
-// and points by its glove. Among several people, only the input of the one who has the wall counts
-// (Turns); the hands of the others may still point.
+// and points by its glove and by the buttons that it holds. Among several people, only the input of
+// the one who has the wall counts (Turns); the hands of the others may still point.
 class DeviceFeed final : public InputFeed {
  public:
   DeviceFeed(std::string segment_name, FeedSettings settings)

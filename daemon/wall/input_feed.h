@@ -42,6 +42,7 @@ struct FollowedHand {
   std::string name, person;
   std::string glove;  // name of the glove whose postures are the hand's; empty: the first glove
   FollowedStation place;
+  std::string buttons = {};  // name of the ball whose buttons the hand holds; empty: none
 };
 
 // How the devices' input is read.

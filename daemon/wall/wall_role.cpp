@@ -197,7 +197,8 @@ void WallRole::run(const std::stop_token& stop, Progress& progress) {
 FeedSettings WallRole::feedSettings(const Settings& settings) {
   FeedSettings feed;
   for (const HandSettings& hand : settings.devices.hands) {
-    feed.hands.push_back({hand.name, hand.person, hand.glove, {hand.tracker, hand.station}});
+    feed.hands.push_back(
+        {hand.name, hand.person, hand.glove, {hand.tracker, hand.station}, hand.buttons});
   }
   for (const DeviceSettings& device : settings.devices.list)
     feed.devices.push_back({device.name, device.person});

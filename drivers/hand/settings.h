@@ -10,6 +10,7 @@ struct HandSettings {
   std::string person;         // its owner, as in the settings of devices
   std::string glove;          // name of the glove that it wears; empty: the first glove; kNoGlove
   std::string tracker;        // name of the tracker that follows it; empty: the first tracker
+  std::string buttons;        // name of the ball whose buttons the hand holds; empty: none
   int station = 1;            // the tracker's station that is on the hand
   bool gestures = true;       // whether its gestures are recognised
   // Low-pass filter of the pose, against the tracker's noise: cut-off frequency for a hand at rest

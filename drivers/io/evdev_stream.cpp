@@ -21,6 +21,14 @@ namespace {
 
 using Handle = std::unique_ptr<libevdev, decltype(&libevdev_free)>;
 
+// Whether the kernel's answer, a negative errno value, means that a device file is left whose
+// device is gone: the file vanishes a moment after the device does.
+bool isUnplugged(int answer) noexcept { return answer == -ENODEV || answer == -ENXIO; }
+
+Error unplugged(const std::string& path) {
+  return {Errc::kNotFound, path + ": the input device was unplugged while it was being opened"};
+}
+
 EvdevRecord numbered(EvdevRecord::Kind kind, unsigned code, std::int32_t value = 0) {
   EvdevRecord record;
   record.kind = kind;
@@ -156,9 +164,9 @@ class EvdevStream final : public ByteStream {
         dropped_ = false;  // the state is known again
         continue;
       }
+      if (status == -ENODEV) return Error{Errc::kClosed, "the input device was unplugged"};
       if (status < 0)
-        return Error{status == -ENODEV ? Errc::kClosed : Errc::kIo,
-                     fmt::format("the input device: {}", std::strerror(-status))};
+        return Error{Errc::kIo, fmt::format("the input device: {}", std::strerror(-status))};
       if (status == LIBEVDEV_READ_STATUS_SYNC) dropped_ = true;
       append(event, ahead_.bytes);
     }
@@ -178,13 +186,22 @@ class EvdevStream final : public ByteStream {
 EvdevRecord keyRecord(std::uint16_t code) { return named(EvdevRecord::kKey, code, keyName(code)); }
 
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path) {
+  return openEvdev(path, {libevdev_new_from_fd,
+                          [](libevdev* device) { return libevdev_grab(device, LIBEVDEV_GRAB); }});
+}
+
+Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path,
+                                              const EvdevRequests& requests) {
   UniqueFd fd(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!fd.valid()) return openError(path, errno);
+  if (!fd.valid()) return isUnplugged(-errno) ? unplugged(path) : openError(path, errno);
   libevdev* made = nullptr;
-  if (libevdev_new_from_fd(fd.get(), &made) < 0)
-    return Error{Errc::kIo, path + ": is not an input device of the kernel"};
+  const int described = requests.describe(fd.get(), &made);
+  if (isUnplugged(described)) return unplugged(path);
+  if (described < 0) return Error{Errc::kIo, path + ": is not an input device of the kernel"};
   Handle device(made, libevdev_free);
-  if (libevdev_grab(device.get(), LIBEVDEV_GRAB) < 0)
+  const int grabbed = requests.grab(device.get());
+  if (isUnplugged(grabbed)) return unplugged(path);
+  if (grabbed < 0)
     return Error{Errc::kBusy,
                  path +
                      ": another device of this configuration, or a program such as spacenavd, "

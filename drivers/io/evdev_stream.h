@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,13 +13,27 @@
 #include "drivers/port/byte_stream.h"
 #include "drivers/port/evdev_line.h"
 
+struct libevdev;
+
 namespace merlin::io {
 
 // Opens the device and grabs it, so that no other program gets its events. The stream begins with
-// the device's description. Errors: kNotFound, kBusy (another program has grabbed it), kIo (not an
-// input device, or no permission: then the message names the group to join). write() of the stream
-// always fails with kIo.
+// the device's description. Errors: kNotFound (no such file, or the device was unplugged before it
+// was grabbed), kBusy (another program has grabbed it), kIo (not an input device, or no permission:
+// then the message names the group to join). write() of the stream always fails with kIo; read()
+// fails with kClosed once the device is unplugged.
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path);
+
+// What openEvdev() asks of the kernel about a file that is open. Each call returns 0 or a negative
+// errno value.
+struct EvdevRequests {
+  std::function<int(int fd, libevdev** device)> describe;  // makes `device` if it returns 0
+  std::function<int(libevdev* device)> grab;
+};
+
+// The same with other requests, for tests: no test can unplug a device at a chosen moment.
+Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path,
+                                              const EvdevRequests& requests);
 
 // Returns the record with which such a stream describes the key that has this number in the kernel;
 // it includes the key's name.

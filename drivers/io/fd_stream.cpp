@@ -16,7 +16,7 @@ Result<std::size_t> FdStream::read(std::span<std::byte> buffer, Duration timeout
   if (const auto ready = wait_.await(fd_, POLLIN, timeout); !ready) return ready.error();
   const ssize_t n = ::read(fd_, buffer.data(), buffer.size());
   if (n > 0) return static_cast<std::size_t>(n);
-  if (n == 0) return Error{Errc::kClosed, "end of file"};
+  if (n == 0) return hungUp();
   if (errno == EAGAIN || errno == EINTR) return Error{Errc::kTimeout, "time-out"};
   return ioError("read");
 }

@@ -3,15 +3,21 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <string>
 
 #include <sys/eventfd.h>
 
 namespace merlin::io {
 
+Error hungUp() { return {Errc::kClosed, "the other end hung up"}; }
+
 Error ioError(const char* call) {
-  return {errno == EIO || errno == ENXIO || errno == ENODEV ? Errc::kClosed : Errc::kIo,
-          std::string(call) + ": " + std::strerror(errno)};  // NOLINT: one thread a stream
+  const int error = errno;
+  const std::string what = std::string(call) + ": " + std::strerror(error);  // NOLINT: one thread
+  constexpr int kGone[] = {EIO, ENXIO, ENODEV, EPIPE, ECONNRESET};
+  if (std::ranges::find(kGone, error) == std::end(kGone)) return {Errc::kIo, what};
+  return {Errc::kClosed, hungUp().what + " (" + what + ')'};
 }
 
 FdWait::FdWait() : wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
@@ -28,7 +34,7 @@ Result<Ok> FdWait::await(int fd, short events, Duration timeout) {
   if (ready == 0) return Error{Errc::kTimeout, "time-out"};  // short: no allocation
   if (fds[1].revents != 0) return Error{Errc::kClosed, "interrupted"};
   if ((fds[0].revents & events) != 0) return Ok{};
-  return Error{Errc::kClosed, "the other end hung up"};
+  return hungUp();
 }
 
 }  // namespace merlin::io

@@ -24,8 +24,11 @@ class FdWait {
   UniqueFd wake_;  // eventfd that interrupt() signals; it is never cleared
 };
 
-// Error for a call that has just failed and set errno: kClosed if the device is gone, otherwise
-// kIo.
+// Error for a line whose other end was closed or unplugged: kClosed.
+Error hungUp();
+
+// Error for a call that has just failed and set errno: kClosed, as hungUp() says it, if the device
+// or the peer is gone, otherwise kIo.
 Error ioError(const char* call);
 
 }  // namespace merlin::io

@@ -121,6 +121,7 @@ void Poses::take(const OscMessage& message) noexcept {
   if (!plausible(sample)) return bad(faultOf(sample));
   normalise(sample.orientation_wxyz);
   place(settings_.placement, sample);
+  if (!plausible(sample)) return bad(kPlacedTooFar);
   sample.received_ns = toNanoseconds(received_);
   ++sample.counter;
   sample_[station] = sample;

@@ -24,6 +24,11 @@ struct TrackerPlacement {
 // are then reversed. REQUIRES: checkPlacement() finds nothing.
 void place(const TrackerPlacement& placement, TrackerSample& sample) noexcept;
 
+// The complaint about a plausible pose (drivers/port/plausible.h) that is not plausible any more
+// once it is placed. A driver drops it, since every reader on another machine would.
+inline constexpr const char* kPlacedTooFar =
+    "poses lie beyond 25 m with \"origin_m\" added: is \"origin_m\" right?";
+
 // Returns the placement whose origin is `origin`, whose x axis goes through `on_x` and whose y axis
 // lies on the side of `on_y`. The three places are as the tracker sends them [m]. Errors:
 // kMalformed (an axis lies more than 20 degrees off each of the tracker's axes, or both lie along

@@ -125,7 +125,10 @@ void Surface::moveSlot(const EvdevRecord& r) noexcept {
 }
 
 void Surface::shiftMouse(const EvdevRecord& r) noexcept {
-  if (r.code == REL_WHEEL) notches_ += std::clamp(r.value, -kMostNotches, kMostNotches);
+  if (r.code == REL_WHEEL) {
+    const std::int32_t turned = std::clamp(r.value, -kMostNotches, kMostNotches);
+    notches_ = std::clamp(notches_ + turned, -kMostNotches, kMostNotches);
+  }
   if (!down_) return;
   const auto shifted = [&](float from, float count) {
     return std::clamp(from + count * static_cast<float>(r.value), 0.0F, 1.0F);

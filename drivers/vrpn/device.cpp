@@ -94,6 +94,10 @@ bool VrpnDevice::publish(const VrpnPose& pose, Timestamp first_byte) noexcept {
   }
   normalise(sample.orientation_wxyz);
   place(settings_.placement, sample);
+  if (!plausible(sample)) {
+    silence_ = kPlacedTooFar;
+    return false;
+  }
   sample.received_ns = toNanoseconds(first_byte);
   ++sample.counter;
   newest = sample;

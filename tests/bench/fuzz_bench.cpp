@@ -1,5 +1,5 @@
-// ./dev bench fuzz: random and mutated bytes through every parser, in a build with AddressSanitizer
-// and UBSan: a fault ends the run. Prints how many packets each parser recovered.
+// ./dev bench fuzz: random and mutated bytes through every parser and driver, in a build with
+// AddressSanitizer and UBSan: a fault ends it. Prints how many packets each recovered.
 //
 // Half of the bytes are random. The other half is a good stream with occasional damage: a byte is
 // flipped, lost, doubled or replaced by a burst, or four bytes are replaced by an extreme length.
@@ -16,6 +16,7 @@
 #include "daemon/base/sanitizer.h"
 #include "drivers/cyberglove/calibration_files.h"
 #include "drivers/cyberglove/protocol.h"
+#include "drivers/cyberglove/text.h"
 #include "drivers/emulate/emulator.h"
 #include "drivers/fastrak/protocol.h"
 #include "drivers/io/transcript.h"
@@ -29,20 +30,14 @@
 #include "drivers/tuio/sources.h"
 #include "drivers/vrpn/protocol.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/fuzz_drivers.h"
 #include "tests/support/extreme_length.h"
 #include "tests/support/osc_packets.h"
 
 namespace merlin::bench {
 namespace {
 
-// Takes a piece of the stream; returns how many packets it completed.
-using Feed = std::function<std::uint64_t(const std::string&)>;
-
-struct Target {
-  const char* name;
-  std::function<Feed()> make;
-  std::function<std::string(Random&)> packet;  // makes a good packet
-};
+using Feed = FuzzFeed;
 
 std::int16_t anyShort(Random& r) { return static_cast<std::int16_t>(r.next()); }
 
@@ -64,6 +59,9 @@ Feed trackerFeed(const fastrak::Layout& layout) {
     return packets;
   };
 }
+
+constexpr cyberglove::Layout kGloveText{
+    .values = 22, .timestamp = true, .status = true, .text = true};
 
 std::string gloveRecord(Random& r) {
   cyberglove::Record record;
@@ -202,7 +200,7 @@ std::string transcriptLine(Random& r) {
                      r.below(2) ? "to " : "", r.below(65536));
 }
 
-const Target kTargets[] = {
+const FuzzTarget kParsers[] = {
     {"cyberglove", [] { return each(std::make_shared<cyberglove::Parser>()); }, gloveRecord},
     {"cyberglove stamped",
      [] {
@@ -214,6 +212,29 @@ const Target kTargets[] = {
        cyberglove::Record record;
        record.timestamp = static_cast<std::uint32_t>(r.next());
        return cyberglove::encode(record, {.values = 18, .timestamp = true, .status = true});
+     }},
+    {"cyberglove text",
+     [] {
+       auto parser = std::make_shared<cyberglove::Parser>();
+       parser->expect(kGloveText);
+       return each(parser);
+     },
+     [](Random& r) {
+       cyberglove::Record record;
+       for (auto& v : record.values) v = static_cast<std::uint8_t>(1 + r.below(255));
+       record.unplugged = r.below(9) == 0;
+       return cyberglove::encode(record, kGloveText);
+     }},
+    {"cyberglove answers",
+     []() -> Feed {
+       return [](const std::string& bytes) -> std::uint64_t {
+         return cyberglove::ofText(bytes) ? 1U : 0U;
+       };
+     },
+     [](Random& r) {
+       std::string mask("?T");
+       for (int i = 0; i < 4; ++i) mask += static_cast<char>(r.next());
+       return cyberglove::asText(mask) + "\r\n";
      }},
     {"fastrak", [] { return trackerFeed({}); },
      [](Random& r) { return fastrak::encode(trackerRecord(r), fastrak::kDriverList, {}); }},
@@ -287,8 +308,8 @@ struct Count {
   std::uint64_t bytes = 0, sent = 0, recovered = 0, from_noise = 0;
 };
 
-// Packets beyond the number that was sent whole are random bytes that happen to form a packet.
-void fuzz(const Target& target, double most, std::uint64_t seed, Report& report) {
+// Packets beyond those that were sent whole are chance: random bytes that form a packet.
+void fuzz(const FuzzTarget& target, double most, std::uint64_t seed, Report& report) {
   note(fmt::format("{} ...", target.name));
   Random random(seed);
   const auto start = std::chrono::steady_clock::now();
@@ -342,7 +363,9 @@ int main(int argc, char** argv) {
 #ifndef MERLIN_ADDRESS_SANITIZER
     report.text("(without sanitizers: only a crash would show)\n");
 #endif
-    for (const auto& target : merlin::bench::kTargets)
+    for (const auto& target : merlin::bench::kParsers)
+      merlin::bench::fuzz(target, bytes, seed, report);
+    for (const auto& target : merlin::bench::fuzzedDrivers())
       merlin::bench::fuzz(target, bytes, seed, report);
     return true;
   });

@@ -238,6 +238,24 @@ TEST(DevicesConfig, AGloveIsWornOnceAndAHandMayWearNone) {
   EXPECT_EQ(hands(R"(, "glove": "none")"), "");
 }
 
+TEST(DevicesConfig, AHandHoldsTheButtonsOfABallThatNoOtherHandHolds) {
+  const std::string list =
+      R"({"name": "t", "driver": "fastrak"}, {"name": "wand", "driver": "vrpn_pad",
+      "port": "tcp://lab:3883"})";
+  const auto hands = [&](const std::string& first, const std::string& second) {
+    return devicesAre(list, R"(, "hands": [{"name": "one", "glove": "none")" + first +
+                                R"(}, {"name": "two", "station": 2, "glove": "none")" + second +
+                                "}]");
+  };
+  EXPECT_EQ(hands("", R"(, "buttons": "wand")"), "");
+  EXPECT_EQ(hands(R"(, "buttons": "wand")", R"(, "buttons": "wand")"),
+            "f.json:2: /hands/1/buttons is \"wand\", whose buttons the hand at /hands/0 holds; a "
+            "device is in one hand\n");
+  EXPECT_EQ(hands("", R"(, "buttons": "t")"),
+            "f.json:2: /hands/1/buttons is \"t\", which is not the name of a ball; /devices has "
+            "wand\n");
+}
+
 TEST(DevicesConfig, AStationIsWornOnce) {
   const std::string trackers =
       R"({"name": "a", "driver": "fastrak"}, {"name": "b", "driver": "fastrak"})";

@@ -106,6 +106,16 @@ TEST_F(PluggedTest, AnInputDevicesEntryHasItsDriverAndALastingName) {
   EXPECT_TRUE(found[0].readable);
 }
 
+// /sys may have named a device a moment ago whose file is gone.
+TEST_F(PluggedTest, AnInputDeviceThatIsGoneIsNotListedAndTheOthersAre) {
+  addInput(1, "gone", {{BTN_SOUTH}, {ABS_X}});
+  addInput(2, "pad", {{BTN_SOUTH}, {ABS_X}});
+  fs::remove(root() + "/dev/input/event1");
+  const auto found = findPlugged(root());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].name, "pad");
+}
+
 TEST_F(PluggedTest, ATouchScreenAndAMouseServeAsTouchFrames) {
   addInput(1, "a mouse", {{BTN_LEFT}, {}, {REL_X, REL_Y}});
   addInput(2, "frame", {{BTN_TOUCH}, {ABS_X, ABS_Y, ABS_MT_POSITION_X}});
@@ -187,15 +197,19 @@ TEST(LiveTable, ShowsWhatWorkingDevicesMeasureAndWhyOthersDoNot) {
   BallSample ball{};
   ball.translation[1] = -0.5F;
   ball.raw[1] = -700;
+  ball.rotation[0] = 0.25F;
   ball.buttons = 0x801;
+  ball.keys[0] = BTN_SOUTH;
   devices->ball[0].publish(ball);
   const std::string text = liveTable(devices.slots(), fromNanoseconds(1'100'000'000));
   EXPECT_NE(text.find("glove      absent      20.0 Hz  not configured\n"), std::string::npos)
       << text;
   EXPECT_NE(text.find("ball       ok          20.0 Hz  pad, 8 axes\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("y        [     #####|          ] -0.500  raw -700"), std::string::npos)
+  EXPECT_NE(text.find("axis.y-  [     #####|          ] -0.500  raw -700\n"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("buttons  1 12\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("axis.rx+ ["), std::string::npos) << text;
+  EXPECT_NE(text.find("axis.z   ["), std::string::npos) << "at rest";
+  EXPECT_NE(text.find("pressed  button.1 button.12 button.south\n"), std::string::npos) << text;
 }
 
 TEST(LiveTable, ShowsWhatADeviceThatWorksComplainsOf) {

@@ -196,6 +196,47 @@ TEST_F(SeveralDevicesTest, WhoseTurnItIsNotMayStillPoint) {
   EXPECT_EQ(input.scene.other_pointers[0].station, 2u);
 }
 
+// The right hand holds a wand, whose buttons are those of the ball at the door.
+FeedSettings withWand(FeedSettings settings) {
+  settings.hands[1].glove = "none";
+  settings.hands[1].buttons = "door";
+  return settings;
+}
+
+TEST_F(SeveralDevicesTest, AWandsButtonPointsWithItsOwnHand) {
+  DeviceFeed feed(name_, withWand(settings("")));
+  push(0, 0);
+  push(1, 0);
+  hold(kDoor, true, "point_at");
+  WallInput input = read(feed);
+  EXPECT_TRUE(input.scene.point_at);
+  EXPECT_EQ(input.scene.hand->station, 2u);
+  hold(kDoor, false, "point_at");
+  hold(kDesk, true, "point_at");
+  input = read(feed);
+  EXPECT_TRUE(input.scene.point_at);
+  EXPECT_EQ(input.scene.hand->station, 1u) << "no hand holds that ball: the first hand's";
+}
+
+TEST_F(SeveralDevicesTest, AWandPointsWhileAFistMovesTheModel) {
+  DeviceFeed feed(name_, withWand(settings("")));
+  push(1, 0);
+  hold(kDoor, true, "point_at");
+  hold(kLeft, true);
+  WallInput input = read(feed);
+  EXPECT_EQ(input.scene.hand->station, 1u);
+  EXPECT_TRUE(input.scene.grab);
+  EXPECT_FALSE(input.scene.point_at) << "by the other hand";
+  ASSERT_EQ(input.scene.other_pointers.size(), 1u);
+  EXPECT_EQ(input.scene.other_pointers[0].station, 2u);
+  hold(kLeft, false);
+  hold(kDoor, true);
+  read(feed);
+  input = read(feed);
+  EXPECT_TRUE(input.scene.grab) << "a wand grabs, too";
+  EXPECT_EQ(input.scene.hand->station, 2u);
+}
+
 TEST_F(SeveralDevicesTest, FingersMoveWhatIsShownAndTakeTheTurn) {
   FeedSettings settings_of_two = settings("bob");
   settings_of_two.devices.push_back({"table", "bob"});

@@ -215,6 +215,18 @@ TEST_F(OscTest, OpeningSaysWhatComesInsteadOfAPose) {
   EXPECT_EQ(refused().what, "messages of poses have neither 3 nor 7 numbers");
 }
 
+// A wall on another machine would refuse such samples and say nothing.
+TEST_F(OscTest, APoseThatIsPlacedBeyondTheTrackersReachIsDroppedAndSaid) {
+  OscSettings settings;
+  settings.placement.origin_m = {0, 24, 0};
+  stream_.feed(datagram(oscMessage("/tracker/1/pose", {0.0F, 1.5F, 0.0F})));
+  EXPECT_EQ(refused(settings).what,
+            "poses lie beyond 25 m with \"origin_m\" added: is \"origin_m\" right?");
+  EXPECT_TRUE(sink_.tracker.empty());
+  connect(settings, oscMessage("/tracker/1/pose", {0.0F, 0.5F, 0.0F}));
+  EXPECT_FLOAT_EQ(newest().position_m[1], 24.5F);
+}
+
 TEST_F(OscTest, APoseThatNoTrackerCanMeasureIsDroppedAndSaid) {
   connect({}, oscMessage("/tracker/1/pose", kAtRest));
   const auto pose = [](float x, float w) {

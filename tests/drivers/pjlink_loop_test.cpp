@@ -86,7 +86,7 @@ TEST(ProjectorLoop, AProjectorThatVanishesInAnAnswerIsAskedAgain) {
   server.manner = ProjectorServer::kHalf;
   Running r(server.port);
   ASSERT_TRUE(r.becomes(Health::kUnreachable));
-  EXPECT_EQ(r.loop.state().reason, "closes the connection (end of file)");
+  EXPECT_EQ(r.loop.state().reason, "closes the connection (the other end hung up)");
   server.manner = ProjectorServer::kPolite;
   r.loop.want(true);
   EXPECT_TRUE(r.becomes(Health::kOk));

@@ -195,6 +195,18 @@ TEST_F(TouchTest, APressedMouseIsAFingerThatBeginsInTheMiddle) {
   EXPECT_NE(again.id[0], down.id[0]);
 }
 
+// A report that never ends must not let the count of notches overflow.
+TEST_F(TouchTest, AWheelTurnsAtMostAHundredNotchesInOneReport) {
+  connect(mouse());
+  stream_.feed(shifted(REL_WHEEL, 2'000'000'000) + shifted(REL_WHEEL, 99) + shifted(REL_WHEEL, 99) +
+               kReport);
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(sink_.touch.back().wheel, 100u);
+  stream_.feed(shifted(REL_WHEEL, -1) + kReport);
+  ASSERT_TRUE(device_->poll(stream_));
+  EXPECT_EQ(sink_.touch.back().wheel, 99u);
+}
+
 TEST_F(TouchTest, AMousesOtherButtonsAndWheelAreThereWithoutAFinger) {
   connect(mouse());
   const auto after = [&](const std::string& events) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -195,7 +196,25 @@ TEST(TcpStream, CarriesBytesBothWaysAndSaysWhenTheServerIsGone) {
   std::byte buffer[8];
   EXPECT_EQ(*(*stream)->read(buffer, std::chrono::seconds(5)), 2u);
   peer.reset();
-  EXPECT_EQ((*stream)->read(buffer, std::chrono::seconds(5)).error().code, Errc::kClosed);
+  const Error gone = (*stream)->read(buffer, std::chrono::seconds(5)).error();
+  EXPECT_EQ(gone.code, Errc::kClosed);
+  EXPECT_EQ(gone.what, "the other end hung up");
+}
+
+// It ends with bytes that it has not read, so that the connection is reset.
+TEST(TcpStream, AServerThatBreaksTheConnectionOffIsGoneToo) {
+  Server server;
+  auto stream = openPort({PortKind::kTcp, "127.0.0.1", std::to_string(server.port)}, 9600);
+  ASSERT_TRUE(stream) << stream.error().what;
+  UniqueFd peer(::accept(server.fd.get(), nullptr, nullptr));
+  ASSERT_TRUE((*stream)->write(std::as_bytes(std::span("S", 1)), std::chrono::seconds(1)));
+  pollfd item{peer.get(), POLLIN, 0};
+  ASSERT_EQ(::poll(&item, 1, 5000), 1);
+  peer.reset();
+  std::byte buffer[8];
+  const Error gone = (*stream)->read(buffer, std::chrono::seconds(5)).error();
+  EXPECT_EQ(gone.code, Errc::kClosed) << "absent, not failed";
+  EXPECT_EQ(gone.what, "the other end hung up (read: Connection reset by peer)");
 }
 
 TEST(TcpStream, SaysThatNobodyListens) {

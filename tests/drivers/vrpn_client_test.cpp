@@ -180,6 +180,17 @@ TEST_F(VrpnTest, APoseThatNoTrackerMeasuresIsDroppedAndCounted) {
   EXPECT_FLOAT_EQ(sink_.tracker.back().orientation_wxyz[1], 1) << "normalised";
 }
 
+TEST_F(VrpnTest, APoseThatIsPlacedBeyondTheTrackersReachIsDroppedAndSaid) {
+  VrpnSettings settings;
+  settings.placement.origin_m = {0, 0, -20};
+  connect(settings);
+  clock_.advance(milliseconds(2500));
+  EXPECT_EQ(samplesOf(pose(0, {0, 0, -6})), 0u);
+  EXPECT_EQ(device_->counters().bad_packets, 1u);
+  EXPECT_STREQ(device_->complaint(),
+               "poses lie beyond 25 m with \"origin_m\" added: is \"origin_m\" right?");
+}
+
 TEST_F(VrpnTest, OnlyWhatTheServerCallsOurDevicesPosesIsTaken) {
   connect();
   const std::string payload =

@@ -20,6 +20,8 @@ class FakeStream final : public ByteStream {
   FakeStream(FakeClock& clock, emulate::Emulator* emulator) : clock_(clock), emulator_(emulator) {}
 
   void feed(std::string_view bytes) { input_ += bytes; }
+  // Whether bytes wait to be read.
+  bool pending() const { return !input_.empty(); }
   void close() { closed_ = true; }
   // like a cable unplugged at the device: nothing is received from now on
   void mute() { emulator_ = nullptr; }

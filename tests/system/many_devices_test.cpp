@@ -16,6 +16,7 @@
 #include "drivers/io/pty_master.h"
 #include "tests/support/evdev_records.h"
 #include "tests/support/free_port.h"
+#include "tests/system/contiguous.h"
 #include "tests/system/merlind.h"
 
 namespace merlin::test {
@@ -256,29 +257,6 @@ TEST_F(ManyDevices, AnInputIsThatOfItsDeviceOrOfAny) {
   EXPECT_TRUE(eventually([&] { return begun("far", kFreeze) >= 1; }));
   EXPECT_TRUE(eventually([&] { return begun("near", kBlank) >= 1 && begun("far", kBlank) >= 1; }));
   EXPECT_EQ(begun("near", kFreeze), 0u);
-}
-
-// Expects that none of the newest samples since the `from`-th is missing.
-template <typename T>
-void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const std::string& what) {
-  const std::uint64_t to = channel.count();
-  std::optional<std::uint32_t> last;
-  for (std::uint64_t n = std::max(from, to > 200 ? to - 200 : 0); n < to; ++n) {
-    const auto sample = channel.at(n);
-    ASSERT_TRUE(sample) << what;
-    EXPECT_TRUE(!last || sample->counter == *last + 1) << what;
-    last = sample->counter;
-  }
-}
-
-void expectContiguous(const shm::DeviceSlots& devices, const std::string& device,
-                      std::uint64_t from) {
-  if (const auto* const glove = devices.glove(device))
-    return expectContiguous(*glove->samples, from, device);
-  if (const auto* const ball = devices.ball(device))
-    return expectContiguous(*ball->samples, from, device);
-  for (std::size_t i = 0; i < (device == "eyes" ? 1 : 2); ++i)
-    expectContiguous(*devices.tracker(device)->stations[i], from, device);
 }
 
 TEST_F(ManyDevices, EachMayDieAndComeBackWithoutTheOthersNoticing) {

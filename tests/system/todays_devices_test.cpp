@@ -289,8 +289,41 @@ TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAn
   EXPECT_TRUE(client.healthIs("wand", HealthState::kAbsent));
 }
 
-// The entry of `merlin devices --json` for the VRPN server at this port; `options` are added to the
-// command.
+// The first hand's tracker is not there, so that nothing points unless the wand's own hand does.
+TEST(TodaysDevices, AWandOfAVrpnServerPointsWithItsOwnTracker) {
+  const TempDir dir;
+  const int port = freePort();
+  Gamepad pad(dir / "pad");
+  Merlind server(dir, "", "server", wandServer(port, dir / "pad"));
+  ASSERT_TRUE(server.ready()) << server.process().output();
+  ASSERT_TRUE(isConnected(server, pad, "pad")) << server.process().output();
+  MerlindOptions options = wandClient(port);
+  options.also["devices"].push_back(deviceEntry("gone", "fastrak"));
+  options.also["hands"] = {
+      {{"name", "first"}, {"glove", "none"}, {"tracker", "gone"}},
+      {{"name", "pointer"}, {"glove", "none"}, {"tracker", "eyes"}, {"buttons", "wand"}}};
+  options.also["bindings"] = {{{"input", "wand.button.1"}, {"action", "point_at"}}};
+  Merlind client(dir, makeModel(dir, 5), "client", options);
+  ASSERT_TRUE(client.ready()) << client.process().output();
+  ASSERT_TRUE(client.healthIs("eyes", HealthState::kOk)) << client.process().output();
+  ASSERT_TRUE(client.healthIs("wand", HealthState::kOk)) << client.process().output();
+  const auto wall =
+      shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(client.instance(), "wall"));
+  ASSERT_TRUE(wall);
+  const auto points = [&](bool expected) {
+    return eventually([&] {
+      const auto interaction = (*wall)->interaction.read();
+      return interaction && (interaction->pointing != shm::WallInteraction::kNone) == expected;
+    });
+  };
+  EXPECT_TRUE(points(false));
+  pad.report(evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 1));
+  EXPECT_TRUE(points(true));
+  pad.report(evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 0));
+  EXPECT_TRUE(points(false));
+}
+
+// What `merlin devices --json` says about the VRPN server at this port, with these options besides.
 nlohmann::json vrpnServerAt(int port, std::vector<std::string> options = {}) {
   const std::string host = fmt::format("127.0.0.1:{}", port);
   options.insert(options.begin(), {kMerlin, "devices", "--json", "--vrpn", host});

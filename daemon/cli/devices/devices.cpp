@@ -295,8 +295,10 @@ void addDevices(Command app, Run& run) {
         return vrpnPort(text) ? "" : excerpt(text) + " is neither HOST nor HOST:PORT";
       });
   command.flag("--json", options->json, "Print one JSON document");
-  command.flag("--watch", options->watch,
-               "Show what the devices measure, ten times a second, until interrupted");
+  command.flag(
+      "--watch", options->watch,
+      "Show what the devices measure, ten times a second, until interrupted; axes, buttons "
+      "and keys by the names that bindings use");
   command.option("--for", options->seconds, "With --watch: duration in seconds").seconds();
   command.callback([options, &run] {
     run = [options] { return options->watch ? watch(*options) : list(*options); };

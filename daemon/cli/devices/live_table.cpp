@@ -24,24 +24,26 @@ std::string inputOf(std::uint16_t code) {
   return fmt::format("number {}", code);
 }
 
+// Axes, buttons and keys by the names that bindings use after the device's name.
 std::string ballLines(const BallSample& ball) {
-  constexpr const char* kNames[] = {"x", "y", "z", "about x", "about y", "about z"};
+  constexpr const char* kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
   std::string text;
   for (int i = 0; i < 6; ++i) {
     const float share = i < 3 ? ball.translation[i] : ball.rotation[i - 3];
-    text +=
-        fmt::format("    {:8} {} {:6.3f}  raw {}\n", kNames[i], axisBar(share), share, ball.raw[i]);
+    const std::string name = fmt::format("axis.{}{}", kNames[i],
+                                         share > 0   ? "+"
+                                         : share < 0 ? "-"
+                                                     : "");
+    text += fmt::format("    {:8} {} {:6.3f}  raw {}\n", name, axisBar(share), share, ball.raw[i]);
   }
   std::string pressed;
   for (int button = 0; button < 12; ++button) {
-    if (ball.buttons >> button & 1) pressed += fmt::format(" {}", button + 1);
+    if (ball.buttons >> button & 1) pressed += fmt::format(" button.{}", button + 1);
   }
-  text += fmt::format("    buttons {}\n", pressed.empty() ? " none" : pressed);
-  std::string keys;
   for (const std::uint16_t code : ball.keys) {
-    if (code != 0) keys += " " + inputOf(code);
+    if (code != 0) pressed += " " + inputOf(code);
   }
-  return text + (keys.empty() ? "" : fmt::format("    keys    {}\n", keys));
+  return text + fmt::format("    pressed {}\n", pressed.empty() ? " none" : pressed);
 }
 
 std::string gloveLines(const GloveSample& glove, const shm::SeqSlot<PostureState>& state) {

@@ -173,6 +173,8 @@ void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
     const std::string kind = kindOf(has);
     if (kind.empty()) continue;
     const std::string path = withoutLinks(root + "/dev/input/" + entry.filename().string());
+    std::error_code error;
+    if (!fs::exists(path, error) && !error) continue;  // unplugged since the folder was read
     const auto link = links.find(path);
     found.push_back({kind,
                      firstLine(entry / "device/name"),

@@ -1,0 +1,40 @@
+// Expectations that a device of a running merlind has lost no sample, by the counters in shared
+// memory.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "daemon/shm/device_slots.h"
+
+namespace merlin::test {
+
+// Expects that none of the newest samples since the `from`-th is missing.
+template <typename T>
+void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const std::string& what) {
+  const std::uint64_t to = channel.count();
+  std::optional<std::uint32_t> last;
+  for (std::uint64_t n = std::max(from, to > 200 ? to - 200 : 0); n < to; ++n) {
+    const auto sample = channel.at(n);
+    ASSERT_TRUE(sample) << what;
+    EXPECT_TRUE(!last || sample->counter == *last + 1) << what;
+    last = sample->counter;
+  }
+}
+
+// The same for a glove, a ball, or each station of a tracker.
+inline void expectContiguous(const shm::DeviceSlots& devices, const std::string& device,
+                             std::uint64_t from) {
+  if (const auto* const glove = devices.glove(device))
+    return expectContiguous(*glove->samples, from, device);
+  if (const auto* const ball = devices.ball(device))
+    return expectContiguous(*ball->samples, from, device);
+  for (const auto* const station : devices.tracker(device)->stations)
+    expectContiguous(*station, from, device);
+}
+
+}  // namespace merlin::test
