@@ -94,8 +94,9 @@ void Pace::limitLadder() noexcept {
 bool Pace::betterFits() const {
   const double needed_s = governor_.predict(governor_.least());
   const int step = ladder_.step();
-  const double times =
-      step > kSmallerTiles ? double(divisorAt(step)) / double(divisorAt(step - 1)) : 4;
+  double times = 4;
+  if (step > kSmallerTiles)
+    times = static_cast<double>(divisorAt(step)) / static_cast<double>(divisorAt(step - 1));
   return times * needed_s < toSeconds(period_) * (1 - governor_.headRoom());
 }
 
