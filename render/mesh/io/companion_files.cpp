@@ -15,6 +15,24 @@
 namespace merlin::render::mesh {
 namespace {
 
+constexpr std::size_t kMostNames = 65536;  // that are looked at in a folder
+
+std::string inLowerCase(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+// Of names that differ only in case, the first one by its bytes is kept.
+void addName(const std::string& name, std::map<std::string, std::string>& names) {
+  const auto [found, fresh] = names.try_emplace(inLowerCase(name), name);
+  if (!fresh) found->second = std::min(found->second, name);
+}
+
 // Writes files, and removes them in its destructor unless keep() was called.
 class WrittenFiles {
  public:
