@@ -163,7 +163,8 @@ void Thumbnails::keepModel(std::size_t place, const render::image::Image& image)
   const std::string bytes = *jpeg;
   if (!keep(place, *std::move(jpeg))) return;
   const auto written = files_.write(keyOf(contents_[place]), bytes);
-  // Said once, not for each picture of a playlist: the folder is usually full or read-only for long.
+  // Said once, not for each picture of a playlist: the folder is usually full or read-only for
+  // long.
   if (!written && !unwritable_)
     logWarning("thumbnails are not kept over restarts: {}", written.error().what);
   unwritable_ = !written;
