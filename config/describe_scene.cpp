@@ -22,6 +22,12 @@ void describeRenderer(render::frame::RenderSettings& r, SettingsVisitor& v) {
           "Where corrections of outputs are computed: on the cpu, or by a shader (gpu), which runs "
           "in software where no GPU draws. auto: by a shader if a GPU draws, otherwise on the "
           "CPU.");
+  v.oneOf(
+      "scan_out", r.scan_out, render::frame::kScanOutNames,
+      "How signals that the GPU corrects come to displays of kind kms. auto: the GPU draws them "
+      "into the memory that the display shows, if it is the display's own GPU and its driver "
+      "can do so; otherwise they are read back and copied there. copied: always read back and "
+      "copied.");
   v.integer("raster_threads", r.gl.raster_threads, {0, 16},
             "Number of rasterizer threads of Mesa's software renderer; 0: the drawing thread "
             "itself rasterizes.");

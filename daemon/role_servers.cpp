@@ -67,7 +67,9 @@ std::optional<status::RendererState> rendererState(const wall::WallRole& wall) {
                                report->contexts,
                                report->asynchronous ? "asynchronous" : "direct",
                                report->corrects ? "gpu" : "cpu",
-                               report->correction_fault};
+                               report->correction_fault,
+                               report->scan_out.drawn ? "drawn" : "copied",
+                               report->scan_out.fault};
 }
 
 status::ProjectorStatus statusOf(const pjlink::ProjectorState& s, const char* kind) {

@@ -209,7 +209,9 @@ OrderedJson rendererJson(const RendererState& r) {
           {"contexts", r.contexts},
           {"read_back", r.read_back},
           {"correction", r.correction},
-          {"correction_fault", r.correction_fault}};
+          {"correction_fault", r.correction_fault},
+          {"scan_out", r.scan_out},
+          {"scan_out_fault", r.scan_out_fault}};
 }
 
 }  // namespace

@@ -25,6 +25,8 @@ struct RendererState {
   const char* read_back = "direct";  // or "asynchronous"
   const char* correction = "cpu";    // where outputs' corrections are computed, or "gpu"
   std::string correction_fault{};    // why they are not computed where set; empty: no fault
+  const char* scan_out = "copied";   // how corrected signals come to displays, or "drawn"
+  std::string scan_out_fault{};      // why one is copied that might be drawn; empty: none is
 };
 
 // Topic "status" of the role wall. `remote`: another machine's devices, if the wall uses them.

@@ -135,9 +135,20 @@ void WallRole::tellIfEmpty(Timestamp now) {
       std::string(wholeCharacters(std::string_view(why).substr(0, Notice::kMostBytes))), now);
 }
 
+// Logs when signals begin to be drawn into displays' memory, and why they cannot be.
+void WallRole::tellScanOut() {
+  const render::correct::ScanOutReport now = outputs_->shaderPass().scanOut();
+  if (now.drawn && !told_scan_out_.drawn)
+    logInfo("signals are drawn into the memory that their displays show");
+  if (now.fault != told_scan_out_.fault)
+    logInfo("signals are read back and copied to a display: {}", now.fault);
+  told_scan_out_ = {now.drawn || told_scan_out_.drawn, now.fault};
+}
+
 void WallRole::tend(Timestamp now) {
   outputs_->signals().tend(now);
   tellIfEmpty(now);
+  tellScanOut();
   notice_.tend(now);
   if (outputs_->aligner().showsCard()) attendance_.attend();
   const auto shown = segment_->interaction.read();
@@ -254,7 +265,9 @@ void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
   RendererReport report{contexts.own->info(), contexts.other ? 2 : 1, contexts.asynchronous};
   const Place place = settings_.wall.render.correction;
   if (place == Place::kGpu || (place == Place::kAuto && !report.info.software)) {
-    const auto begun = outputs_->shaderPass().begin(*contexts.own);
+    const bool draws = !report.info.software &&
+                       settings_.wall.render.scan_out == render::frame::ScanOutMode::kAuto;
+    const auto begun = outputs_->shaderPass().begin(*contexts.own, draws);
     report.corrects = begun.ok();
     if (!begun) {
       report.correction_fault = begun.error().what;
@@ -268,7 +281,9 @@ void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
 std::optional<RendererReport> WallRole::renderer() const {
   const std::lock_guard lock(renderer_mutex_);
   std::optional<RendererReport> report = renderer_;
-  if (report && report->corrects) report->correction_fault = outputs_->shaderPass().fault();
+  if (!report || !report->corrects) return report;
+  report->correction_fault = outputs_->shaderPass().fault();
+  report->scan_out = outputs_->shaderPass().scanOut();
   return report;
 }
 

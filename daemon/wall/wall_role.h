@@ -45,6 +45,8 @@ struct RendererReport {
   bool corrects = false;      // whether the renderer computes the corrections, not the CPU
   // Why the renderer does not compute (all of) them although it is set to; empty: no fault.
   std::string correction_fault{};
+  // How the signals that the renderer corrects come to displays; not drawn if it corrects none.
+  render::correct::ScanOutReport scan_out{};
 };
 
 class WallRole {
@@ -134,6 +136,7 @@ class WallRole {
            ThreadWatch& watch, Clock& clock);
   std::uint32_t firstNumber() const noexcept;
   void tellIfEmpty(Timestamp now);
+  void tellScanOut();
   void run(const std::stop_token& stop, Progress& progress);
   void addOwn(WallParts& parts);
   void beginCorrecting(const render::frame::DrawContexts& contexts);
@@ -154,8 +157,9 @@ class WallRole {
   Clock& clock_;
   mutable std::mutex renderer_mutex_;
   std::optional<RendererReport> renderer_;
-  LastContent last_content_;  // used by the thread of tend() only
-  bool told_empty_ = false;   // the same
+  LastContent last_content_;                        // used by the thread of tend() only
+  bool told_empty_ = false;                         // the same
+  render::correct::ScanOutReport told_scan_out_{};  // the same
   render::testcard::CardOverlay cards_;
   MessageBoard board_;
   Attendance attendance_;

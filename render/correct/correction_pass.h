@@ -7,6 +7,7 @@
 #include <span>
 
 #include "render/correct/correction_map.h"
+#include "render/frame/correction.h"
 
 namespace merlin::render::correct {
 
@@ -20,6 +21,19 @@ class CorrectionPass {
   // `signal` is undefined then, and the CPU has to compute it.
   virtual bool run(const std::shared_ptr<const CorrectionMap>& map,
                    std::span<const std::uint8_t> picture, std::span<std::uint8_t> signal) = 0;
+
+  // Whether draw() may draw.
+  virtual bool canDraw() const { return false; }
+  // Draws the same signal into each of these places, of which there is at least one, and has
+  // finished when it returns. `rows`: those of the signal that are also written to their places in
+  // `signal`; the rest of it is undefined. Returns false if it cannot draw there; then run() is to
+  // compute the signal.
+  virtual bool draw(const std::shared_ptr<const CorrectionMap>& /*map*/,
+                    std::span<const std::uint8_t> /*picture*/,
+                    std::span<const out::DrawPlace> /*places*/, std::span<const int> /*rows*/,
+                    std::span<std::uint8_t> /*signal*/) {
+    return false;
+  }
 };
 
 }  // namespace merlin::render::correct

@@ -31,4 +31,15 @@ out::Signal OutputCorrection::apply(const out::Signal& picture) {
   return {map.width, map.height, pixels_};
 }
 
+out::Signal OutputCorrection::draw(const out::Signal& picture,
+                                   std::span<const out::DrawPlace> places) {
+  const CorrectionMap& map = *map_;
+  assert(picture.width == map.source_width && picture.height == map.source_height);
+  // The rows by which the output's picture is judged.
+  const auto rows = out::digestRows(map.height);
+  if (pass_ && pass_->draw(map_, picture.pixels, places, rows, pixels_))
+    return {map.width, map.height, pixels_, true};
+  return apply(picture);
+}
+
 }  // namespace merlin::render::correct

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "daemon/base/blocks.h"
@@ -23,6 +24,9 @@ class OutputCorrection final : public frame::Correction {
 
   // One pass over the output. REQUIRES: the picture has the map's source size.
   out::Signal apply(const out::Signal& picture) override;
+
+  bool canDraw() override { return pass_ && pass_->canDraw(); }
+  out::Signal draw(const out::Signal& picture, std::span<const out::DrawPlace> places) override;
 
   const CorrectionMap& map() const noexcept { return *map_; }
 

@@ -2,6 +2,8 @@
 // correction.
 #pragma once
 
+#include <span>
+
 #include "render/out/output.h"
 
 namespace merlin::render::frame {
@@ -14,6 +16,15 @@ class Correction {
   // Returns the signal that makes the output's screen look like the canvas. Its pixels stay valid
   // until the next call.
   virtual out::Signal apply(const out::Signal& canvas) = 0;
+
+  // Whether the next draw() may draw, so that it is worth asking the output for places.
+  virtual bool canDraw() { return false; }
+  // Draws the signal of apply() into all these places of the output, at least one, and has finished
+  // when it returns; Signal::drawn then says so. If it cannot draw there, it returns what apply()
+  // returns. To be called after canDraw() returned true.
+  virtual out::Signal draw(const out::Signal& canvas, std::span<const out::DrawPlace> /*places*/) {
+    return apply(canvas);
+  }
 
   // Whether apply() would return a different signal for the same canvas than it did last.
   virtual bool hasChanged() const { return false; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,13 @@ class CorrectionChain final : public Correction {
   out::Signal apply(const out::Signal& canvas) override {
     out::Signal signal = canvas;
     for (const auto& link : links_) signal = link->apply(signal);
+    return signal;
+  }
+  bool canDraw() override { return !links_.empty() && links_.back()->canDraw(); }
+  out::Signal draw(const out::Signal& canvas, std::span<const out::DrawPlace> places) override {
+    out::Signal signal = canvas;
+    for (const auto& link : links_)
+      signal = link == links_.back() ? link->draw(signal, places) : link->apply(signal);
     return signal;
   }
   bool hasChanged() const override {

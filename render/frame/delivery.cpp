@@ -22,16 +22,25 @@ void Delivery::show(std::span<std::uint8_t> canvas, const out::FrameInfo& info,
   for (Overlay* overlay : overlays_) overlay->draw(canvas);
   const out::Signal meant{plan_.frame_width, plan_.frame_height, canvas};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
-    Correction* const correction = corrections_[i].get();
     const bool watched = isWatched(i);
-    out::Signal signal = meant;
-    if (correction)
-      signal = watched || outputs_.mayTake(i, info) ? correction->apply(meant) : out::Signal{};
+    const out::Signal signal = signalOf(i, meant, info);
     outputs_.present(i, signal, info, deadline);
     if (watched) watcher_->see(i, signal, info);
   }
   for (auto overlay = overlays_.rbegin(); overlay != overlays_.rend(); ++overlay)
     (*overlay)->erase(canvas);
+}
+
+// A signal that is watched is needed in memory, so it is copied.
+out::Signal Delivery::signalOf(std::size_t i, const out::Signal& meant,
+                               const out::FrameInfo& info) {
+  Correction* const correction = corrections_[i].get();
+  if (!correction) return meant;
+  if (isWatched(i)) return correction->apply(meant);
+  if (!outputs_.mayTake(i, info)) return {};
+  if (!correction->canDraw()) return correction->apply(meant);
+  const std::vector<out::DrawPlace> places = outputs_.beginDrawing(i);
+  return places.empty() ? correction->apply(meant) : correction->draw(meant, places);
 }
 
 bool Delivery::hasChanged(Timestamp now) const {

@@ -21,7 +21,9 @@ class Delivery {
  public:
   // Borrows `plan`, `outputs` and the overlays, which are drawn in this order. `corrections`: one
   // per output, in the outputs' order. An output whose correction is null or missing is sent the
-  // canvas itself, without a copy. `watcher`: sees the signals that it asks for; may be null.
+  // canvas itself, without a copy. A signal that its correction draws where the output shows it
+  // from (Correction::draw()) is in memory only for `watcher`. `watcher`: sees the signals that it
+  // asks for; may be null.
   Delivery(const tiles::TilePlan& plan, out::OutputSet& outputs,
            std::vector<Overlay*> overlays = {},
            std::vector<std::unique_ptr<Correction>> corrections = {},
@@ -41,6 +43,7 @@ class Delivery {
 
  private:
   bool isWatched(std::size_t i) const { return watcher_ && watcher_->wants(i); }
+  out::Signal signalOf(std::size_t i, const out::Signal& meant, const out::FrameInfo& info);
 
   const tiles::TilePlan& plan_;
   out::OutputSet& outputs_;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "render/frame/correction.h"
@@ -35,6 +36,15 @@ class ReplaceableCorrection final : public Correction {
   out::Signal apply(const out::Signal& canvas) override {
     if (waiting_) take();
     return current_ ? current_->apply(canvas) : canvas;
+  }
+
+  // draw() uses the correction that canDraw() asked, which is the newest one.
+  bool canDraw() override {
+    if (waiting_) take();
+    return current_ && current_->canDraw();
+  }
+  out::Signal draw(const out::Signal& canvas, std::span<const out::DrawPlace> places) override {
+    return current_->draw(canvas, places);
   }
 
  private:

@@ -10,10 +10,19 @@ namespace merlin::render::frame {
 enum class CorrectionPlace { kAuto, kCpu, kGpu };  // kAuto: where frames are drawn
 inline constexpr const char* kCorrectionPlaceNames[] = {"auto", "cpu", "gpu"};
 
+// How a signal that a shader makes comes to the displays of an output of kind kms. In the order of
+// kScanOutNames.
+enum class ScanOutMode {
+  kAuto,    // drawn into the memory that the display shows, where a GPU can do so
+  kCopied,  // read back and copied
+};
+inline constexpr const char* kScanOutNames[] = {"auto", "copied"};
+
 struct RenderSettings {
   gl::GlSettings gl{};
   content::ModelSettings model{};
   CorrectionPlace correction = CorrectionPlace::kAuto;
+  ScanOutMode scan_out = ScanOutMode::kAuto;
   int picture_memory_mb = 0;  // for picture tiles, in memory and textures; 0: from the wall's size
   int fade_frames = 3;        // duration of the fade to a finer frame of a still scene
 };

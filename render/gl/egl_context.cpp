@@ -10,6 +10,7 @@
 #include <EGL/eglext.h>
 #include <fmt/format.h>
 
+#include "render/gl/egl_import.h"
 #include "render/gl/load_api.h"
 
 namespace merlin::render::gl {
@@ -49,6 +50,7 @@ class EglContext final : public GlContext {
       context->info_.software |= device->software;
     }
     context->on_device_ = device != nullptr;
+    if (device) context->folder_ = deviceFolder(device->node.empty() ? device->card : device->node);
     return std::unique_ptr<GlContext>(std::move(context));
   }
   EglContext() = default;
@@ -68,8 +70,26 @@ class EglContext final : public GlContext {
       }
     }
     auto further = make(display_, nullptr);
-    if (further) static_cast<EglContext&>(**further).info_ = info_;
+    if (!further) return further;
+    auto& context = static_cast<EglContext&>(**further);
+    context.info_ = info_;
+    context.folder_ = folder_;
     return further;
+  }
+
+  Result<RenderTarget> importTarget(const DmaBuf& buffer) const override {
+    // Mesa's software renderer offers the import also where it then crashes: on a display that is
+    // no device's, or of which it may not map the memory.
+    if (info_.software) return Error{Errc::kUnsupported, "the CPU draws, not the display's GPU"};
+    // Another GPU's driver may take the memory and then draw into a copy of it, or hang.
+    if (folder_.empty() || folder_ != buffer.device) {
+      return Error{Errc::kUnsupported,
+                   fmt::format("the display's memory belongs to another device ({}) than the GPU "
+                               "that draws ({})",
+                               buffer.device.empty() ? "unknown" : buffer.device,
+                               folder_.empty() ? "unknown" : folder_)};
+    }
+    return gl::importTarget(display_, api_, buffer);
   }
 
  private:
@@ -112,6 +132,7 @@ class EglContext final : public GlContext {
   EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext context_ = EGL_NO_CONTEXT;
   bool on_device_ = false;  // the display is a device's
+  std::string folder_;      // deviceFolder() of that device; empty if unknown
 };
 
 EglDevice deviceOf(EGLDeviceEXT handle, PFNEGLQUERYDEVICESTRINGEXTPROC text) {

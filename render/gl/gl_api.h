@@ -85,6 +85,7 @@ namespace merlin::render::gl {
   X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D)                     \
   X(PFNGLUNIFORM1FPROC, Uniform1f)                             \
   X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
+  X(PFNGLUNIFORM2IPROC, Uniform2i)                             \
   X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                     \
   X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
   X(PFNGLUNIFORM3FVPROC, Uniform3fv)                           \

@@ -45,6 +45,10 @@ Made makeChosenContext(const std::string& gpu) {
 
 }  // namespace
 
+Result<RenderTarget> GlContext::importTarget(const DmaBuf& /*buffer*/) const {
+  return Error{Errc::kUnsupported, info_.library + " draws only into memory of its own"};
+}
+
 Result<Ok> checkGpu(GlBackend backend, const std::string& gpu) {
   if (gpu == kAnyGpu || gpu == kNoGpu) return Ok{};
   if (backend == GlBackend::kOsmesa) {

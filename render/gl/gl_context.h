@@ -8,8 +8,10 @@
 #include <memory>
 #include <string>
 
+#include "daemon/base/dma_buf.h"
 #include "daemon/base/result.h"
 #include "render/gl/gl_api.h"
+#include "render/gl/render_target.h"
 #include "render/gl/renderer_info.h"
 #include "render/gl/settings.h"
 
@@ -35,6 +37,11 @@ class GlContext {
   // one after the other, so its further context gets another display if one is available. Errors:
   // kUnsupported.
   virtual Result<std::unique_ptr<GlContext>> makeFurther() const = 0;
+
+  // Makes a render target of memory that a display can show, so that what is drawn need not be
+  // copied to it. The target keeps the memory. Errors: kUnsupported: why this context cannot draw
+  // there, e.g. since the memory is another device's.
+  virtual Result<RenderTarget> importTarget(const DmaBuf& buffer) const;
 
  protected:
   GlApi api_;

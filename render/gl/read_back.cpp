@@ -26,6 +26,26 @@ ReadBack::~ReadBack() {
 
 void ReadBack::start(const RenderTarget& target, int width, int height) {
   assert(width <= target.width() && height <= target.height());
+  bindFor(width, height);
+  target.bind();
+  gl_->ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  setFence();
+}
+
+void ReadBack::startRows(const RenderTarget& target, int x, int width, std::span<const int> rows) {
+  bindFor(width, static_cast<int>(rows.size()));
+  target.bind();
+  std::uintptr_t offset = 0;
+  for (const int y : rows) {
+    assert(x >= 0 && x + width <= target.width() && y >= 0 && y < target.height());
+    gl_->ReadPixels(x, y, width, 1, GL_RGBA, GL_UNSIGNED_BYTE, reinterpret_cast<void*>(offset));
+    offset += std::uintptr_t{4} * static_cast<std::uintptr_t>(width);
+  }
+  setFence();
+}
+
+// Makes the pixel buffer large enough and binds it.
+void ReadBack::bindFor(int width, int height) {
   width_ = width;
   height_ = height;
   if (!buffer_) gl_->GenBuffers(1, &buffer_);
@@ -35,9 +55,10 @@ void ReadBack::start(const RenderTarget& target, int width, int height) {
     gl_->BufferData(GL_PIXEL_PACK_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STREAM_READ);
     capacity_ = bytes;
   }
-  target.bind();
   gl_->PixelStorei(GL_PACK_ROW_LENGTH, 0);
-  gl_->ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+}
+
+void ReadBack::setFence() {
   gl_->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   if (fence_) gl_->DeleteSync(fence_);
   fence_ = gl_->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "render/gl/gl_api.h"
 #include "render/gl/render_target.h"
@@ -24,11 +25,18 @@ class ReadBack {
   // the target.
   void start(const RenderTarget& target, int width, int height);
 
+  // The same for `width` pixels from column `x` on of each of these rows; finish() writes the rows
+  // one below the other. REQUIRES: the pixels lie within the target.
+  void startRows(const RenderTarget& target, int x, int width, std::span<const int> rows);
+
   // Waits until the copy is complete and writes it to `pixels` as RenderTarget::read() does.
   // REQUIRES: start() was called since the last finish().
   void finish(std::uint8_t* pixels, int stride_px);
 
  private:
+  void bindFor(int width, int height);
+  void setFence();
+
   const GlApi* gl_;
   GLuint buffer_ = 0;
   GLsync fence_ = nullptr;

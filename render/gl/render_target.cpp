@@ -29,6 +29,19 @@ Result<RenderTarget> RenderTarget::make(const GlApi& gl, int width, int height, 
                   height, status)};
 }
 
+Result<RenderTarget> RenderTarget::makeOf(const GlApi& gl, GLuint renderbuffer, int width,
+                                          int height) {
+  RenderTarget f(gl, width, height);
+  f.colour_ = renderbuffer;
+  gl.GenFramebuffers(1, &f.frame_);
+  f.bind();
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, f.colour_);
+  const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+  if (status == GL_FRAMEBUFFER_COMPLETE) return f;
+  return Error{Errc::kUnsupported,
+               fmt::format("OpenGL cannot draw into this memory: status 0x{:04X}", status)};
+}
+
 RenderTarget::RenderTarget(RenderTarget&& other) noexcept
     : gl_(other.gl_),
       width_(other.width_),

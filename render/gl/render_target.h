@@ -17,6 +17,9 @@ class RenderTarget {
   // Sizes in pixels. Errors: kUnsupported (the context cannot create a target of this size).
   static Result<RenderTarget> make(const GlApi& gl, int width, int height,
                                    Depth depth = Depth::k24Bits);
+  // Makes a target of a renderbuffer that has its memory already, and takes it over. Errors:
+  // kUnsupported (OpenGL cannot draw there); the renderbuffer is deleted then.
+  static Result<RenderTarget> makeOf(const GlApi& gl, GLuint renderbuffer, int width, int height);
 
   RenderTarget(RenderTarget&& other) noexcept;
   RenderTarget& operator=(RenderTarget&&) = delete;

@@ -16,9 +16,16 @@ class KmsOutput final : public Output {
   KmsOutput(std::shared_ptr<CardWorker> worker, std::size_t number)
       : worker_(std::move(worker)), number_(number) {}
 
+  std::vector<DrawPlace> beginDrawing() override {
+    std::vector<DrawPlace> places;
+    for (Displays::DrawPlace& place : worker_->displays().beginDrawing(number_))
+      places.push_back({std::move(place.buffer), place.x, place.y});
+    return places;
+  }
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override {
     worker_->start();
-    return worker_->displays().present(number_, signal.pixels, info.sequence);
+    const auto pixels = signal.drawn ? std::span<const std::uint8_t>() : signal.pixels;
+    return worker_->displays().present(number_, pixels, info.sequence);
   }
   std::optional<std::string> faultNow() const override {
     return worker_->displays().fault(number_);

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/dma_buf.h"
 #include "daemon/base/result.h"
 #include "render/out/frame_clock.h"
 #include "render/out/picture/picture_judge.h"
@@ -26,6 +28,16 @@ struct FrameInfo {
 struct Signal {
   int width = 0, height = 0;               // [px]
   std::span<const std::uint8_t> pixels{};  // RGBA, rows from top to bottom, no padding
+  // The picture is in the output's DrawPlaces already; of `pixels`, only digestRows() are valid.
+  bool drawn = false;
+};
+
+// Where a GPU may draw an output's next signal, instead of the signal being copied there.
+struct DrawPlace {
+  // Shared, so that whoever has imported it sees when nobody uses it any more; the same object for
+  // the same memory. Null: the card's driver does not share its memory.
+  std::shared_ptr<const DmaBuf> buffer{};
+  int x = 0, y = 0;  // [px] where the signal's upper left pixel is in the buffer
 };
 
 // What one display of an output was found to show.
@@ -44,6 +56,12 @@ class Output {
   // False if present() will certainly skip this frame; it then need not be corrected, and present()
   // gets a signal without pixels.
   virtual bool mayTake(const FrameInfo&) const { return true; }
+
+  // Where the next signal may be drawn, for each display of the output; to be called at most once
+  // before each present(). A signal that is drawn there (Signal::drawn) fills all these places, and
+  // drawing has finished, when present() is called; a signal that is not drawn is copied, and the
+  // output may return no place from then on. Empty: it copies. None of these buffers is shown.
+  virtual std::vector<DrawPlace> beginDrawing() { return {}; }
 
   // Takes the frame and copies what it keeps. Takes bounded time: it never waits for a reader, an
   // encoder or a disk; a slow output has its own thread. Returns when the frame was or will be

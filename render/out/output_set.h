@@ -49,6 +49,10 @@ class OutputSet {
     return entries_[i].named.output->mayTake(info);
   }
 
+  std::vector<DrawPlace> beginDrawing(std::size_t i) {
+    return entries_[i].named.output->beginDrawing();
+  }
+
   bool wantsFrame(std::size_t i, Timestamp now) const {
     return entries_[i].named.output->wantsFrame(now) || (checks_ && checks_->wantsFrame(i));
   }

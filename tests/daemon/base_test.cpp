@@ -17,6 +17,7 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/dated_files.h"
 #include "daemon/base/did_you_mean.h"
+#include "daemon/base/dma_buf.h"
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
 #include "daemon/base/random.h"
@@ -301,6 +302,14 @@ TEST(ChildWork, AnEndOfTheChildIsAnError) {
       "takes too long", std::chrono::seconds(1));
   ASSERT_FALSE(endless);
   EXPECT_EQ(endless.error().what, "takes too long");
+}
+
+// That the nodes of one GPU have one folder is tested in the virtual machine, which has a GPU's.
+TEST(DeviceFolderTest, WhatBelongsToNoDeviceHasNone) {
+  EXPECT_EQ(deviceFolder("/dev/null"), "") << "memory, not a device";
+  EXPECT_EQ(deviceFolder("/dev/dri/no such card"), "");
+  EXPECT_EQ(deviceFolder("/etc/passwd"), "") << "not a device node";
+  EXPECT_EQ(deviceFolder(""), "");
 }
 
 }  // namespace

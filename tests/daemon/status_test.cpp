@@ -111,12 +111,14 @@ TEST_F(DocumentsTest, TheWallSaysWhoDrawsIt) {
                           .pci = "0000:01:00.0",
                           .software = false,
                           .read_back = "asynchronous",
-                          .correction = "gpu"};
+                          .correction = "gpu",
+                          .scan_out = "drawn"};
   const json s = json::parse(wallStatus(*wall_, kNow, {}, nullptr, &gpu));
   EXPECT_EQ(s["renderer"].dump(),
             R"({"contexts":1,"correction":"gpu","correction_fault":"","driver":"4.6",)"
             R"("library":"EGL","name":"Some GPU","node":"/dev/dri/renderD128",)"
-            R"("pci":"0000:01:00.0","read_back":"asynchronous","software":false,)"
+            R"("pci":"0000:01:00.0","read_back":"asynchronous","scan_out":"drawn",)"
+            R"("scan_out_fault":"","software":false,)"
             R"("vendor":"Somebody"})");
 }
 

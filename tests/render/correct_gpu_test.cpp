@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
 #include <memory>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -185,6 +188,186 @@ TEST_P(ShaderOf, IsOffBeforeAndAfter) {
   EXPECT_TRUE(pass_.run(map, picture, signal));
 }
 
+// A context that lends ordinary memory of the renderer in place of a display's, since a software
+// renderer without a card has no other. What a driver imports is tried in the virtual machine.
+class LendingContext final : public gl::GlContext {
+ public:
+  explicit LendingContext(const gl::GlContext& real) {
+    api_ = real.gl();
+    info_ = real.info();
+    forward = api_.DeleteRenderbuffers;
+    api_.DeleteRenderbuffers = [](GLsizei count, const GLuint* which) {
+      deleted.insert(which, which + count);
+      forward(count, which);
+    };
+    deleted.clear();
+  }
+  Result<std::unique_ptr<GlContext>> makeFurther() const override {
+    return Error{Errc::kUnsupported, "one is enough"};
+  }
+  // Fills the memory with blue.
+  Result<gl::RenderTarget> importTarget(const DmaBuf& buffer) const override {
+    ++imports;
+    if (refuses) return Error{Errc::kUnsupported, "another GPU's memory"};
+    GLuint& name = names[&buffer];
+    api_.GenRenderbuffers(1, &name);
+    api_.BindRenderbuffer(GL_RENDERBUFFER, name);
+    api_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, buffer.width, buffer.height);
+    auto target = gl::RenderTarget::makeOf(api_, name, buffer.width, buffer.height);
+    if (!target) return target;
+    target->bind();
+    api_.ClearColor(0, 0, 1, 1);
+    api_.Clear(GL_COLOR_BUFFER_BIT);
+    return target;
+  }
+  // What is in a buffer's memory.
+  std::vector<std::uint8_t> pixels(const DmaBuf& buffer) const {
+    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(4 * buffer.width * buffer.height));
+    GLuint frame = 0;
+    api_.GenFramebuffers(1, &frame);
+    api_.BindFramebuffer(GL_FRAMEBUFFER, frame);
+    api_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                                 names.at(&buffer));
+    api_.PixelStorei(GL_PACK_ROW_LENGTH, 0);
+    api_.ReadPixels(0, 0, buffer.width, buffer.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    api_.DeleteFramebuffers(1, &frame);
+    return pixels;
+  }
+
+  bool refuses = false;
+  mutable int imports = 0;
+  mutable std::map<const DmaBuf*, GLuint> names;  // of the renderbuffers
+  static inline std::set<GLuint> deleted;
+
+ private:
+  static inline PFNGLDELETERENDERBUFFERSPROC forward = nullptr;
+};
+
+class ShaderInto : public ShaderOf {
+ protected:
+  void SetUp() override {
+    ShaderOf::SetUp();
+    pass_.end();
+    lending_ = std::make_unique<LendingContext>(*context_);
+    ASSERT_TRUE(pass_.begin(*lending_));
+  }
+  static std::shared_ptr<const DmaBuf> memory(int width, int height) {
+    auto buffer = std::make_shared<DmaBuf>();
+    buffer->width = width;
+    buffer->height = height;
+    return buffer;
+  }
+  // The part of the memory where a signal was drawn. Expects that all around it is still blue.
+  std::vector<std::uint8_t> partOf(const DmaBuf& buffer, int left, int top) {
+    const auto all = lending_->pixels(buffer);
+    std::vector<std::uint8_t> part;
+    for (int y = 0; y < buffer.height; ++y) {
+      for (int x = 0; x < buffer.width; ++x) {
+        const auto* const pixel = &all[static_cast<std::size_t>(4 * (y * buffer.width + x))];
+        const bool inside = x >= left && x < left + kWidth && y >= top && y < top + kHeight;
+        if (inside)
+          part.insert(part.end(), pixel, pixel + 4);
+        else
+          EXPECT_TRUE(pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 255) << x << " " << y;
+      }
+    }
+    return part;
+  }
+
+  std::unique_ptr<LendingContext> lending_;
+  const std::vector<std::uint8_t> picture_ = noise(kWidth, kHeight);
+  const out::Signal source_{kWidth, kHeight, picture_};
+};
+
+TEST_P(ShaderInto, DrawsIntoEachPlaceWhatItWouldReturn) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  const auto expected = signalOf(correction, picture_);
+  const out::DrawPlace places[] = {{memory(kWidth, kHeight), 0, 0},
+                                   {memory(kWidth + 40, kHeight + 30), 17, 9}};
+  ASSERT_TRUE(correction.canDraw());
+  const out::Signal signal = correction.draw(source_, places);
+  EXPECT_TRUE(signal.drawn);
+  EXPECT_EQ(partOf(*places[0].buffer, 0, 0), expected);
+  EXPECT_EQ(partOf(*places[1].buffer, 17, 9), expected);
+  EXPECT_TRUE(pass_.scanOut().drawn);
+  EXPECT_EQ(pass_.scanOut().fault, "");
+}
+
+// The picture is judged by these rows, which are read from the memory that the display shows.
+TEST_P(ShaderInto, TheRowsThatAreReadBackMakeTheSignalsDigest) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  const auto digest = [](const std::vector<std::uint8_t>& pixels) {
+    return out::digestOf({kWidth, kHeight, pixels, std::size_t{4} * kWidth});
+  };
+  const auto expected = digest(signalOf(correction, picture_));
+  correction.apply({kWidth, kHeight, test::grey(kWidth, kHeight, 9)});
+  const out::DrawPlace places[] = {{memory(kWidth + 40, kHeight + 30), 17, 9}};
+  const out::Signal signal = correction.draw(source_, places);
+  EXPECT_EQ(digest({signal.pixels.begin(), signal.pixels.end()}), expected);
+}
+
+TEST_P(ShaderInto, ImportsABufferOnceAndReleasesItWhenNobodyHasIt) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  std::vector<out::DrawPlace> ring;
+  for (int i = 0; i < 3; ++i) ring.push_back({memory(kWidth, kHeight), 0, 0});
+  for (std::size_t n = 0; n < 9; ++n)
+    EXPECT_TRUE(correction.draw(source_, std::span(ring).subspan(n % 3, 1)).drawn);
+  EXPECT_EQ(lending_->imports, 3);
+  std::set<GLuint> old;
+  for (const auto& [buffer, name] : lending_->names) old.insert(name);
+  ring.assign(1, {memory(kWidth, kHeight), 0, 0});  // the display has another mode
+  EXPECT_TRUE(correction.draw(source_, ring).drawn);
+  EXPECT_EQ(lending_->imports, 4);
+  EXPECT_TRUE(std::ranges::includes(LendingContext::deleted, old));
+}
+
+TEST_P(ShaderInto, WhatItCannotDrawIntoIsCopiedAndTheReasonTold) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  const auto expected = signalOf(correction, picture_);
+  lending_->refuses = true;
+  const out::DrawPlace places[] = {{memory(kWidth, kHeight), 0, 0}};
+  for (int frame = 0; frame < 3; ++frame) {
+    const out::Signal signal = correction.draw(source_, places);
+    EXPECT_FALSE(signal.drawn);
+    EXPECT_EQ(std::vector(signal.pixels.begin(), signal.pixels.end()), expected);
+  }
+  EXPECT_EQ(lending_->imports, 1) << "it is not tried again";
+  EXPECT_FALSE(pass_.scanOut().drawn);
+  EXPECT_EQ(pass_.scanOut().fault, "another GPU's memory");
+  const out::DrawPlace unshared[] = {{nullptr, 0, 0}};
+  EXPECT_FALSE(correction.draw(source_, unshared).drawn);
+  EXPECT_NE(pass_.scanOut().fault.find("does not share"), std::string::npos);
+}
+
+TEST_P(ShaderInto, NothingIsDrawnIntoADisplaysMemoryUnlessAllowed) {
+  pass_.end();
+  ASSERT_TRUE(pass_.begin(*lending_, false));
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  EXPECT_FALSE(correction.canDraw());
+  const out::DrawPlace places[] = {{memory(kWidth, kHeight), 0, 0}};
+  EXPECT_FALSE(correction.draw(source_, places).drawn);
+  EXPECT_EQ(lending_->imports, 0);
+  EXPECT_EQ(pass_.scanOut().fault, "");
+  correct::OutputCorrection on_cpu(mapOf(test::everything()), 1);
+  EXPECT_FALSE(on_cpu.canDraw());
+}
+
+// Mesa's software renderer says that it could, and would crash.
+TEST_P(ShaderOf, ASoftwareContextTakesNoDisplaysMemory) {
+  if (!context_->info().software) GTEST_SKIP() << "a GPU draws";
+  const auto refused = context_->importTarget(DmaBuf{});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::kUnsupported);
+  EXPECT_EQ(refused.error().what, GetParam() == gl::GlBackend::kEgl
+                                      ? "the CPU draws, not the display's GPU"
+                                      : "OSMesa draws only into memory of its own");
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, ShaderInto,
+                         ::testing::Values(gl::GlBackend::kEgl, gl::GlBackend::kOsmesa),
+                         [](const auto& backend) {
+                           return backend.param == gl::GlBackend::kEgl ? "Egl" : "Osmesa";
+                         });
 INSTANTIATE_TEST_SUITE_P(Backends, ShaderOf,
                          ::testing::Values(gl::GlBackend::kEgl, gl::GlBackend::kOsmesa),
                          [](const auto& backend) {

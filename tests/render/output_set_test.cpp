@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/frame/correction_chain.h"
 #include "render/frame/delivery.h"
 #include "render/frame/replaceable_correction.h"
 #include "render/out/settings.h"
@@ -17,6 +18,7 @@ struct FakeOutput final : out::Output {
   Result<std::optional<Timestamp>> present(const out::Signal& signal,
                                            const out::FrameInfo& info) override {
     seen.assign(signal.pixels.begin(), signal.pixels.end());
+    was_drawn = signal.drawn;
     if (!fault.empty()) return Error{Errc::kIo, fault};
     if (leaves_out) return std::optional<Timestamp>();
     return std::optional(info.finished + delay);
@@ -27,6 +29,13 @@ struct FakeOutput final : out::Output {
     if (!fault.empty()) return Error{Errc::kIo, fault};
     return mended;
   }
+  std::vector<out::DrawPlace> beginDrawing() override {
+    ++times_begun;
+    return places;
+  }
+  std::vector<out::DrawPlace> places;
+  int times_begun = 0;
+  bool was_drawn = false;
   bool wantsFrame(Timestamp) const override { return wants_frame; }
   std::optional<out::Vblank> vblank() const override { return last_blank; }
   bool wants_frame = false;
@@ -231,7 +240,109 @@ TEST_F(Delivered, AnotherCorrectionTakesItsPlaceFromTheNextFrameOn) {
   EXPECT_EQ(shown(), meant_);
 }
 
-// Counts the corrections that exist, so that a test sees when one is destroyed.
+// Draws into the output's places, unless it cannot.
+struct Drawn final : frame::Correction {
+  explicit Drawn(bool can) : can_draw(can) {}
+  out::Signal apply(const out::Signal& canvas) override {
+    ++applied;
+    return canvas;
+  }
+  bool canDraw() override { return can_draw; }
+  out::Signal draw(const out::Signal& canvas, std::span<const out::DrawPlace> places) override {
+    ++drawn;
+    last_x = places.front().x;
+    return {canvas.width, canvas.height, canvas.pixels, true};
+  }
+  bool can_draw;
+  int applied = 0, drawn = 0, last_x = 0;
+};
+
+struct WatcherOfFirst final : frame::SignalWatcher {
+  bool wants(std::size_t i) const override { return i == 0 && asked; }
+  void see(std::size_t, const out::Signal& signal, const out::FrameInfo&) override {
+    seen_drawn = signal.drawn;
+    ++seen;
+  }
+  bool asked = false, seen_drawn = false;
+  int seen = 0;
+};
+
+TEST_F(Delivered, ACorrectionThatCanDrawDrawsWhereTheOutputShowsIt) {
+  auto made = std::make_unique<Drawn>(true);
+  const Drawn& correction = *made;
+  WatcherOfFirst watcher;
+  deliverWith(std::move(made), &watcher);
+  shown();
+  EXPECT_EQ(correction.applied, 1) << "an output without places is copied to";
+  EXPECT_FALSE(fakes_[0]->was_drawn);
+  fakes_[0]->places = {{nullptr, 5, 6}};
+  shown();
+  EXPECT_EQ(correction.drawn, 1);
+  EXPECT_EQ(correction.last_x, 5);
+  EXPECT_TRUE(fakes_[0]->was_drawn);
+  EXPECT_EQ(correction.applied, 1);
+
+  watcher.asked = true;  // for merlin snapshot --output: in memory, all of it
+  shown();
+  EXPECT_EQ(watcher.seen, 1);
+  EXPECT_FALSE(watcher.seen_drawn || fakes_[0]->was_drawn);
+  EXPECT_EQ(correction.applied, 2);
+  EXPECT_EQ(fakes_[0]->times_begun, 2) << "nothing is begun for a signal that is copied";
+  watcher.asked = false;
+  shown();
+  EXPECT_TRUE(fakes_[0]->was_drawn);
+}
+
+TEST_F(Delivered, NothingIsBegunForACorrectionThatCannotDrawOrAFrameThatIsLeftOut) {
+  auto made = std::make_unique<Drawn>(false);
+  Drawn& correction = *made;
+  deliverWith(std::move(made));
+  fakes_[0]->places.resize(1);
+  shown();
+  EXPECT_EQ(correction.applied, 1);
+  correction.can_draw = true;
+  fakes_[0]->leaves_out = true;
+  shown();
+  EXPECT_EQ(correction.drawn, 0);
+  EXPECT_EQ(fakes_[0]->times_begun, 0);
+}
+
+// Of a chain, the last link makes the signal.
+TEST_F(Delivered, TheLastOfSeveralCorrectionsDraws) {
+  auto last = std::make_unique<Drawn>(true);
+  auto first = std::make_unique<Inverted>();
+  const Drawn& drawn = *last;
+  const Inverted& inverted = *first;
+  std::vector<std::unique_ptr<frame::Correction>> links;
+  links.push_back(std::move(first));
+  links.push_back(std::move(last));
+  deliverWith(std::make_unique<frame::CorrectionChain>(std::move(links)));
+  fakes_[0]->places.resize(1);
+  EXPECT_EQ(shown(), inverted_);
+  EXPECT_EQ(inverted.applied, 1);
+  EXPECT_EQ(drawn.drawn, 1);
+  EXPECT_TRUE(fakes_[0]->was_drawn);
+}
+
+TEST_F(Delivered, AReplacementIsAskedWhetherItCanDrawBeforeAnythingIsBegun) {
+  auto made = std::make_unique<frame::ReplaceableCorrection>(std::make_unique<Drawn>(true));
+  frame::ReplaceableCorrection& replaceable = *made;
+  deliverWith(std::move(made));
+  fakes_[0]->places.resize(1);
+  shown();
+  EXPECT_TRUE(fakes_[0]->was_drawn);
+  replaceable.replace(std::make_unique<Inverted>());
+  EXPECT_EQ(shown(), inverted_);
+  EXPECT_FALSE(fakes_[0]->was_drawn);
+  EXPECT_EQ(fakes_[0]->times_begun, 1);
+  replaceable.replace(nullptr);
+  EXPECT_EQ(shown(), meant_);
+  replaceable.replace(std::make_unique<Drawn>(true));
+  shown();
+  EXPECT_TRUE(fakes_[0]->was_drawn) << "and drawing goes on";
+}
+
+// Counts how many there are, and says where one is destroyed.
 struct Counted final : frame::Correction {
   explicit Counted(int& alive) : alive_(alive) { ++alive_; }
   ~Counted() override { --alive_; }

@@ -2,6 +2,7 @@
 // show.
 #include "render/out/picture/picture_judge.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -66,6 +67,23 @@ TEST(PictureDigestTest, NoticesOnePixelOfARowThatIsReadAndTwoThatChangePlaces) {
   pixels = before;
   pixels[row - 4] ^= 1U;
   EXPECT_EQ(digest(pixels), digest(before)) << "a row that is not read";
+}
+
+TEST(PictureDigestTest, ReadsRowsThatAreEvenlySpreadOverThePicture) {
+  const auto rows = digestRows(480);
+  EXPECT_EQ(rows.size(), 24U);
+  EXPECT_EQ(rows[0], 10);
+  EXPECT_EQ(rows[1], 30);
+  EXPECT_EQ(rows[23], 470);
+  for (const int row : digestRows(1)) EXPECT_EQ(row, 0);
+  Pixels pixels = picture(1);
+  const PictureDigest before = digest(pixels);
+  const auto read = digestRows(kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    if (std::ranges::find(read, y) == read.end())
+      pixels[static_cast<std::size_t>(y * kWidth * 4)] ^= 1U;
+  }
+  EXPECT_EQ(digest(pixels), before) << "and no others";
 }
 
 TEST(PictureDigestTest, IsBlackBelowEightOfAnyChannel) {

@@ -56,6 +56,8 @@ struct Bench {
   std::vector<std::vector<Lit>> commits;
   std::vector<Flip> flips;
   std::map<Id, std::vector<std::uint8_t>*> buffers;
+  bool shares = false;                    // the memory of buffers that are made from now on
+  std::map<const DmaBuf*, Id> buffer_of;  // by their shared memory
   Timestamp flip_time{};
 
   // For each CRTC, the first byte in the middle of the picture that it shows: its blue channel.
@@ -71,15 +73,27 @@ struct FakeBuffer final : Buffer {
         row(static_cast<std::size_t>(width) * 4),
         data(row * static_cast<std::size_t>(height)) {
     bench.buffers[n] = &data;
+    if (!bench.shares) return;
+    auto memory = std::make_shared<DmaBuf>();
+    memory->width = width;
+    memory->height = height;
+    memory->pitch = static_cast<std::uint32_t>(row);
+    lent = std::move(memory);
+    bench.buffer_of[lent.get()] = n;
   }
-  ~FakeBuffer() override { bench.buffers.erase(n); }
+  ~FakeBuffer() override {
+    bench.buffers.erase(n);
+    bench.buffer_of.erase(lent.get());
+  }
   Id id() const override { return n; }
   std::span<std::uint8_t> bytes() override { return data; }
   std::size_t pitch() const override { return row; }
+  std::shared_ptr<const DmaBuf> shared() const override { return lent; }
   Bench& bench;
   Id n;
   std::size_t row;
   std::vector<std::uint8_t> data;
+  std::shared_ptr<const DmaBuf> lent{};
 };
 
 struct FakeScanout final : Scanout {

@@ -113,12 +113,15 @@ std::string rendererLine(const Json& s) {
   if (!s.contains("renderer")) return {};
   const Json& r = s["renderer"];
   const std::string fault = r.value("correction_fault", "");
-  return fmt::format("drawn by {} ({}; {}), {}, {} context{}, {} read-back; corrections {}{}\n",
+  const std::string copied = r.value("scan_out_fault", "");
+  return fmt::format("drawn by {} ({}; {}), {}, {} context{}, {} read-back; corrections {}{}{}{}\n",
                      r.value("name", ""), r.value("vendor", ""), r.value("driver", ""),
                      r.value("software", true) ? "software" : "hardware", r.value("contexts", 1),
                      r.value("contexts", 1) > 1 ? "s" : "", r.value("read_back", ""),
                      r.value("correction", "") == "gpu" ? "by a shader" : "on the CPU",
-                     fault.empty() ? "" : ": " + fault);
+                     fault.empty() ? "" : ": " + fault,
+                     r.value("scan_out", "") == "drawn" ? ", into the displays' memory" : "",
+                     copied.empty() ? "" : "; copied to a display: " + copied);
 }
 
 std::string outputDetail(const Json& output) {

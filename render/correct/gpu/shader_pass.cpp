@@ -1,6 +1,8 @@
 #include "render/correct/gpu/shader_pass.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <utility>
 
 #include "render/gl/shader.h"
@@ -24,6 +26,7 @@ uniform usampler2D gain, black, runs;
 uniform mat3 colours;
 uniform vec3 channel_gain, encode, black_level;
 uniform float gamma, least_headroom;
+uniform ivec2 origin;  // of the signal in the target
 out vec4 signal;
 
 vec3 at(ivec2 p) { return texelFetch(picture, p, 0).rgb; }
@@ -54,7 +57,7 @@ vec3 corrected(ivec2 p, vec3 c) {
 }
 
 void main() {
-  ivec2 p = ivec2(gl_FragCoord.xy);
+  ivec2 p = ivec2(gl_FragCoord.xy) - origin;
   uint kind = texelFetch(runs, ivec2(p.x / RUN, p.y), 0).r;
   vec3 c = vec3(0.0);
   if (kind != NOTHING) c = filtered(p);
@@ -76,22 +79,25 @@ std::string fragmentShader() {
   return source.insert(source.find('\n') + 1, define);
 }
 
-bool isOf(const std::weak_ptr<const CorrectionMap>& held,
-          const std::shared_ptr<const CorrectionMap>& map) {
-  return !held.owner_before(map) && !map.owner_before(held);
+template <typename T>
+bool isOf(const std::weak_ptr<const T>& held, const std::shared_ptr<const T>& object) {
+  return !held.owner_before(object) && !object.owner_before(held);
 }
 
 }  // namespace
 
 ShaderPass::~ShaderPass() { assert(!gl_); }
 
-Result<Ok> ShaderPass::begin(const gl::GlContext& context) {
+Result<Ok> ShaderPass::begin(const gl::GlContext& context, bool draws) {
   assert(!gl_);
   const gl::GlApi& gl = context.gl();
   const auto program = gl::linkProgram(gl, kVertexShader, fragmentShader().c_str());
   if (!program) return program.error();
   program_ = *program;
   gl_ = &gl;
+  context_ = &context;
+  draws_ = draws;
+  row_reader_.emplace(gl);
   gl.GenVertexArrays(1, &vertices_);
   gl.UseProgram(program_);
   int unit = 0;
@@ -104,6 +110,8 @@ void ShaderPass::end() {
   if (!gl_) return;
   tables_.clear();
   refused_.clear();
+  lent_.clear();
+  row_reader_.reset();
   gl_->DeleteProgram(program_);
   gl_->DeleteVertexArrays(1, &vertices_);
   gl_ = nullptr;
@@ -112,6 +120,18 @@ void ShaderPass::end() {
 std::string ShaderPass::fault() const {
   const std::lock_guard lock(mutex_);
   return fault_;
+}
+
+ScanOutReport ShaderPass::scanOut() const {
+  const std::lock_guard lock(mutex_);
+  return scan_out_;
+}
+
+// `fault`: empty if there is no new one.
+void ShaderPass::tell(bool drawn, const std::string& fault) {
+  const std::lock_guard lock(mutex_);
+  scan_out_.drawn = drawn;
+  if (!fault.empty()) scan_out_.fault = fault;
 }
 
 Result<ShaderPass::Tables> ShaderPass::makeTables(
@@ -162,13 +182,47 @@ void ShaderPass::setLight(const Light& light) const {
   gl_->Uniform1f(at("least_headroom"), light.least_headroom);
 }
 
-void ShaderPass::draw(const Tables& tables, const CorrectionMap& map) const {
-  tables.signal.bind();
-  gl_->Viewport(0, 0, map.width, map.height);
+// Returns null if this map was refused, now or before.
+ShaderPass::Tables* ShaderPass::tablesUnlessRefused(
+    const std::shared_ptr<const CorrectionMap>& map) {
+  if (std::ranges::any_of(refused_, [&](const auto& held) { return isOf(held, map); }))
+    return nullptr;
+  const auto tables = tablesOf(map);
+  if (tables) return *tables;
+  refused_.push_back(map);
+  const std::lock_guard lock(mutex_);
+  fault_ = tables.error().what;
+  return nullptr;
+}
+
+// Returns null if this buffer was refused, now or before.
+const gl::RenderTarget* ShaderPass::targetOf(const std::shared_ptr<const DmaBuf>& buffer) {
+  if (!buffer) {
+    tell(false, "the driver of the display's card does not share the memory that is displayed");
+    return nullptr;
+  }
+  auto lent = std::ranges::find_if(lent_, [&](const Lent& l) { return isOf(l.buffer, buffer); });
+  if (lent == lent_.end()) {
+    lent_.remove_if([](const Lent& l) { return l.buffer.expired(); });
+    lent = lent_.insert(lent_.end(), {buffer});
+    auto target = context_->importTarget(*buffer);
+    if (target)
+      lent->target.emplace(*std::move(target));
+    else
+      tell(false, target.error().what);
+  }
+  return lent->target ? &*lent->target : nullptr;
+}
+
+void ShaderPass::drawAt(const gl::RenderTarget& target, int x, int y, const Tables& tables,
+                        const CorrectionMap& map) const {
+  target.bind();
+  gl_->Viewport(x, y, map.width, map.height);
   for (const int test : {GL_DEPTH_TEST, GL_CULL_FACE, GL_SCISSOR_TEST, GL_BLEND})
     gl_->Disable(static_cast<GLenum>(test));
   gl_->UseProgram(program_);
   setLight(map.light);
+  gl_->Uniform2i(gl_->GetUniformLocation(program_, "origin"), x, y);
   for (std::size_t i = 0; i < tables.textures.size(); ++i)
     tables.textures[i].bind(static_cast<int>(i));
   gl_->BindVertexArray(vertices_);
@@ -178,20 +232,48 @@ void ShaderPass::draw(const Tables& tables, const CorrectionMap& map) const {
 bool ShaderPass::run(const std::shared_ptr<const CorrectionMap>& map,
                      std::span<const std::uint8_t> picture, std::span<std::uint8_t> signal) {
   if (!gl_) return false;
-  for (const auto& held : refused_) {
-    if (isOf(held, map)) return false;
-  }
-  const auto tables = tablesOf(map);
-  if (!tables) {
-    refused_.push_back(map);
-    const std::lock_guard lock(mutex_);
-    fault_ = tables.error().what;
-    return false;
-  }
-  (*tables)->textures[kPicture].write(picture.data());
-  draw(**tables, *map);
-  (*tables)->signal.read(signal.data(), map->width);
+  const Tables* const tables = tablesUnlessRefused(map);
+  if (!tables) return false;
+  tables->textures[kPicture].write(picture.data());
+  drawAt(tables->signal, 0, 0, *tables, *map);
+  tables->signal.read(signal.data(), map->width);
   return true;
+}
+
+bool ShaderPass::draw(const std::shared_ptr<const CorrectionMap>& map,
+                      std::span<const std::uint8_t> picture, std::span<const out::DrawPlace> places,
+                      std::span<const int> rows, std::span<std::uint8_t> signal) {
+  if (!canDraw()) return false;
+  std::vector<const gl::RenderTarget*> targets;
+  for (const out::DrawPlace& place : places) {
+    targets.push_back(targetOf(place.buffer));
+    if (!targets.back()) return false;
+  }
+  const Tables* const tables = tablesUnlessRefused(map);
+  if (!tables) return false;
+  tables->textures[kPicture].write(picture.data());
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    drawAt(*targets[i], places[i].x, places[i].y, *tables, *map);
+  readRows(*targets.front(), places.front(), map->width, rows, signal);
+  // The display's card need not know when a GPU has finished, so nothing is handed over before.
+  gl_->Finish();
+  tell(true, "");
+  return true;
+}
+
+// Copies rows of the signal, as they are in the display's memory, to their places in `signal`.
+void ShaderPass::readRows(const gl::RenderTarget& target, const out::DrawPlace& place, int width,
+                          std::span<const int> rows, std::span<std::uint8_t> signal) {
+  std::vector<int> in_target;
+  for (const int row : rows) in_target.push_back(place.y + row);
+  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(width);
+  row_pixels_.resize(rows.size() * bytes);
+  row_reader_->startRows(target, place.x, width, in_target);
+  row_reader_->finish(row_pixels_.data(), width);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::memcpy(signal.data() + static_cast<std::size_t>(rows[r]) * bytes,
+                row_pixels_.data() + r * bytes, bytes);
+  }
 }
 
 }  // namespace merlin::render::correct

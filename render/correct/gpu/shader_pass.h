@@ -5,19 +5,29 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "daemon/base/dma_buf.h"
 #include "daemon/base/result.h"
 #include "render/correct/correction_pass.h"
 #include "render/gl/data_texture.h"
 #include "render/gl/gl_context.h"
+#include "render/gl/read_back.h"
 #include "render/gl/render_target.h"
 
 namespace merlin::render::correct {
 
+// How the signals that a pass draws come to the displays.
+struct ScanOutReport {
+  bool drawn = false;   // the last one was drawn into the memory that a display shows
+  std::string fault{};  // why one could not be drawn there, and is copied; empty: none was refused
+};
+
 // Serves all outputs of a wall. It is off at first: run() returns false. Thread-bound to the
-// context of begin(), except fault().
+// context of begin(), except fault() and scanOut().
 class ShaderPass final : public CorrectionPass {
  public:
   ShaderPass() = default;
@@ -27,7 +37,8 @@ class ShaderPass final : public CorrectionPass {
 
   // From now on run() draws in `context`, which must be current and outlive end(). Errors:
   // kUnsupported (the shader does not compile), with OpenGL's message.
-  Result<Ok> begin(const gl::GlContext& context);
+  // `draws`: whether draw() may draw into displays' memory.
+  Result<Ok> begin(const gl::GlContext& context, bool draws = true);
   // Switches the pass off again. Call it before the context is destroyed.
   void end();
 
@@ -35,6 +46,16 @@ class ShaderPass final : public CorrectionPass {
   // that nobody holds any more are deleted.
   bool run(const std::shared_ptr<const CorrectionMap>& map, std::span<const std::uint8_t> picture,
            std::span<std::uint8_t> signal) override;
+
+  bool canDraw() const override { return gl_ && draws_; }
+  // The first call with a buffer imports it; buffers that nobody holds any more are released. A
+  // buffer that the context refuses is not tried again.
+  bool draw(const std::shared_ptr<const CorrectionMap>& map, std::span<const std::uint8_t> picture,
+            std::span<const out::DrawPlace> places, std::span<const int> rows,
+            std::span<std::uint8_t> signal) override;
+
+  // Thread-safe.
+  ScanOutReport scanOut() const;
 
   // Why run() last returned false although it is on, for example because an output is larger than
   // OpenGL's textures; empty: it has not. Thread-safe.
@@ -47,17 +68,34 @@ class ShaderPass final : public CorrectionPass {
     std::vector<gl::DataTexture> textures;
     gl::RenderTarget signal;
   };
+  // A display's memory as a target; nothing if the context refuses it.
+  struct Lent {
+    std::weak_ptr<const DmaBuf> buffer;
+    std::optional<gl::RenderTarget> target{};
+  };
   Result<Tables> makeTables(const std::shared_ptr<const CorrectionMap>& map) const;
   Result<Tables*> tablesOf(const std::shared_ptr<const CorrectionMap>& map);
+  Tables* tablesUnlessRefused(const std::shared_ptr<const CorrectionMap>& map);
+  const gl::RenderTarget* targetOf(const std::shared_ptr<const DmaBuf>& buffer);
   void setLight(const Light& light) const;
-  void draw(const Tables& tables, const CorrectionMap& map) const;
+  void drawAt(const gl::RenderTarget& target, int x, int y, const Tables& tables,
+              const CorrectionMap& map) const;
+  void readRows(const gl::RenderTarget& target, const out::DrawPlace& place, int width,
+                std::span<const int> rows, std::span<std::uint8_t> signal);
+  void tell(bool drawn, const std::string& fault);
 
+  const gl::GlContext* context_ = nullptr;
   const gl::GlApi* gl_ = nullptr;  // null: off
+  bool draws_ = false;
   GLuint program_ = 0, vertices_ = 0;
   std::list<Tables> tables_;
   std::list<std::weak_ptr<const CorrectionMap>> refused_;  // maps that it cannot compute
-  mutable std::mutex mutex_;                               // guards fault_
+  std::list<Lent> lent_;
+  std::optional<gl::ReadBack> row_reader_;
+  std::vector<std::uint8_t> row_pixels_;
+  mutable std::mutex mutex_;  // guards the next two
   std::string fault_;
+  ScanOutReport scan_out_;
 };
 
 }  // namespace merlin::render::correct

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "daemon/base/clock.h"
+#include "daemon/base/dma_buf.h"
 #include "daemon/base/result.h"
 #include "render/out/picture/picture_digest.h"
 
@@ -53,6 +54,8 @@ class Buffer {
   virtual Id id() const = 0;
   virtual std::span<std::uint8_t> bytes() = 0;
   virtual std::size_t pitch() const = 0;  // [bytes] from one row to the next
+  // The same memory for a GPU that draws into it; null if the card's driver does not share it.
+  virtual std::shared_ptr<const DmaBuf> shared() const { return nullptr; }
 };
 
 // One display's share of a commit.

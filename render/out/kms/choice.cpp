@@ -166,8 +166,8 @@ void writePicture(std::span<const std::uint8_t> rgba, int width, int height,
                   int buffer_height) {
   assert(width <= buffer_width && height <= buffer_height);
   const auto w = static_cast<std::size_t>(width);
-  const auto left = static_cast<std::size_t>(buffer_width - width) / 2;
-  const auto top = static_cast<std::size_t>(buffer_height - height) / 2;
+  const Corner corner = middle(width, height, buffer_width, buffer_height);
+  const auto left = static_cast<std::size_t>(corner.x), top = static_cast<std::size_t>(corner.y);
   for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
     const std::uint8_t* from = rgba.data() + y * w * 4;
     std::uint8_t* to = bgrx.data() + (top + y) * pitch + left * 4;

@@ -36,6 +36,14 @@ std::vector<std::optional<std::size_t>> assignCrtcs(std::span<const std::uint32_
 std::string listOf(std::span<const Mode> modes, std::size_t most);
 std::string listOf(std::span<const Connector> connectors);
 
+// Where the upper left pixel of a picture is that lies in the middle of a larger one [px].
+struct Corner {
+  int x = 0, y = 0;
+};
+constexpr Corner middle(int width, int height, int outer_width, int outer_height) {
+  return {(outer_width - width) / 2, (outer_height - height) / 2};
+}
+
 // Writes a picture (RGBA, rows without padding) into the middle of a buffer (BGRX); the rest of the
 // buffer is left as it is. REQUIRES: the picture is not larger than the buffer.
 void writePicture(std::span<const std::uint8_t> rgba, int width, int height,

@@ -45,35 +45,6 @@ std::size_t Displays::add(const KmsSettings& settings, int picture_width, int pi
   return outputs_++;
 }
 
-Result<std::optional<Timestamp>> Displays::present(std::size_t i,
-                                                   std::span<const std::uint8_t> rgba,
-                                                   std::uint64_t sequence) {
-  using Shown = std::optional<Timestamp>;
-  std::unique_lock lock(mutex_);
-  if (std::exchange(sequence_, sequence) != sequence) whole_ = false;
-  bool shown = false;
-  for (Screen& screen : screens_) {
-    if (screen.output != i) continue;
-    screen.wants_frame = false;
-    const std::shared_ptr<Place> place = screen.lit ? screen.place : nullptr;
-    if (!place) continue;
-    const BufferTurns::Write write = place->turns.beginWrite();
-    shown = shown || !write.replaces;
-    lock.unlock();
-    Buffer& buffer = *place->buffers[write.buffer];
-    writePicture(rgba, screen.width, screen.height, buffer.bytes(), buffer.pitch(),
-                 place->mode.width, place->mode.height);
-    lock.lock();
-    place->turns.endWrite(write.buffer);
-  }
-  if (i + 1 == outputs_) {
-    whole_ = true;
-    if (card_) card_->wake();
-  }
-  if (auto why = faultOf(i); !why.empty()) return Error{Errc::kIo, std::move(why)};
-  return shown ? Shown(clock_.now()) : Shown();
-}
-
 std::string Displays::fault(std::size_t i) const {
   const std::lock_guard lock(mutex_);
   return faultOf(i);

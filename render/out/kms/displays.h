@@ -44,11 +44,23 @@ class Displays {
   std::size_t add(const KmsSettings& settings, int picture_width, int picture_height);
   static constexpr std::size_t kMostOfEvery = 16;
 
+  // Where the next picture of output i may be drawn by a GPU: a buffer of each of its displays that
+  // is neither shown nor on its way to the display. Each is null if the card's driver does not
+  // share it. Empty if no display takes part in commits; if a picture was copied although it might
+  // have been drawn, or after showAgain(), until the display has other buffers. Called by
+  // present()'s thread, which then calls present() for this output next.
+  struct DrawPlace {
+    std::shared_ptr<const DmaBuf> buffer;
+    int x = 0, y = 0;  // [px] of the picture's upper left pixel
+  };
+  std::vector<DrawPlace> beginDrawing(std::size_t i);
+
   // Writes the picture (RGBA, rows from top to bottom without padding) of frame `sequence` into a
-  // buffer of each display of output i. A frame is committed when all outputs have their pictures
-  // of it. Never waits for a display. Cost: one pass over the pixels for each. Returns when the
-  // picture was handed over; nothing if it replaced one that was not committed yet, or if the card
-  // was not looked at yet. Errors: why the output shows no picture.
+  // buffer of each display of output i; `rgba` empty: it is drawn into those of beginDrawing(). A
+  // frame is committed when all outputs have their pictures of it. Never waits for a display. Cost:
+  // one pass over the pixels for each. Returns when the picture was handed over; nothing if it
+  // replaced one that was not committed yet, or if the card was not looked at yet. Errors: why the
+  // output shows no picture.
   Result<std::optional<Timestamp>> present(std::size_t i, std::span<const std::uint8_t> rgba,
                                            std::uint64_t sequence);
 
@@ -93,6 +105,7 @@ class Displays {
     std::string name{};  // of the connector
     std::array<std::shared_ptr<Buffer>, BufferTurns::kCount> buffers{};
     BufferTurns turns{};
+    bool copies = false;  // nothing is drawn into its buffers, since a try has failed
   };
   struct Screen {
     KmsSettings settings{};
@@ -108,6 +121,13 @@ class Displays {
     std::atomic<bool> wants_frame{false};
     bool again = false;  // showAgain() was called
   };
+  // A picture on its way into a buffer of a display. `replaces`: as in BufferTurns::Write.
+  struct Write {
+    std::shared_ptr<Place> place;
+    std::size_t buffer = 0;
+    bool replaces = false;
+    int width = 0, height = 0;  // of the picture [px]
+  };
   // A display that is to be read back.
   struct Target {
     std::shared_ptr<Place> place;
@@ -119,6 +139,10 @@ class Displays {
     Lit lit;
   };
 
+  static std::optional<Write> beginWrite(Screen& screen);
+  static void copy(std::unique_lock<std::mutex>& lock, const Write& write,
+                   std::span<const std::uint8_t> rgba);
+  bool endDrawing(std::unique_lock<std::mutex>& lock, std::span<const std::uint8_t> rgba);
   bool openCard();
   void closeCard(const std::string& why);
   void look(Timestamp now);
@@ -155,6 +179,8 @@ class Displays {
   bool whole_ = false;  // every output has its picture of the frame `sequence_`
   bool busy_ = false;   // the last commit is to be tried again
   std::uint64_t sequence_ = 0;
+  // What beginDrawing() has begun and present() is to end; used by their thread alone.
+  std::vector<Write> begun_;
   // These three are used by step() alone.
   std::set<Id> connected_;  // connectors with a display at the last look
   Timestamp next_look_{};

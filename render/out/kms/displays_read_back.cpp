@@ -71,10 +71,15 @@ void Displays::showAgain(std::size_t i) {
   if (card_) card_->wake();
 }
 
+// From now on pictures are copied to these displays: nobody knows whether what was wrong was the
+// way in which a GPU drew there.
 void Displays::lightAskedFor() {
   const std::lock_guard lock(mutex_);
-  for (Screen& screen : screens_)
-    if (std::exchange(screen.again, false) && screen.lit) lightAgain(screen);
+  for (Screen& screen : screens_) {
+    if (!std::exchange(screen.again, false) || !screen.lit) continue;
+    screen.place->copies = true;
+    lightAgain(screen);
+  }
 }
 
 }  // namespace merlin::render::out::kms

@@ -5,8 +5,11 @@
 #include <utility>
 
 #include <drm_fourcc.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
+#include <xf86drm.h>
 #include <xf86drmMode.h>
 
 #include "render/out/kms/drm_objects.h"
@@ -27,6 +30,7 @@ class DumbBuffer final : public Buffer {
   Id id() const override { return id_; }
   std::span<std::uint8_t> bytes() override { return bytes_; }
   std::size_t pitch() const override { return pitch_; }
+  std::shared_ptr<const DmaBuf> shared() const override { return shared_; }
 
   // Returns false, with errno set, if the card has no memory for the buffer.
   bool create(std::uint32_t width, std::uint32_t height) {
@@ -39,6 +43,7 @@ class DumbBuffer final : public Buffer {
     const bool made = drmModeAddFB2(fd, width, height, DRM_FORMAT_XRGB8888, handles, pitches,
                                     offsets, &id_, 0) == 0 &&
                       map(handle, static_cast<std::size_t>(size));
+    if (made) share(handle, width, height);
     // The handle is no longer needed, since the frame buffer and the mapping keep the memory. If
     // this process is killed, the next one can list and remove its frame buffers, but not a handle.
     const int error = errno;
@@ -59,10 +64,28 @@ class DumbBuffer final : public Buffer {
     return true;
   }
 
+  // The kernel says that no acceleration is promised for "dumb" memory; whether the GPU draws there
+  // is for its driver to say, when it imports it.
+  void share(std::uint32_t handle, std::uint32_t width, std::uint32_t height) {
+    int fd = -1;
+    struct stat node {};
+    if (drmPrimeHandleToFD(file_->get(), handle, DRM_CLOEXEC | DRM_RDWR, &fd) != 0) return;
+    auto shared = std::make_shared<DmaBuf>();
+    shared->file = UniqueFd(fd);
+    shared->width = static_cast<int>(width);
+    shared->height = static_cast<int>(height);
+    shared->format = DRM_FORMAT_XRGB8888;
+    shared->modifier = DRM_FORMAT_MOD_LINEAR;
+    shared->pitch = pitch_;
+    if (::fstat(file_->get(), &node) == 0) shared->device = deviceFolder(node.st_rdev);
+    shared_ = std::move(shared);
+  }
+
   DrmFile file_;
   std::uint32_t pitch_ = 0;
   Id id_ = 0;
   std::span<std::uint8_t> bytes_;
+  std::shared_ptr<const DmaBuf> shared_;
 };
 
 }  // namespace

@@ -43,12 +43,13 @@ void addRow(const std::uint8_t* row, std::size_t width, std::span<std::uint32_t>
 PictureDigest digestOf(const PixelRows& picture) noexcept {
   PictureDigest digest{};
   const auto width = static_cast<std::size_t>(picture.width);
-  const auto height = static_cast<std::size_t>(picture.height);
-  if (width == 0 || height == 0) return digest;
-  assert(picture.pixels.size() >= (height - 1) * picture.pitch + kPixel * width);
+  if (picture.width <= 0 || picture.height <= 0) return digest;
+  const auto rows = digestRows(picture.height);
+  assert(picture.pixels.size() >=
+         static_cast<std::size_t>(picture.height - 1) * picture.pitch + kPixel * width);
   for (std::size_t r = 0; r < PictureDigest::kRows; ++r) {
-    const std::size_t y = (2 * r + 1) * height / (2 * PictureDigest::kRows);
-    const std::uint8_t* const row = picture.pixels.data() + y * picture.pitch;
+    const std::uint8_t* const row =
+        picture.pixels.data() + static_cast<std::size_t>(rows[r]) * picture.pitch;
     const auto cells =
         std::span(digest.cells).subspan(r * PictureDigest::kColumns, PictureDigest::kColumns);
     if (picture.order == PixelOrder::kRgba)

@@ -22,6 +22,15 @@ struct PictureDigest {
   bool operator==(const PictureDigest&) const = default;
 };
 
+// The rows of a picture of this height [px] that digestOf() reads, from top to bottom; a low
+// picture's may occur twice.
+constexpr std::array<int, PictureDigest::kRows> digestRows(int height) noexcept {
+  std::array<int, PictureDigest::kRows> rows{};
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    rows[r] = static_cast<int>((2 * r + 1) * static_cast<std::size_t>(height) / (2 * rows.size()));
+  return rows;
+}
+
 // The bytes of a pixel, first to last; the fourth one is not looked at.
 enum class PixelOrder { kRgba, kBgrx };
 

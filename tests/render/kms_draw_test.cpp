@@ -1,0 +1,244 @@
+// Pictures that are drawn into the memory that displays show, on a fake card that shares it.
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "render/out/kms/displays.h"
+#include "tests/support/fake_card.h"
+#include "tests/support/fake_clock.h"
+
+namespace merlin::render::out::kms {
+namespace {
+
+using std::chrono::seconds;
+using test::Bench;
+using test::FakeCard;
+using test::mode;
+
+class KmsDrawTest : public testing::Test {
+ protected:
+  KmsDrawTest() { bench_.shares = true; }
+  // Output 0 at A-1; output 1, at A-2, is always copied to.
+  void add(const std::string& first_mode = "640x480@60") {
+    displays_.add({"", "A-1", first_mode}, 640, 480);
+    displays_.add({"", "A-2", "640x480@60"}, 640, 480);
+    step();
+  }
+  void step() { displays_.step(Duration::zero()); }
+  void secondLater() {
+    clock_.advance(seconds(1));
+    step();
+  }
+  static std::vector<std::uint8_t> picture(std::uint8_t blue) {
+    std::vector<std::uint8_t> pixels(640 * 480 * 4);
+    for (std::size_t i = 2; i < pixels.size(); i += 4) pixels[i] = blue;
+    return pixels;
+  }
+  Id idOf(const Displays::DrawPlace& place) const {
+    return place.buffer ? bench_.buffer_of.at(place.buffer.get()) : 0;
+  }
+  // What a GPU does. The fourth byte is what copying leaves there, too.
+  void draw(const Displays::DrawPlace& place, std::uint8_t blue) {
+    auto& bytes = *bench_.buffers.at(idOf(place));
+    for (std::size_t i = 0; i < bytes.size(); i += 4) bytes[i] = blue;
+  }
+  // Presents a frame, drawn to output 0; returns where.
+  std::vector<Displays::DrawPlace> present(std::uint8_t blue) {
+    const auto places = displays_.beginDrawing(0);
+    for (const auto& place : places) draw(place, blue);
+    ++sequence_;
+    shown_ = displays_.present(0, places.empty() ? picture(blue) : std::vector<std::uint8_t>(),
+                               sequence_);
+    EXPECT_TRUE(displays_.present(1, picture(blue), sequence_).ok() || !displays_.fault(1).empty());
+    return places;
+  }
+
+  Bench bench_;
+  test::FakeClock clock_;
+  Displays displays_{[this]() -> Result<std::unique_ptr<Card>> {
+                       return std::unique_ptr<Card>(std::make_unique<FakeCard>(bench_));
+                     },
+                     clock_};
+  std::uint64_t sequence_ = 0;
+  Result<std::optional<Timestamp>> shown_ = std::optional<Timestamp>();
+};
+
+TEST_F(KmsDrawTest, ADrawnPictureIsCommittedWithoutACopy) {
+  add();
+  const auto places = present(7);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_EQ(places[0].buffer->width, 640);
+  EXPECT_TRUE(shown_ && *shown_);
+  step();
+  ASSERT_EQ(bench_.commits.size(), 1U) << "together with the display that is copied to";
+  EXPECT_EQ(bench_.commits[0].size(), 2U);
+  EXPECT_EQ(bench_.commits[0][0].buffer, idOf(places[0]));
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 7}, {22, 7}}));
+  EXPECT_EQ(displays_.readBack(0)->at(0).found.digest,
+            digestOf({640, 480, picture(7), std::size_t{640} * 4}))
+      << "the checks read it as any other";
+}
+
+TEST_F(KmsDrawTest, WhatIsShownOrOnItsWayIsNeverDrawnInto) {
+  add();
+  std::set<Id> drawn;
+  Id shown = 0, pending = 0;
+  for (int n = 0; n < 24; ++n) {
+    bench_.answers_flips = n % 4 == 0;  // otherwise frames wait, and replace one another
+    const Id into = idOf(present(static_cast<std::uint8_t>(n)).at(0));
+    EXPECT_NE(into, shown) << n;
+    EXPECT_NE(into, pending) << n;
+    drawn.insert(into);
+    const std::size_t before = bench_.commits.size();
+    step();
+    if (bench_.commits.size() > before) pending = bench_.commits.back()[0].buffer;
+    if (n % 4 == 3) bench_.flips = {{21, clock_.now()}, {22, clock_.now()}};
+    if (bench_.answers_flips || n % 4 == 3) {
+      step();
+      shown = pending;
+      if (bench_.commits.size() > before + 1) pending = bench_.commits.back()[0].buffer;
+    }
+  }
+  EXPECT_EQ(drawn.size(), 3U);
+}
+
+TEST_F(KmsDrawTest, ASmallerPictureIsDrawnInTheMiddle) {
+  add("1024x768");
+  const auto places = displays_.beginDrawing(0);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_EQ(places[0].x, 192);
+  EXPECT_EQ(places[0].y, 144);
+  EXPECT_EQ(places[0].buffer->width, 1024);
+}
+
+TEST_F(KmsDrawTest, EveryDisplayOfAnOutputHasAPlaceOfItsOwn) {
+  displays_.add({"", "*", ""}, 640, 480);
+  step();
+  const auto places = displays_.beginDrawing(0);
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_NE(idOf(places[0]), idOf(places[1]));
+  draw(places[0], 5);
+  draw(places[1], 6);
+  ASSERT_TRUE(displays_.present(0, {}, 1));
+  step();
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 5}, {22, 6}}));
+}
+
+TEST_F(KmsDrawTest, MemoryThatIsNotSharedIsAPlaceWithoutABuffer) {
+  bench_.shares = false;
+  add();
+  const auto places = displays_.beginDrawing(0);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_EQ(places[0].buffer, nullptr);
+  ASSERT_TRUE(displays_.present(0, picture(3), 1));
+  ASSERT_TRUE(displays_.present(1, picture(3), 1));
+  step();
+  EXPECT_EQ(bench_.shown[21], 3);
+}
+
+// The picture that could not be drawn is shown, and nobody tries again until there is new memory.
+TEST_F(KmsDrawTest, APictureThatIsNotDrawnIsCopiedAndSoAreTheNextOnes) {
+  add();
+  ASSERT_EQ(displays_.beginDrawing(0).size(), 1U);
+  ASSERT_TRUE(displays_.present(0, picture(4), ++sequence_));
+  ASSERT_TRUE(displays_.present(1, picture(4), sequence_));
+  step();
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 4}, {22, 4}}));
+  EXPECT_TRUE(present(5).empty());
+  step();
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 5}, {22, 5}}));
+  EXPECT_EQ(displays_.beginDrawing(1).size(), 1U) << "each output for itself";
+  ASSERT_TRUE(displays_.present(1, {}, sequence_));
+
+  bench_.connectors[0].connected = false;
+  secondLater();
+  bench_.connectors[0] = test::projector(11, "A-1");
+  bench_.connectors[0].modes = {mode(640, 480, 60.2)};
+  secondLater();
+  EXPECT_EQ(present(6).size(), 1U) << "another display has other memory";
+}
+
+TEST_F(KmsDrawTest, ADisplayThatWasFoundToShowSomethingElseIsCopiedTo) {
+  add();
+  present(1);
+  step();
+  displays_.showAgain(0);
+  step();
+  EXPECT_TRUE(present(2).empty());
+  step();
+  EXPECT_EQ(bench_.shown[21], 2);
+  EXPECT_EQ(displays_.beginDrawing(1).size(), 1U) << "the other output was right";
+}
+
+TEST_F(KmsDrawTest, NothingIsDrawnForADisplayThatShowsNoFrames) {
+  add();
+  present(1);
+  step();
+  bench_.other_is_master = true;
+  secondLater();
+  EXPECT_TRUE(present(2).empty());
+  EXPECT_NE(displays_.fault(0).find("desktop (77)"), std::string::npos);
+  bench_.other_is_master = false;
+  secondLater();
+  EXPECT_EQ(present(3).size(), 1U) << "and again once the displays are back";
+  step();
+  EXPECT_EQ(bench_.shown[21], 3);
+  bench_.connectors[0].connected = false;
+  secondLater();
+  EXPECT_TRUE(present(4).empty());
+  step();
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 3}, {22, 4}}));
+}
+
+TEST_F(KmsDrawTest, ADisplayThatIsPulledWhileItsPictureIsDrawnDoesNotStopTheOthers) {
+  add();
+  present(1);
+  step();
+  const auto places = displays_.beginDrawing(0);
+  bench_.connectors[0].connected = false;
+  secondLater();
+  draw(places.at(0), 2);
+  EXPECT_FALSE(displays_.present(0, {}, ++sequence_)) << "the fault";
+  ASSERT_TRUE(displays_.present(1, picture(2), sequence_));
+  step();
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 1}, {22, 2}}));
+}
+
+// The memory is in use until the picture is presented, although the display has other memory now.
+TEST_F(KmsDrawTest, AModeThatChangesWhileAPictureIsDrawnLeavesItsMemory) {
+  add("");
+  const auto places = displays_.beginDrawing(0);
+  const Id drawn = idOf(places.at(0));
+  bench_.connectors[0].modes = {mode(640, 480, 50)};
+  secondLater();
+  draw(places.at(0), 2);
+  ASSERT_EQ(bench_.buffers.count(drawn), 1U);
+  ASSERT_TRUE(displays_.present(0, {}, ++sequence_));
+  EXPECT_EQ(bench_.buffers.count(drawn), 0U) << "nobody needs it any more";
+  EXPECT_TRUE(displays_.wantsFrame(0)) << "for the new mode";
+  const auto next = present(3);
+  ASSERT_EQ(next.size(), 1U);
+  step();
+  EXPECT_EQ(bench_.shown[21], 3);
+}
+
+TEST_F(KmsDrawTest, ADisplayThatIsLitAgainWhileItsPictureIsDrawnAsksForAFrame) {
+  add();
+  present(1);
+  step();
+  ASSERT_FALSE(displays_.wantsFrame(0));
+  const auto places = displays_.beginDrawing(0);
+  bench_.connectors[0].link_bad = true;
+  secondLater();
+  draw(places.at(0), 2);
+  ASSERT_TRUE(displays_.present(0, {}, ++sequence_));
+  EXPECT_TRUE(displays_.wantsFrame(0));
+}
+
+}  // namespace
+}  // namespace merlin::render::out::kms
