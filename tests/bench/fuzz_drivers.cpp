@@ -176,7 +176,7 @@ std::string poseMessage(std::int32_t sensor, float x) {
   return test::vrpnMessage(kDevice, kPoses, vrpnPose(sensor, place, kTurn));
 }
 
-FuzzFeed trackerFeed() {
+FuzzFeed poseFeed() {
   return driverFeed(
       "vrpn", [](const Clock& c, SampleSink& k) { return vrpn::makeDevice(VrpnSettings{}, c, k); },
       serverHello(VrpnSettings{}.device) + poseMessage(0, 0), kVrpnPieces);
@@ -247,7 +247,7 @@ const FuzzTarget kDrivers[] = {
     {"driver evdev", gamepadFeed, gamepadReport},
     {"driver touch", frameFeed, frameReport},
     {"driver touch, mouse", mouseFeed, mouseReport},
-    {"driver vrpn", trackerFeed, anyPose},
+    {"driver vrpn", poseFeed, anyPose},
     {"driver vrpn_pad", padFeed, padMessage},
     {"vrpn catalog", catalogFeed, anyDescription},
     {"driver spacenav", spaceMouseFeed, spaceMouseFrame},
