@@ -14,7 +14,7 @@ namespace {
 // Of GL_OES_EGL_image, which glcorearb.h does not have.
 using TakeImage = void (*)(GLenum target, void* image);
 
-bool has(EGLDisplay display, std::string_view extension) {
+bool offers(EGLDisplay display, std::string_view extension) {
   const char* const all = eglQueryString(display, EGL_EXTENSIONS);
   const std::string padded = fmt::format(" {} ", all ? all : "");
   return padded.find(fmt::format(" {} ", extension)) != std::string::npos;
@@ -60,10 +60,10 @@ Result<RenderTarget> importTarget(void* display, const GlApi& gl, const DmaBuf& 
       reinterpret_cast<TakeImage>(eglGetProcAddress("glEGLImageTargetRenderbufferStorageOES"));
   const auto destroy =
       reinterpret_cast<PFNEGLDESTROYIMAGEKHRPROC>(eglGetProcAddress("eglDestroyImageKHR"));
-  if (!take || !destroy || !has(display, "EGL_EXT_image_dma_buf_import"))
+  if (!take || !destroy || !offers(display, "EGL_EXT_image_dma_buf_import"))
     return Error{Errc::kUnsupported, "the driver lacks EGL_EXT_image_dma_buf_import"};
   EGLImageKHR image = EGL_NO_IMAGE_KHR;
-  if (has(display, "EGL_EXT_image_dma_buf_import_modifiers"))
+  if (offers(display, "EGL_EXT_image_dma_buf_import_modifiers"))
     image = makeImage(display, buffer, true);
   // Drivers that know no modifiers take memory without one as it comes from their own kernel
   // driver.

@@ -3,13 +3,17 @@
 #include <future>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "daemon/base/dma_buf.h"
 #include "render/correct/gpu/shader_pass.h"
 #include "render/correct/output_correction.h"
+#include "render/out/kms/drm_buffer.h"
 #include "render/reduce/reduce.h"
 #include "tests/support/corrections.h"
 #include "tests/support/meshes.h"
@@ -115,6 +119,47 @@ TEST_F(GpuTest, CorrectsAsTheCpuDoesWithin1Of255) {
   const auto expected = cpu.apply({test::kWidth, test::kHeight, picture});
   EXPECT_EQ(pixelsBeyond(signal, expected.pixels, 1), 0);
   pass.end();
+}
+
+// The GPU's own card, if it has connectors or could have them: needs no display, and lights none.
+std::string cardOf(const gl::RendererInfo& renderer) {
+  const std::string device = deviceFolder(renderer.node);
+  for (int i = 0; i < 16 && !device.empty(); ++i) {
+    std::string card = fmt::format("/dev/dri/card{}", i);
+    if (deviceFolder(card) == device) return card;
+  }
+  return {};
+}
+
+TEST_F(GpuTest, DrawsIntoTheMemoryThatItsDisplaysShow) {
+  const std::string card = cardOf(contexts_->own->info());
+  auto file = std::make_shared<out::kms::DeviceFile>(::open(card.c_str(), O_RDWR | O_CLOEXEC));
+  if (!file->valid()) GTEST_SKIP() << "the GPU has no card that can be opened: " << card;
+  constexpr int kLeft = 17, kTop = 9;
+  const auto buffer = out::kms::makeDumbBuffer(file, test::kWidth + 40, test::kHeight + 30);
+  ASSERT_TRUE(buffer) << buffer.error().what;
+  correct::ShaderPass pass;
+  ASSERT_TRUE(pass.begin(*contexts_->own));
+  const auto map =
+      correct::makeCorrectionMap(test::everything(), test::kWidth, test::kHeight, nullptr, 1);
+  const auto picture = test::noise(test::kWidth, test::kHeight);
+  const out::Signal source{test::kWidth, test::kHeight, picture};
+  correct::OutputCorrection gpu(map, 1, &pass), cpu(map, 1);
+  const out::DrawPlace places[] = {{(*buffer)->shared(), kLeft, kTop}};
+  const bool drawn = gpu.draw(source, places).drawn;
+  const std::string fault = pass.scanOut().fault;
+  pass.end();
+  if (!drawn) GTEST_SKIP() << "outputs are copied on this GPU: " << fault;
+  const auto bytes = (*buffer)->bytes();
+  std::vector<std::uint8_t> shown;
+  for (int y = 0; y < test::kHeight; ++y) {
+    const auto row = static_cast<std::size_t>(y + kTop) * (*buffer)->pitch();
+    for (int x = 0; x < test::kWidth; ++x) {
+      const auto* const bgrx = &bytes[row + std::size_t{4} * static_cast<std::size_t>(x + kLeft)];
+      shown.insert(shown.end(), {bgrx[2], bgrx[1], bgrx[0], 255});
+    }
+  }
+  EXPECT_EQ(pixelsBeyond(shown, cpu.apply(source).pixels, 1), 0);
 }
 
 }  // namespace
