@@ -327,6 +327,14 @@ void checkButtons(LoadedSettings& loaded) {
           handAt(i) + "/buttons",
           fmt::format("is \"{}\", whose buttons the hand at {} holds; a device is in one hand",
                       excerpt(buttons), handAt(first->second)));
+    // Else its buttons would take the wall for one person, and the hand of another might not act.
+    const DeviceSettings* const device = findDevice(d, SampleKind::kBall, buttons);
+    if (device && device->person != d.hands[i].person)
+      loaded.addFinding(
+          handAt(i) + "/buttons",
+          fmt::format("is \"{}\", whose \"person\" is \"{}\", and the hand's is \"{}\"; give both "
+                      "the same",
+                      excerpt(buttons), excerpt(device->person), excerpt(d.hands[i].person)));
   }
 }
 

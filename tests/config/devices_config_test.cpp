@@ -254,6 +254,9 @@ TEST(DevicesConfig, AHandHoldsTheButtonsOfABallThatNoOtherHandHolds) {
   EXPECT_EQ(hands("", R"(, "buttons": "t")"),
             "f.json:2: /hands/1/buttons is \"t\", which is not the name of a ball; /devices has "
             "wand\n");
+  EXPECT_EQ(hands("", R"(, "buttons": "wand", "person": "ann")"),
+            "f.json:2: /hands/1/buttons is \"wand\", whose \"person\" is \"\", and the hand's is "
+            "\"ann\"; give both the same\n");
 }
 
 TEST(DevicesConfig, AStationIsWornOnce) {

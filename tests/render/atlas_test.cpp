@@ -265,8 +265,15 @@ TEST(Atlas, MakesAllPicturesSmallerWhereTheyDoNotFit) {
   Mesh hopeless = before;
   const JoinedTextures failed = joinTextures(hopeless, textures, {.most_side = 16});
   EXPECT_TRUE(failed.baked);
+  EXPECT_EQ(failed.notes().size(), 1u);
   EXPECT_TRUE(hopeless.texture.empty());
   EXPECT_EQ(hopeless.find("texcoord")->values, before.find("texcoord")->values);
+
+  const ImageFile other = waves(8, 8, 2);
+  const SurfaceTextures more{{{&a}, {&b}, {&other}}, {0, 1}};
+  const std::vector<std::string> notes = joinTextures(hopeless, more, {.most_side = 16}).notes();
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[1], "1 texture is on no triangle and is left out");
 }
 
 TEST(Atlas, MakesAPictureSmallerThatIsRepeatedOften) {

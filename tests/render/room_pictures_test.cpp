@@ -1,5 +1,6 @@
-// For each preset, the tiles together show one view: each tile equals a part of one larger
-// rendering in its panel's plane, and neighbours meet at their seams.
+// For each preset but the arcs (whose angles tests/render/room_test.cpp checks), the tiles together
+// show one view: each tile equals a part of one larger rendering in its panel's plane, and
+// neighbours meet at their seams.
 //
 // The test prints its figures. If MERLIN_PICTURES=FOLDER is set, it writes the seams there, for
 // people to look at: both tiles side by side, and below them the one rendering in the left tile's

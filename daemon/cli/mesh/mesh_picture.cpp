@@ -25,7 +25,8 @@ struct PictureOptions {
   WeightOptions weights;
 };
 
-// Appends each level's edges, coloured by their weighted lengths; all at the finest level's scale.
+// Appends a picture of the level's edges, coloured by their weighted lengths, at the scale of the
+// finest level.
 Result<Ok> appendEdges(const PictureOptions& options, const std::string& path,
                        const render::lod::Dendrogram& model, std::size_t level,
                        render::image::Image& strip) {
@@ -140,8 +141,7 @@ void addMeshPicture(Command mesh, Run& run) {
       "With --edges: initial weights of the features: default (those of --cost pattern), or "
       "weights that Gourley's dissertation of 1998 used for its data",
       "With --edges: weight of a feature: geometry, normal, curvature, boundary, colour or any "
-      "other "
-      "feature of the mesh. 0 ignores the feature");
+      "other feature of the mesh. 0 ignores the feature");
   command.callback([options, &run] { run = [options] { return picture(*options); }; });
 }
 

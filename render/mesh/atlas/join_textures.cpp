@@ -189,16 +189,19 @@ std::string counted(std::size_t n, const char* one, const char* several) {
 }  // namespace
 
 std::vector<std::string> JoinedTextures::notes() const {
-  if (baked)
-    return {"its textures are too many for one picture: they are baked into the vertices' colours"};
-  if (pictures + colours == 0 && unused == 0) return {};
+  if (!baked && pictures + colours == 0 && unused == 0) return {};
   const std::string left_out = unused == 0
                                    ? std::string()
                                    : counted(unused, "texture is on no triangle and is left out",
                                              "textures are on no triangle and are left out");
+  std::vector<std::string> all;
+  if (baked) {
+    all = {"its textures are too many for one picture: they are baked into the vertices' colours"};
+    if (unused > 0) all.push_back(left_out);
+    return all;
+  }
   if (pictures + colours == 0)
     return {"the texture that is on all triangles is kept as it is; " + left_out};
-  std::vector<std::string> all;
   std::string text = counted(pictures, "texture", "textures");
   if (colours > 0) text += " and " + counted(colours, "plain colour", "plain colours");
   text +=
