@@ -53,7 +53,7 @@ class Daemon {
   // before the first frame); a thread has ended unexpectedly.
   Result<Ok> run();
   bool startsAgain() const noexcept { return starts_again_; }
-  // Whether run() got as far as the first frame, or the devices.
+  // Whether run() has told systemd READY=1.
   bool wasReady() const noexcept { return was_ready_; }
   // Returns the files that are to stay open for the next start: see ProgramRestart.
   std::vector<std::pair<std::string, UniqueFd>> handOver() { return kept_files_.handOver(); }

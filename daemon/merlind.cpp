@@ -201,7 +201,9 @@ int runDaemon(const Options& options, const ProgramRestart& restart) {
   if (!ran || !(*daemon)->startsAgain()) {
     const int status = exitStatusOf(ran);
     // Not after a fault of a process that ran: its successor is to be there at once.
-    if (!ran && !(*daemon)->wasReady() && ran.error().code != Errc::kClosed) delayRestart();
+    const bool waits = !ran && !(*daemon)->wasReady() && ran.error().code != Errc::kClosed;
+    daemon->reset();  // holds no line and no socket while it waits
+    if (waits) delayRestart();
     return status;
   }
   const auto kept = (*daemon)->handOver();

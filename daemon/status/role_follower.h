@@ -22,7 +22,8 @@ class RoleFollower {
   RoleFollower(const std::string& instance, std::string role, std::vector<std::string> topics,
                SharedMemory::From from = SharedMemory::From::kOwnUserOrRoot);
 
-  // Looks for the role, and connects to a new run of it. Returns true if a new run has replaced the
+  // Looks for the role, and connects to a new run of it; if that fails, it is tried again every
+  // second. Returns true if a new run has replaced the
   // last one, or the role has ended: what the last run published must then be forgotten. Never
   // waits.
   bool update(Timestamp now);

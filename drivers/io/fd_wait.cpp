@@ -15,7 +15,7 @@ Error hungUp() { return {Errc::kClosed, "the other end hung up"}; }
 Error ioError(const char* call) {
   const int error = errno;
   const std::string what = std::string(call) + ": " + std::strerror(error);  // NOLINT: one thread
-  constexpr int kGone[] = {EIO, ENXIO, ENODEV, EPIPE, ECONNRESET};
+  constexpr int kGone[] = {EIO, ENXIO, ENODEV, EPIPE, ECONNRESET, ETIMEDOUT, EHOSTUNREACH};
   if (std::ranges::find(kGone, error) == std::end(kGone)) return {Errc::kIo, what};
   return {Errc::kClosed, hungUp().what + " (" + what + ')'};
 }

@@ -29,8 +29,12 @@ bool sameFeatures(const GltfValues& a, const GltfValues& b) {
 class ValueFinder {
  public:
   explicit ValueFinder(const std::vector<GltfValues>& own) {
-    for (const GltfValues& values : own)
-      by_place_[hashOf(floatsOf(values.positions))].push_back(&values);
+    for (const GltfValues& values : own) {
+      // A first one and one that differs say all: a file may have thousands of equal parts.
+      auto& there = by_place_[hashOf(floatsOf(values.positions))];
+      if (there.empty() || (there.size() == 1 && !sameFeatures(*there[0], values)))
+        there.push_back(&values);
+    }
   }
 
   // Null if nothing is known of the mesh, or if primitives at the same places differ.

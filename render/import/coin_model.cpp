@@ -350,7 +350,12 @@ Result<std::string> unpacked(const std::string& path) {
   if (!gzip && !marked) return std::string();
   const auto file = MappedFile::open(path);
   if (!file && file.error().code == Errc::kNoMemory) throw std::bad_alloc();
-  if (!file) return Error{file.error().code, "could be read once, and then no more; try again"};
+  if (!file) {
+    return Error{
+        file.error().code,
+        "its beginning could be read, but then it could not be opened again; was it moved? "
+        "Try again"};
+  }
   if (!gzip) return std::string(file->text());
   auto text = mesh::gunzip(file->text(), kMost);
   if (text && text->empty()) return Error{Errc::kMalformed, "gzip: nothing is packed"};

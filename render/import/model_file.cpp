@@ -33,7 +33,8 @@ Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triang
   const auto named = [&](Errc code, const std::string& why) {
     return Error{code, file.path + ": " + why};
   };
-  // Opening it takes no memory, and says what the libraries do not: that the file is too large.
+  // Mapping reads nothing, and says what the libraries do not: that the file is larger than the
+  // allowed memory.
   if (const auto whole = MappedFile::open(file.path);
       !whole && whole.error().code == Errc::kNoMemory)
     return needsMoreMemory(file.path);

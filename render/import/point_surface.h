@@ -37,7 +37,7 @@ Result<Ok> preparePoints(const char* program);
 // The features of a vertex are the means over the four nearest points, weighted by inverse
 // distance; a label is that of the nearest point. The same cloud gives the same mesh. Errors:
 // kMalformed (fewer than ten points, or points at only a few positions), kUnsupported (nothing is
-// left after trimming; or the library's own reason), kIo (not enough memory).
+// left after trimming; or the library's own reason), kNoMemory.
 Result<PointSurface> surfaceOf(const points::PointCloud& cloud, points::SurfaceSettings said,
                                const OnSurfaceProgress& on_progress);
 

@@ -365,7 +365,7 @@ TEST_F(TexturedObj, FindsFilesWhoseNamesDifferInCapitals) {
   EXPECT_EQ(std::string(loaded.mesh.texture.begin(), loaded.mesh.texture.end()),
             test::readText(dir_ / "Skins/Four.png"));
   EXPECT_EQ(notesOf(loaded),
-            Names{"a.mtl: is read in place of A.MTL, which is not there and differs only in "
+            Names{"a.mtl: is taken for A.MTL, which is not there; the names differ only in "
                   "capitals; the same holds for 1 more"});
   const auto size = mesh::meshFileSize(dir_ / "a.obj");
   ASSERT_TRUE(size);
@@ -399,7 +399,7 @@ TEST_F(TexturedObj, MayBeAPlyWhosePictureDiffersInCapitals) {
   ASSERT_TRUE(loaded) << loaded.error().what;
   EXPECT_FALSE(loaded->mesh.texture.empty());
   EXPECT_EQ(notesOf(*loaded),
-            Names{"four.png: is read in place of FOUR.PNG, which is not there and "
+            Names{"four.png: is taken for FOUR.PNG, which is not there; the names "
                   "differs only in capitals"});
   EXPECT_EQ(mesh::meshFileSize(dir_ / "a.ply")->pictures, Names{dir_ / "four.png"});
 }

@@ -18,7 +18,7 @@ template <typename T>
 void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const std::string& what) {
   const std::uint64_t to = channel.count();
   std::optional<std::uint32_t> last;
-  for (std::uint64_t n = std::max(from, to > 200 ? to - 200 : 0); n < to; ++n) {
+  for (std::uint64_t n = std::max(from, to > 100 ? to - 100 : 0); n < to; ++n) {
     const auto sample = channel.at(n);
     ASSERT_TRUE(sample) << what;
     EXPECT_TRUE(!last || sample->counter == *last + 1) << what;

@@ -280,8 +280,8 @@ TEST_F(ModelImport, ATextureIsFoundWhoseNameDiffersInCapitals) {
   std::string model = threeDsWithPicture(1, "MAPS\\T.PNG");
   const auto found = report("a.3ds", model);
   EXPECT_GT(found["texture_bytes"], 60) << found;
-  EXPECT_NE(found["notes"].dump().find("/Maps/T.png: is read in place of MAPS/T.PNG, which is not "
-                                       "there and differs only in capitals\""),
+  EXPECT_NE(found["notes"].dump().find("/Maps/T.png: is taken for MAPS/T.PNG, which is not "
+                                       "there; the names differ only in capitals\""),
             std::string::npos)
       << found["notes"];
   ASSERT_TRUE(render::image::writePng(dir_ / "T.PNG", 1, 1, red));

@@ -295,7 +295,11 @@ class PulledDevices : public testing::Test {
     victim.unplug();
     EXPECT_TRUE(m_->healthIs(victim.name(), HealthState::kAbsent)) << where;
     std::map<std::string, std::uint64_t> from;
-    for (const auto& plug : plugs_) from[plug->name()] = count(plug->name());
+    std::map<std::string, std::uint64_t> reconnects;
+    for (const auto& plug : plugs_) {
+      from[plug->name()] = count(plug->name());
+      reconnects[plug->name()] = m_->health(plug->name())->reconnects;
+    }
     victim.plug(state);
     EXPECT_TRUE(eventually([&] {
       if (stateOf(victim) == HealthState::kOpening) victim.opened();
@@ -311,6 +315,8 @@ class PulledDevices : public testing::Test {
           << other->name() << " while " << where << " is pulled";
       EXPECT_TRUE(m_->healthIs(other->name(), HealthState::kOk)) << other->name() << ", " << where;
       expectContiguous(*m_->devices(), other->name(), from[other->name()]);
+      EXPECT_EQ(m_->health(other->name())->reconnects, reconnects[other->name()])
+          << other->name() << ", " << where;
     }
   }
 

@@ -101,6 +101,9 @@ TEST(DaemonsUnits, SayWhatTheDaemonReliesOn) {
       << "the displays are black while the wall is restarted";
   EXPECT_EQ(wall.find("\nMemoryDenyWriteExecute=yes"), std::string::npos)
       << "llvmpipe dies with it";
+  EXPECT_NE(wall.find("\nMemoryMax=80%\nOOMScoreAdjust=300\n"), std::string::npos);
+  EXPECT_NE(devices.find("\nOOMScoreAdjust=-300\n"), std::string::npos)
+      << "the wall's process is to end first";
 }
 
 // Other people's programs run under this unit, and it has to report faults of the start.

@@ -44,6 +44,9 @@ def setUpModule(modules=()):
         tearDownModule()
         print(f"test-vm: skipped: {missing}")
         raise unittest.SkipTest(str(missing)) from missing
+    except BaseException:
+        tearDownModule()  # unittest does not call it then
+        raise
     MACHINE.run(f"PATH=$PATH:{OPTIONS.bin} HOME=/run; export PATH HOME\n"
                 "mkfifo /run/log; exec 4<>/run/log; cat <&4 >/dev/ttyS0 &\n"
                 "mkfifo /run/input; exec 5<>/run/input")

@@ -161,16 +161,22 @@ int run(const std::string& card, const std::string& connector, const std::string
     std::vector<render::out::DrawPlace> places;
     for (const auto& place : displays.beginDrawing(0))
       places.push_back({place.buffer, place.x, place.y});
-    if (places.size() != 1) return std::fprintf(stderr, "%s\n", displays.fault(0).c_str()), 1;
+    if (places.size() != 1 || !places[0].buffer) {
+      std::fprintf(stderr, "draw_display: nothing to draw into: %s\n", displays.fault(0).c_str());
+      return 1;
+    }
     used.insert(places[0].buffer.get());
     const render::out::Signal signal = drawn.draw({kWidth, kHeight, pixels}, places);
     const auto meant = digestOf(signal);
     const auto shown =
         displays.present(0, signal.drawn ? std::span<const std::uint8_t>() : signal.pixels,
                          static_cast<std::uint64_t>(n) + 1);
-    for (int i = 0; i < 3; ++i) displays.step(std::chrono::milliseconds(50));
-    const auto read = displays.readBack(0);
-    const bool same = read && read->size() == 1 && read->front().found.digest == meant;
+    bool same = false;  // the emulated machine may need several steps until the display has it
+    for (int i = 0; i < 200 && !same; ++i) {
+      displays.step(std::chrono::milliseconds(50));
+      const auto read = displays.readBack(0);
+      same = read && read->size() == 1 && read->front().found.digest == meant;
+    }
     write(fmt::format("{}/{}.ppm", folder, n), on_cpu.apply({kWidth, kHeight, pixels}));
     fmt::print("frame {}: {}, {}, read back {}; {} buffers, {} imports{}\n", n,
                signal.drawn ? "drawn" : "copied: " + pass.scanOut().fault,

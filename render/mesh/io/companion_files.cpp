@@ -126,9 +126,8 @@ std::string CompanionFinder::note() const {
   const std::string others = other_.size() == 1
                                  ? std::string()
                                  : fmt::format("; the same holds for {} more", other_.size() - 1);
-  return fmt::format(
-      "{}: is read in place of {}, which is not there and differs only in capitals{}", found,
-      named.substr(folder_.size()), others);
+  return fmt::format("{}: is taken for {}, which is not there; the names differ only in capitals{}",
+                     found, named.substr(folder_.size()), others);
 }
 
 std::string plainName(const std::string& path) {

@@ -94,7 +94,7 @@ def other_user(attacked, end):
     knock = ("import errno, os, socket, sys, time\n"
              f"os.setgroups([]); os.setgid({OTHER_USER}); os.setuid({OTHER_USER})\n"
              "tries, opened, others, end = 0, 0, 0, float(sys.argv[2])\n"
-             "while time.monotonic() < end:\n"
+             "while tries == 0 or time.monotonic() < end:\n"
              "    s = socket.socket(socket.AF_UNIX)\n"
              "    error = s.connect_ex(sys.argv[1])\n"
              "    opened += error == 0; others = others or error * (error not in (0, errno.EACCES))\n"
