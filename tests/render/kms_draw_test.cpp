@@ -107,6 +107,30 @@ TEST_F(KmsDrawTest, WhatIsShownOrOnItsWayIsNeverDrawnInto) {
   EXPECT_EQ(drawn.size(), 3U);
 }
 
+// Drawing takes back the picture that waits. The one that waits on the other display belongs to the
+// same frame.
+TEST_F(KmsDrawTest, NoDisplayChangesAloneWhileAPictureIsDrawnForAnother) {
+  add();
+  bench_.answers_flips = false;
+  present(1);
+  step();
+  present(2);  // waits on both displays
+  ASSERT_EQ(bench_.commits.size(), 1U);
+  const auto places = displays_.beginDrawing(0);
+  bench_.flips = {{21, clock_.now()}, {22, clock_.now()}};
+  step();
+  step();
+  EXPECT_EQ(bench_.commits.size(), 1U);
+  draw(places.at(0), 3);
+  ASSERT_TRUE(displays_.present(0, {}, ++sequence_));
+  step();
+  EXPECT_EQ(bench_.commits.size(), 1U);
+  ASSERT_TRUE(displays_.present(1, picture(3), sequence_));
+  step();
+  ASSERT_EQ(bench_.commits.size(), 2U);
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 3}, {22, 3}}));
+}
+
 TEST_F(KmsDrawTest, ASmallerPictureIsDrawnInTheMiddle) {
   add("1024x768");
   const auto places = displays_.beginDrawing(0);

@@ -69,6 +69,7 @@ std::vector<Displays::DrawPlace> Displays::beginDrawing(std::size_t i) {
     const Corner corner = middle(write->width, write->height, mode.width, mode.height);
     places.push_back({write->place->buffers[write->buffer]->shared(), corner.x, corner.y});
     begun_.push_back(*write);
+    whole_ = false;  // what waits on the other displays is not to be shown without this one
   }
   return places;
 }
