@@ -293,6 +293,25 @@ TEST_F(Delivered, ACorrectionThatCanDrawDrawsWhereTheOutputShowsIt) {
   EXPECT_TRUE(fakes_[0]->was_drawn);
 }
 
+// Another thread's wish for a signal may end while the signal is made.
+struct WatcherThatIsAskedOnce final : frame::SignalWatcher {
+  bool wants(std::size_t i) const override { return i == 0 && times_asked++ == 0; }
+  void see(std::size_t, const out::Signal& signal, const out::FrameInfo&) override {
+    seen_drawn = signal.drawn;
+  }
+  mutable int times_asked = 0;
+  std::optional<bool> seen_drawn;
+};
+
+TEST_F(Delivered, WhoeverSeesASignalSeesAllOfItAlsoIfNobodyWantsItAnyMore) {
+  WatcherThatIsAskedOnce watcher;
+  deliverWith(std::make_unique<Drawn>(true), &watcher);
+  fakes_[0]->places.resize(1);
+  shown();
+  EXPECT_EQ(watcher.seen_drawn, false);
+  EXPECT_EQ(watcher.times_asked, 1);
+}
+
 TEST_F(Delivered, NothingIsBegunForACorrectionThatCannotDrawOrAFrameThatIsLeftOut) {
   auto made = std::make_unique<Drawn>(false);
   Drawn& correction = *made;
