@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -201,6 +202,10 @@ class LendingContext final : public gl::GlContext {
       forward(count, which);
     };
     deleted.clear();
+    reset_status = GL_NO_ERROR;
+    api_.GetGraphicsResetStatus = []() -> GLenum {
+      return std::exchange(reset_status, GL_NO_ERROR);  // a reset is reported once
+    };
   }
   Result<std::unique_ptr<GlContext>> makeFurther() const override {
     return Error{Errc::kUnsupported, "one is enough"};
@@ -238,6 +243,7 @@ class LendingContext final : public gl::GlContext {
   mutable int imports = 0;
   mutable std::map<const DmaBuf*, GLuint> names;  // of the renderbuffers
   static inline std::set<GLuint> deleted;
+  static inline GLenum reset_status = GL_NO_ERROR;
 
  private:
   static inline PFNGLDELETERENDERBUFFERSPROC forward = nullptr;
@@ -337,6 +343,23 @@ TEST_P(ShaderInto, WhatItCannotDrawIntoIsCopiedAndTheReasonTold) {
   const out::DrawPlace unshared[] = {{nullptr, 0, 0}};
   EXPECT_FALSE(correction.draw(source_, unshared).drawn);
   EXPECT_NE(pass_.scanOut().fault.find("does not share"), std::string::npos);
+}
+
+// After a reset no call fails, and none has an effect: the memory holds what it held before.
+TEST_P(ShaderInto, AfterAResetOfTheGpuTheCpuComputesTheSignal) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  correct::OutputCorrection cpu(mapOf(test::everything()), 1);
+  const auto expected = signalOf(cpu, picture_);
+  const out::DrawPlace places[] = {{memory(kWidth, kHeight), 0, 0}};
+  ASSERT_TRUE(correction.draw(source_, places).drawn);
+  LendingContext::reset_status = GL_INNOCENT_CONTEXT_RESET;
+  const out::Signal signal = correction.draw(source_, places);
+  EXPECT_FALSE(signal.drawn);
+  EXPECT_EQ(std::vector(signal.pixels.begin(), signal.pixels.end()), expected);
+  const auto map = std::make_shared<const CorrectionMap>(mapOf(test::everything()));
+  std::vector<std::uint8_t> there(picture_.size());
+  EXPECT_FALSE(pass_.run(map, picture_, there));
+  EXPECT_TRUE(lending_->wasReset()) << "the wall, which asks later, ends its process";
 }
 
 TEST_P(ShaderInto, NothingIsDrawnIntoADisplaysMemoryUnlessAllowed) {

@@ -237,7 +237,7 @@ bool ShaderPass::run(const std::shared_ptr<const CorrectionMap>& map,
   tables->textures[kPicture].write(picture.data());
   drawAt(tables->signal, 0, 0, *tables, *map);
   tables->signal.read(signal.data(), map->width);
-  return true;
+  return !context_->wasReset();  // after a reset nothing is drawn, and no call fails
 }
 
 bool ShaderPass::draw(const std::shared_ptr<const CorrectionMap>& map,
@@ -257,6 +257,7 @@ bool ShaderPass::draw(const std::shared_ptr<const CorrectionMap>& map,
   readRows(*targets.front(), places.front(), map->width, rows, signal);
   // The display's card need not know when a GPU has finished, so nothing is handed over before.
   gl_->Finish();
+  if (context_->wasReset()) return false;
   tell(true, "");
   return true;
 }

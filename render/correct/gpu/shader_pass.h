@@ -58,7 +58,8 @@ class ShaderPass final : public CorrectionPass {
   ScanOutReport scanOut() const;
 
   // Why run() last returned false although it is on, for example because an output is larger than
-  // OpenGL's textures; empty: it has not. Thread-safe.
+  // OpenGL's textures; empty: it has not, unless the GPU was reset (GlContext::wasReset()).
+  // Thread-safe.
   std::string fault() const;
 
  private:
