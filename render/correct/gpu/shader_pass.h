@@ -48,8 +48,10 @@ class ShaderPass final : public CorrectionPass {
            std::span<std::uint8_t> signal) override;
 
   bool canDraw() const override { return gl_ && draws_; }
-  // The first call with a buffer imports it; buffers that nobody holds any more are released. A
-  // buffer that the context refuses is not tried again.
+  // The first call with a buffer imports it, and compares what was drawn there with what is drawn
+  // elsewhere, which costs two read-backs; so do the next calls as long as the signal is black.
+  // Buffers that nobody holds any more are released, by run() too. A buffer that the context
+  // refuses, or that held another picture, is not tried again.
   bool draw(const std::shared_ptr<const CorrectionMap>& map, std::span<const std::uint8_t> picture,
             std::span<const out::DrawPlace> places, std::span<const int> rows,
             std::span<std::uint8_t> signal) override;
@@ -69,15 +71,19 @@ class ShaderPass final : public CorrectionPass {
     std::vector<gl::DataTexture> textures;
     gl::RenderTarget signal;
   };
-  // A display's memory as a target; nothing if the context refuses it.
+  // A display's memory as a target; nothing if it was refused.
   struct Lent {
     std::weak_ptr<const DmaBuf> buffer;
     std::optional<gl::RenderTarget> target{};
+    bool is_right = false;  // a picture that was drawn there was the one that was meant
   };
   Result<Tables> makeTables(const std::shared_ptr<const CorrectionMap>& map) const;
   Result<Tables*> tablesOf(const std::shared_ptr<const CorrectionMap>& map);
   Tables* tablesUnlessRefused(const std::shared_ptr<const CorrectionMap>& map);
-  const gl::RenderTarget* targetOf(const std::shared_ptr<const DmaBuf>& buffer);
+  void releaseUnheld();
+  Lent* lentOf(const std::shared_ptr<const DmaBuf>& buffer);
+  bool isDrawnRight(Lent& lent, const out::DrawPlace& place, const Tables& tables,
+                    const CorrectionMap& map);
   void setLight(const Light& light) const;
   void drawAt(const gl::RenderTarget& target, int x, int y, const Tables& tables,
               const CorrectionMap& map) const;
