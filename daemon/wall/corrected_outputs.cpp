@@ -131,6 +131,12 @@ void CorrectedOutputs::makeSignals() {
                                           parts_.generation, parts_.clock);
 }
 
+ScanOutReport CorrectedOutputs::scanOut() const {
+  std::string fault = shader_pass_.drawFault();
+  if (fault.empty()) fault = outputs_.copyReason();
+  return {outputs_.draws(), std::move(fault)};
+}
+
 void CorrectedOutputs::close() {
   checks_.reset();
   outputs_ = render::out::OutputSet({});

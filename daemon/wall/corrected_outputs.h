@@ -27,6 +27,12 @@
 
 namespace merlin::wall {
 
+// How signals that the GPU corrects come to the displays.
+struct ScanOutReport {
+  bool drawn = false;   // at least one output's last signal was drawn into the memory that it shows
+  std::string fault{};  // why one is copied that might be drawn; empty: none is
+};
+
 // All that is referred to outlives CorrectedOutputs.
 struct CorrectedOutputsParts {
   const Settings& settings;  // `wall` is drawnWall() of the configured one
@@ -42,7 +48,7 @@ struct CorrectedOutputsParts {
 };
 
 // Thread-bound to the wall's thread once that runs, but for aligner(), whose members are
-// thread-safe, signals() and uncorrected().
+// thread-safe, signals(), uncorrected() and scanOut().
 class CorrectedOutputs {
  public:
   // Opens the outputs. If any is of kind kms, this must precede the creation of every drawing
@@ -65,6 +71,8 @@ class CorrectedOutputs {
     return std::move(corrections_);
   }
   render::correct::ShaderPass& shaderPass() { return shader_pass_; }
+  // Thread-safe until close().
+  ScanOutReport scanOut() const;
 
   Aligner& aligner() { return *aligner_; }
   SignalTaps& signals() { return *signals_; }

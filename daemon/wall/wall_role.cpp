@@ -137,10 +137,10 @@ void WallRole::tellIfEmpty(Timestamp now) {
 
 // Logs when signals begin to be drawn into displays' memory, and why they cannot be.
 void WallRole::tellScanOut() {
-  const render::correct::ScanOutReport now = outputs_->shaderPass().scanOut();
+  const ScanOutReport now = outputs_->scanOut();
   if (now.drawn && !told_scan_out_.drawn)
     logInfo("signals are drawn into the memory that their displays show");
-  if (now.fault != told_scan_out_.fault)
+  if (now.fault != told_scan_out_.fault && !now.fault.empty())
     logInfo("signals are read back and copied to a display: {}", now.fault);
   told_scan_out_ = {now.drawn || told_scan_out_.drawn, now.fault};
 }
@@ -283,7 +283,7 @@ std::optional<RendererReport> WallRole::renderer() const {
   std::optional<RendererReport> report = renderer_;
   if (!report || !report->corrects) return report;
   report->correction_fault = outputs_->shaderPass().fault();
-  report->scan_out = outputs_->shaderPass().scanOut();
+  report->scan_out = outputs_->scanOut();
   return report;
 }
 

@@ -22,6 +22,7 @@ class KmsOutput final : public Output {
       places.push_back({std::move(place.buffer), place.x, place.y});
     return places;
   }
+  std::string copyReason() const override { return worker_->displays().copyReason(number_); }
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override {
     worker_->start();
     const auto pixels = signal.drawn ? std::span<const std::uint8_t>() : signal.pixels;

@@ -47,8 +47,8 @@ struct DisplayReading {
   std::string programs{};  // that may have drawn a foreign picture, "Xorg (812)"; empty: unknown
 };
 
-// Thread-bound to the wall's thread, except mend(), wantsFrame(), vblank(), readBack() and
-// showAgain().
+// Thread-bound to the wall's thread, except mend(), wantsFrame(), vblank(), readBack(), showAgain()
+// and copyReason().
 class Output {
  public:
   virtual ~Output() = default;
@@ -62,6 +62,10 @@ class Output {
   // drawing has finished, when present() is called; a signal that is not drawn is copied, and the
   // output may return no place from then on. Empty: it copies. None of these buffers is shown.
   virtual std::vector<DrawPlace> beginDrawing() { return {}; }
+
+  // Why signals are copied to a display of the output although somebody could draw them, for a
+  // person; empty: they are not, or the reason is not the output's. Thread-safe.
+  virtual std::string copyReason() const { return {}; }
 
   // Takes the frame and copies what it keeps. Takes bounded time: it never waits for a reader, an
   // encoder or a disk; a slow output has its own thread. Returns when the frame was or will be

@@ -308,8 +308,7 @@ TEST_P(ShaderInto, DrawsIntoEachPlaceWhatItWouldReturn) {
   EXPECT_TRUE(signal.drawn);
   EXPECT_EQ(partOf(*places[0].buffer, 0, 0), expected);
   EXPECT_EQ(partOf(*places[1].buffer, 17, 9), expected);
-  EXPECT_TRUE(pass_.scanOut().drawn);
-  EXPECT_EQ(pass_.scanOut().fault, "");
+  EXPECT_EQ(pass_.drawFault(), "");
 }
 
 // The picture is judged by these rows, which are read from the memory that the display shows.
@@ -362,11 +361,30 @@ TEST_P(ShaderInto, WhatItCannotDrawIntoIsCopiedAndTheReasonTold) {
     EXPECT_EQ(std::vector(signal.pixels.begin(), signal.pixels.end()), expected);
   }
   EXPECT_EQ(lending_->imports, 1) << "it is not tried again";
-  EXPECT_FALSE(pass_.scanOut().drawn);
-  EXPECT_EQ(pass_.scanOut().fault, "another GPU's memory");
+  EXPECT_EQ(pass_.drawFault(), "another GPU's memory");
   const out::DrawPlace unshared[] = {{nullptr, 0, 0}};
   EXPECT_FALSE(correction.draw(source_, unshared).drawn);
-  EXPECT_NE(pass_.scanOut().fault.find("does not share"), std::string::npos);
+}
+
+TEST_P(ShaderInto, AFaultIsToldAsLongAsTheDisplayHasTheMemoryThatWasRefused) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  std::vector<out::DrawPlace> first(1, {memory(kWidth, kHeight), 0, 0});
+  const out::DrawPlace second[] = {{memory(kWidth, kHeight), 0, 0}};
+  lending_->refuses = true;
+  EXPECT_FALSE(correction.draw(source_, first).drawn);
+  lending_->refuses = false;
+  EXPECT_TRUE(correction.draw(source_, second).drawn);
+  EXPECT_EQ(pass_.drawFault(), "another GPU's memory") << "the first display is still copied to";
+  first.assign(1, {memory(kWidth, kHeight), 0, 0});
+  EXPECT_TRUE(correction.draw(source_, first).drawn);
+  EXPECT_EQ(pass_.drawFault(), "");
+
+  lending_->refuses = true;
+  first.assign(1, {memory(kWidth, kHeight), 0, 0});
+  EXPECT_FALSE(correction.draw(source_, first).drawn);
+  EXPECT_NE(pass_.drawFault(), "");
+  pass_.end();
+  EXPECT_EQ(pass_.drawFault(), "");
 }
 
 // The rows that are read back cannot tell it: they come from that memory, too.
@@ -383,7 +401,7 @@ TEST_P(ShaderInto, AnotherPictureThanWasDrawnIsNotShown) {
     EXPECT_FALSE(signal.drawn);
     EXPECT_EQ(std::vector(signal.pixels.begin(), signal.pixels.end()), expected);
   }
-  EXPECT_NE(pass_.scanOut().fault.find("another picture"), std::string::npos);
+  EXPECT_NE(pass_.drawFault().find("another picture"), std::string::npos);
   EXPECT_EQ(lending_->imports, 2) << "it is not tried again";
   EXPECT_TRUE(correction.draw(source_, {&right, 1}).drawn) << "the other display is right";
 }
@@ -425,7 +443,7 @@ TEST_P(ShaderInto, NothingIsDrawnIntoADisplaysMemoryUnlessAllowed) {
   const out::DrawPlace places[] = {{memory(kWidth, kHeight), 0, 0}};
   EXPECT_FALSE(correction.draw(source_, places).drawn);
   EXPECT_EQ(lending_->imports, 0);
-  EXPECT_EQ(pass_.scanOut().fault, "");
+  EXPECT_EQ(pass_.drawFault(), "");
   correct::OutputCorrection on_cpu(mapOf(test::everything()), 1);
   EXPECT_FALSE(on_cpu.canDraw());
 }

@@ -159,6 +159,9 @@ TEST_F(KmsDrawTest, MemoryThatIsNotSharedIsAPlaceWithoutABuffer) {
   const auto places = displays_.beginDrawing(0);
   ASSERT_EQ(places.size(), 1U);
   EXPECT_EQ(places[0].buffer, nullptr);
+  EXPECT_EQ(displays_.copyReason(0),
+            "A-1: the driver of the display's card does not share the memory that is displayed");
+  EXPECT_EQ(displays_.copyReason(1), "") << "nobody wanted to draw there";
   ASSERT_TRUE(displays_.present(0, picture(3), 1));
   ASSERT_TRUE(displays_.present(1, picture(3), 1));
   step();
@@ -185,18 +188,38 @@ TEST_F(KmsDrawTest, APictureThatIsNotDrawnIsCopiedAndSoAreTheNextOnes) {
   bench_.connectors[0].modes = {mode(640, 480, 60.2)};
   secondLater();
   EXPECT_EQ(present(6).size(), 1U) << "another display has other memory";
+
+  displays_.showAgain(0);
+  step();
+  EXPECT_NE(displays_.copyReason(0), "");
+  bench_.connectors[0].modes = {mode(640, 480, 60.1)};
+  secondLater();
+  EXPECT_EQ(displays_.copyReason(0), "") << "that was the memory before";
 }
 
 TEST_F(KmsDrawTest, ADisplayThatWasFoundToShowSomethingElseIsCopiedTo) {
   add();
   present(1);
   step();
+  EXPECT_EQ(displays_.copyReason(0), "");
   displays_.showAgain(0);
   step();
   EXPECT_TRUE(present(2).empty());
   step();
   EXPECT_EQ(bench_.shown[21], 2);
+  EXPECT_EQ(displays_.copyReason(0),
+            "A-1: pictures are copied since the checks found another picture on it");
   EXPECT_EQ(displays_.beginDrawing(1).size(), 1U) << "the other output was right";
+}
+
+// Nobody has drawn there, so that nobody need know why it is copied to.
+TEST_F(KmsDrawTest, ADisplayThatWasAlwaysCopiedToIsSoForNoReason) {
+  add();
+  present(1);
+  step();
+  displays_.showAgain(1);
+  step();
+  EXPECT_EQ(displays_.copyReason(1), "");
 }
 
 TEST_F(KmsDrawTest, NothingIsDrawnForADisplayThatShowsNoFrames) {

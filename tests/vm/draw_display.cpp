@@ -173,7 +173,7 @@ int run(const std::string& card, const std::string& connector, const std::string
     const bool same = read && read->size() == 1 && read->front().found.digest == meant;
     write(fmt::format("{}/{}.ppm", folder, n), on_cpu.apply({kWidth, kHeight, pixels}));
     fmt::print("frame {}: {}, {}, read back {}; {} buffers, {} imports{}\n", n,
-               signal.drawn ? "drawn" : "copied: " + pass.scanOut().fault,
+               signal.drawn ? "drawn" : "copied: " + pass.drawFault() + displays.copyReason(0),
                shown && *shown ? "shown" : "not shown", same ? "as meant" : "otherwise",
                used.size(), context->imports,
                places[0].buffer->device == deviceFolder(kRenderNode)

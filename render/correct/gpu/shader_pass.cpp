@@ -138,6 +138,7 @@ void ShaderPass::end() {
   tables_.clear();
   refused_.clear();
   lent_.clear();
+  tellDrawFault();
   row_reader_.reset();
   gl_->DeleteProgram(program_);
   gl_->DeleteVertexArrays(1, &vertices_);
@@ -149,16 +150,16 @@ std::string ShaderPass::fault() const {
   return fault_;
 }
 
-ScanOutReport ShaderPass::scanOut() const {
+std::string ShaderPass::drawFault() const {
   const std::lock_guard lock(mutex_);
-  return scan_out_;
+  return draw_fault_;
 }
 
-// `fault`: empty if there is no new one.
-void ShaderPass::tell(bool drawn, const std::string& fault) {
+// Called when the buffers, or what is known of them, have changed.
+void ShaderPass::tellDrawFault() {
+  const auto refused = std::ranges::find_if(lent_, [](const Lent& l) { return !l.fault.empty(); });
   const std::lock_guard lock(mutex_);
-  scan_out_.drawn = drawn;
-  if (!fault.empty()) scan_out_.fault = fault;
+  draw_fault_ = refused == lent_.end() ? std::string() : refused->fault;
 }
 
 Result<ShaderPass::Tables> ShaderPass::makeTables(
@@ -223,15 +224,12 @@ ShaderPass::Tables* ShaderPass::tablesUnlessRefused(
 }
 
 void ShaderPass::releaseUnheld() {
-  lent_.remove_if([](const Lent& l) { return l.buffer.expired(); });
+  if (lent_.remove_if([](const Lent& l) { return l.buffer.expired(); }) > 0) tellDrawFault();
 }
 
-// Returns null if this buffer was refused, now or before.
+// Returns null if this buffer was refused, now or before, or is null.
 ShaderPass::Lent* ShaderPass::lentOf(const std::shared_ptr<const DmaBuf>& buffer) {
-  if (!buffer) {
-    tell(false, "the driver of the display's card does not share the memory that is displayed");
-    return nullptr;
-  }
+  if (!buffer) return nullptr;
   auto lent = std::ranges::find_if(lent_, [&](const Lent& l) { return isOf(l.buffer, buffer); });
   if (lent == lent_.end()) {
     lent = lent_.insert(lent_.end(), {buffer});
@@ -239,7 +237,8 @@ ShaderPass::Lent* ShaderPass::lentOf(const std::shared_ptr<const DmaBuf>& buffer
     if (target)
       lent->target.emplace(*std::move(target));
     else
-      tell(false, target.error().what);
+      lent->fault = target.error().what;
+    tellDrawFault();
   }
   return lent->target ? &*lent : nullptr;
 }
@@ -258,7 +257,8 @@ bool ShaderPass::isDrawnRight(Lent& lent, const out::DrawPlace& place, const Tab
   const Comparison comparison = comparisonOf(meant, map.width, found, place);
   if (!comparison.same) {
     lent.target.reset();
-    tell(false, "the driver has drawn another picture into the display's memory than was meant");
+    lent.fault = "the driver has drawn another picture into the display's memory than was meant";
+    tellDrawFault();
     return false;
   }
   // New memory is black, so that a black picture proves nothing.
@@ -314,7 +314,6 @@ bool ShaderPass::draw(const std::shared_ptr<const CorrectionMap>& map,
   if (context_->wasReset()) return false;
   for (std::size_t i = 0; i < lent.size(); ++i)
     if (!lent[i]->is_right && !isDrawnRight(*lent[i], places[i], *tables, *map)) return false;
-  tell(true, "");
   return true;
 }
 

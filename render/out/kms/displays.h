@@ -55,6 +55,11 @@ class Displays {
   };
   std::vector<DrawPlace> beginDrawing(std::size_t i);
 
+  // Why pictures are copied to a display of output i that takes part in commits, with the display's
+  // name: the card's driver does not share its memory, or showAgain() was called after a picture
+  // had been drawn there. Empty: neither is so.
+  std::string copyReason(std::size_t i) const;
+
   // Writes the picture (RGBA, rows from top to bottom without padding) of frame `sequence` into a
   // buffer of each display of output i; `rgba` empty: it is drawn into those of beginDrawing(). A
   // frame is committed when all outputs have their pictures of it. Never waits for a display. Cost:
@@ -105,7 +110,9 @@ class Displays {
     std::string name{};  // of the connector
     std::array<std::shared_ptr<Buffer>, BufferTurns::kCount> buffers{};
     BufferTurns turns{};
-    bool copies = false;  // nothing is drawn into its buffers, since a try has failed
+    bool copies = false;        // nothing is drawn into its buffers, since a try has failed
+    bool was_drawn = false;     // into one of its buffers
+    std::string copy_reason{};  // for copyReason()
   };
   struct Screen {
     KmsSettings settings{};
