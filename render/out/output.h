@@ -3,16 +3,15 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "daemon/base/clock.h"
-#include "daemon/base/dma_buf.h"
 #include "daemon/base/result.h"
 #include "render/out/frame_clock.h"
+#include "render/out/picture/draw_place.h"
 #include "render/out/picture/picture_judge.h"
 
 namespace merlin::render::out {
@@ -30,14 +29,6 @@ struct Signal {
   std::span<const std::uint8_t> pixels{};  // RGBA, rows from top to bottom, no padding
   // The picture is in the output's DrawPlaces already; of `pixels`, only digestRows() are valid.
   bool drawn = false;
-};
-
-// Where a GPU may draw an output's next signal, instead of the signal being copied there.
-struct DrawPlace {
-  // Shared, so that whoever has imported it sees when nobody uses it any more; the same object for
-  // the same memory. Null: the card's driver does not share its memory.
-  std::shared_ptr<const DmaBuf> buffer{};
-  int x = 0, y = 0;  // [px] where the signal's upper left pixel is in the buffer
 };
 
 // What one display of an output was found to show.

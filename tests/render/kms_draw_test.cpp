@@ -39,16 +39,16 @@ class KmsDrawTest : public testing::Test {
     for (std::size_t i = 2; i < pixels.size(); i += 4) pixels[i] = blue;
     return pixels;
   }
-  Id idOf(const Displays::DrawPlace& place) const {
+  Id idOf(const DrawPlace& place) const {
     return place.buffer ? bench_.buffer_of.at(place.buffer.get()) : 0;
   }
   // What a GPU does. The fourth byte is what copying leaves there, too.
-  void draw(const Displays::DrawPlace& place, std::uint8_t blue) {
+  void draw(const DrawPlace& place, std::uint8_t blue) {
     auto& bytes = *bench_.buffers.at(idOf(place));
     for (std::size_t i = 0; i < bytes.size(); i += 4) bytes[i] = blue;
   }
   // Presents a frame, drawn to output 0; returns where.
-  std::vector<Displays::DrawPlace> present(std::uint8_t blue) {
+  std::vector<DrawPlace> present(std::uint8_t blue) {
     const auto places = displays_.beginDrawing(0);
     for (const auto& place : places) draw(place, blue);
     ++sequence_;

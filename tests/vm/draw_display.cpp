@@ -158,9 +158,7 @@ int run(const std::string& card, const std::string& connector, const std::string
   std::set<const DmaBuf*> used;
   for (int n = 0; n < kFrames; ++n) {
     const std::vector<std::uint8_t> pixels = picture(n);
-    std::vector<render::out::DrawPlace> places;
-    for (const auto& place : displays.beginDrawing(0))
-      places.push_back({place.buffer, place.x, place.y});
+    const std::vector<render::out::DrawPlace> places = displays.beginDrawing(0);
     if (places.size() != 1) return std::fprintf(stderr, "%s\n", displays.fault(0).c_str()), 1;
     used.insert(places[0].buffer.get());
     const render::out::Signal signal = drawn.draw({kWidth, kHeight, pixels}, places);

@@ -19,6 +19,7 @@
 #include "render/out/kms/buffer_turns.h"
 #include "render/out/kms/card.h"
 #include "render/out/kms/settings.h"
+#include "render/out/picture/draw_place.h"
 #include "render/out/picture/picture_judge.h"
 
 namespace merlin::render::out::kms {
@@ -49,10 +50,6 @@ class Displays {
   // share it. Empty if no display takes part in commits; if a picture was copied although it might
   // have been drawn, or after showAgain(), until the display has other buffers. Called by
   // present()'s thread, which then calls present() for this output next.
-  struct DrawPlace {
-    std::shared_ptr<const DmaBuf> buffer;
-    int x = 0, y = 0;  // [px] of the picture's upper left pixel
-  };
   std::vector<DrawPlace> beginDrawing(std::size_t i);
 
   // Why pictures are copied to a display of output i that takes part in commits, with the display's

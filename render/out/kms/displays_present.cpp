@@ -54,7 +54,7 @@ void Displays::copy(std::unique_lock<std::mutex>& lock, const Write& write,
   place.turns.endWrite(write.buffer);
 }
 
-std::vector<Displays::DrawPlace> Displays::beginDrawing(std::size_t i) {
+std::vector<DrawPlace> Displays::beginDrawing(std::size_t i) {
   const std::lock_guard lock(mutex_);
   assert(begun_.empty());
   const bool copies = std::ranges::any_of(screens_, [i](const Screen& s) {
