@@ -22,6 +22,11 @@ std::string frameNameOf(const Settings& settings) {
 
 }  // namespace
 
+bool drawsIntoDisplays(const render::frame::RenderSettings& settings,
+                       const render::gl::RendererInfo& renderer) {
+  return !renderer.software && settings.scan_out == render::frame::ScanOutMode::kAuto;
+}
+
 std::string sharedFrameName(const Settings& settings) {
   const bool shared =
       std::ranges::any_of(settings.wall.outputs, [](const render::out::OutputSettings& output) {

@@ -19,6 +19,8 @@
 #include "daemon/wall/signal_taps.h"
 #include "render/correct/gpu/shader_pass.h"
 #include "render/frame/correction.h"
+#include "render/frame/settings.h"
+#include "render/gl/renderer_info.h"
 #include "render/out/kms_output.h"
 #include "render/out/output_kinds.h"
 #include "render/out/output_set.h"
@@ -105,6 +107,11 @@ class CorrectedOutputs {
   std::unique_ptr<Aligner> aligner_;  // replaces corrections
   render::out::WindowActs window_;
 };
+
+// Whether signals that this renderer corrects are drawn into displays' memory where that is
+// possible. Pure.
+bool drawsIntoDisplays(const render::frame::RenderSettings& settings,
+                       const render::gl::RendererInfo& renderer);
 
 // Name of the shared-memory object that the frame is in, if an output of kind shared_memory shows
 // it; empty otherwise.

@@ -265,8 +265,7 @@ void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
   RendererReport report{contexts.own->info(), contexts.other ? 2 : 1, contexts.asynchronous};
   const Place place = settings_.wall.render.correction;
   if (place == Place::kGpu || (place == Place::kAuto && !report.info.software)) {
-    const bool draws = !report.info.software &&
-                       settings_.wall.render.scan_out == render::frame::ScanOutMode::kAuto;
+    const bool draws = drawsIntoDisplays(settings_.wall.render, report.info);
     const auto begun = outputs_->shaderPass().begin(*contexts.own, draws);
     report.corrects = begun.ok();
     if (!begun) {

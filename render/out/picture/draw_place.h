@@ -1,5 +1,5 @@
-// DrawPlace: where a GPU may draw the next picture of a display, instead of the picture being copied
-// there.
+// DrawPlace: where a GPU may draw the next picture of a display, instead of the picture being
+// copied there.
 #pragma once
 
 #include <memory>
