@@ -244,8 +244,9 @@ ShaderPass::Lent* ShaderPass::lentOf(const std::shared_ptr<const DmaBuf>& buffer
 }
 
 // Compares what was drawn into a display's memory with what the shader draws elsewhere, since a
-// driver may import the memory and draw into a copy of it, or nothing. Refuses the memory if they
-// differ.
+// driver may import the memory and draw nothing there, or something else. Refuses the memory if
+// they differ. That a driver has drawn into a copy of the memory is for the checks of the picture
+// to find, which read the memory as the display does.
 bool ShaderPass::isDrawnRight(Lent& lent, const out::DrawPlace& place, const Tables& tables,
                               const CorrectionMap& map) {
   std::vector<std::uint8_t> meant(bytesOf(map.width, map.height));
