@@ -22,6 +22,11 @@ std::string frameNameOf(const Settings& settings) {
 
 }  // namespace
 
+bool drawsIntoDisplays(const render::frame::RenderSettings& settings,
+                       const render::gl::RendererInfo& renderer) {
+  return !renderer.software && settings.scan_out == render::frame::ScanOutMode::kAuto;
+}
+
 std::string sharedFrameName(const Settings& settings) {
   const bool shared =
       std::ranges::any_of(settings.wall.outputs, [](const render::out::OutputSettings& output) {
@@ -129,6 +134,12 @@ void CorrectedOutputs::makeSignals() {
   }
   signals_ = std::make_unique<SignalTaps>(parts_.settings.instance, std::move(outputs),
                                           parts_.generation, parts_.clock);
+}
+
+ScanOutReport CorrectedOutputs::scanOut() const {
+  std::string fault = shader_pass_.drawFault();
+  if (fault.empty()) fault = outputs_.copyReason();
+  return {outputs_.draws(), std::move(fault)};
 }
 
 void CorrectedOutputs::close() {

@@ -19,6 +19,8 @@
 #include "daemon/wall/signal_taps.h"
 #include "render/correct/gpu/shader_pass.h"
 #include "render/frame/correction.h"
+#include "render/frame/settings.h"
+#include "render/gl/renderer_info.h"
 #include "render/out/kms_output.h"
 #include "render/out/output_kinds.h"
 #include "render/out/output_set.h"
@@ -26,6 +28,12 @@
 #include "render/tiles/tile_plan.h"
 
 namespace merlin::wall {
+
+// How signals that the GPU corrects come to the displays.
+struct ScanOutReport {
+  bool drawn = false;   // at least one output's last signal was drawn into the memory that it shows
+  std::string fault{};  // why one is copied that might be drawn; empty: none is
+};
 
 // All that is referred to outlives CorrectedOutputs.
 struct CorrectedOutputsParts {
@@ -42,7 +50,7 @@ struct CorrectedOutputsParts {
 };
 
 // Thread-bound to the wall's thread once that runs, but for aligner(), whose members are
-// thread-safe, signals() and uncorrected().
+// thread-safe, signals(), uncorrected() and scanOut().
 class CorrectedOutputs {
  public:
   // Opens the outputs. If any is of kind kms, this must precede the creation of every drawing
@@ -65,6 +73,8 @@ class CorrectedOutputs {
     return std::move(corrections_);
   }
   render::correct::ShaderPass& shaderPass() { return shader_pass_; }
+  // Thread-safe until close().
+  ScanOutReport scanOut() const;
 
   Aligner& aligner() { return *aligner_; }
   SignalTaps& signals() { return *signals_; }
@@ -97,6 +107,11 @@ class CorrectedOutputs {
   std::unique_ptr<Aligner> aligner_;  // replaces corrections
   render::out::WindowActs window_;
 };
+
+// Whether signals that this renderer corrects are drawn into displays' memory where that is
+// possible. Pure.
+bool drawsIntoDisplays(const render::frame::RenderSettings& settings,
+                       const render::gl::RendererInfo& renderer);
 
 // Name of the shared-memory object that the frame is in, if an output of kind shared_memory shows
 // it; empty otherwise.

@@ -137,10 +137,10 @@ void WallRole::tellIfEmpty(Timestamp now) {
 
 // Logs when signals begin to be drawn into displays' memory, and why they cannot be.
 void WallRole::tellScanOut() {
-  const render::correct::ScanOutReport now = outputs_->shaderPass().scanOut();
+  const ScanOutReport now = outputs_->scanOut();
   if (now.drawn && !told_scan_out_.drawn)
     logInfo("signals are drawn into the memory that their displays show");
-  if (now.fault != told_scan_out_.fault)
+  if (now.fault != told_scan_out_.fault && !now.fault.empty())
     logInfo("signals are read back and copied to a display: {}", now.fault);
   told_scan_out_ = {now.drawn || told_scan_out_.drawn, now.fault};
 }
@@ -265,8 +265,7 @@ void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
   RendererReport report{contexts.own->info(), contexts.other ? 2 : 1, contexts.asynchronous};
   const Place place = settings_.wall.render.correction;
   if (place == Place::kGpu || (place == Place::kAuto && !report.info.software)) {
-    const bool draws = !report.info.software &&
-                       settings_.wall.render.scan_out == render::frame::ScanOutMode::kAuto;
+    const bool draws = drawsIntoDisplays(settings_.wall.render, report.info);
     const auto begun = outputs_->shaderPass().begin(*contexts.own, draws);
     report.corrects = begun.ok();
     if (!begun) {
@@ -283,7 +282,7 @@ std::optional<RendererReport> WallRole::renderer() const {
   std::optional<RendererReport> report = renderer_;
   if (!report || !report->corrects) return report;
   report->correction_fault = outputs_->shaderPass().fault();
-  report->scan_out = outputs_->shaderPass().scanOut();
+  report->scan_out = outputs_->scanOut();
   return report;
 }
 

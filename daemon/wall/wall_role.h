@@ -46,7 +46,7 @@ struct RendererReport {
   // Why the renderer does not compute (all of) them although it is set to; empty: no fault.
   std::string correction_fault{};
   // How the signals that the renderer corrects come to displays; not drawn if it corrects none.
-  render::correct::ScanOutReport scan_out{};
+  ScanOutReport scan_out{};
 };
 
 class WallRole {
@@ -157,9 +157,9 @@ class WallRole {
   Clock& clock_;
   mutable std::mutex renderer_mutex_;
   std::optional<RendererReport> renderer_;
-  LastContent last_content_;                        // used by the thread of tend() only
-  bool told_empty_ = false;                         // the same
-  render::correct::ScanOutReport told_scan_out_{};  // the same
+  LastContent last_content_;       // used by the thread of tend() only
+  bool told_empty_ = false;        // the same
+  ScanOutReport told_scan_out_{};  // the same
   render::testcard::CardOverlay cards_;
   MessageBoard board_;
   Attendance attendance_;

@@ -25,9 +25,10 @@ class CorrectionPass {
   // Whether draw() may draw.
   virtual bool canDraw() const { return false; }
   // Draws the same signal into each of these places, of which there is at least one, and has
-  // finished when it returns. `rows`: those of the signal that are also written to their places in
-  // `signal`; the rest of it is undefined. Returns false if it cannot draw there; then run() is to
-  // compute the signal.
+  // finished when it returns. `picture`: the map's source size, RGBA; `signal`: width x height x 4
+  // bytes of the map; `rows`: 0 to height - 1, may repeat: those of the signal that are also
+  // written to their places in `signal`, whose rest is undefined. Returns false if it cannot draw
+  // there; then run() is to compute the signal. Waits for the GPU. Thread: that of run().
   virtual bool draw(const std::shared_ptr<const CorrectionMap>& /*map*/,
                     std::span<const std::uint8_t> /*picture*/,
                     std::span<const out::DrawPlace> /*places*/, std::span<const int> /*rows*/,

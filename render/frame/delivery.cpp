@@ -23,7 +23,7 @@ void Delivery::show(std::span<std::uint8_t> canvas, const out::FrameInfo& info,
   const out::Signal meant{plan_.frame_width, plan_.frame_height, canvas};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const bool watched = isWatched(i);
-    const out::Signal signal = signalOf(i, meant, info);
+    const out::Signal signal = signalOf(i, meant, info, watched);
     outputs_.present(i, signal, info, deadline);
     if (watched) watcher_->see(i, signal, info);
   }
@@ -32,11 +32,11 @@ void Delivery::show(std::span<std::uint8_t> canvas, const out::FrameInfo& info,
 }
 
 // A signal that is watched is needed in memory, so it is copied.
-out::Signal Delivery::signalOf(std::size_t i, const out::Signal& meant,
-                               const out::FrameInfo& info) {
+out::Signal Delivery::signalOf(std::size_t i, const out::Signal& meant, const out::FrameInfo& info,
+                               bool watched) {
   Correction* const correction = corrections_[i].get();
   if (!correction) return meant;
-  if (isWatched(i)) return correction->apply(meant);
+  if (watched) return correction->apply(meant);
   if (!outputs_.mayTake(i, info)) return {};
   if (!correction->canDraw()) return correction->apply(meant);
   const std::vector<out::DrawPlace> places = outputs_.beginDrawing(i);

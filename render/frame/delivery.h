@@ -43,7 +43,8 @@ class Delivery {
 
  private:
   bool isWatched(std::size_t i) const { return watcher_ && watcher_->wants(i); }
-  out::Signal signalOf(std::size_t i, const out::Signal& meant, const out::FrameInfo& info);
+  out::Signal signalOf(std::size_t i, const out::Signal& meant, const out::FrameInfo& info,
+                       bool watched);
 
   const tiles::TilePlan& plan_;
   out::OutputSet& outputs_;

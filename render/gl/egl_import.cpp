@@ -20,6 +20,17 @@ bool offers(EGLDisplay display, std::string_view extension) {
   return padded.find(fmt::format(" {} ", extension)) != std::string::npos;
 }
 
+// Whether the driver lists modifiers for this format of pixels. One that lists none takes memory as
+// its own kernel driver describes it.
+bool knowsModifiers(EGLDisplay display, std::uint32_t format) {
+  if (!offers(display, "EGL_EXT_image_dma_buf_import_modifiers")) return false;
+  const auto query = reinterpret_cast<PFNEGLQUERYDMABUFMODIFIERSEXTPROC>(
+      eglGetProcAddress("eglQueryDmaBufModifiersEXT"));
+  EGLint count = 0;
+  return query && query(display, static_cast<EGLint>(format), 0, nullptr, nullptr, &count) &&
+         count > 0;
+}
+
 EGLImageKHR makeImage(EGLDisplay display, const DmaBuf& buffer, bool with_modifier) {
   const auto create =
       reinterpret_cast<PFNEGLCREATEIMAGEKHRPROC>(eglGetProcAddress("eglCreateImageKHR"));
@@ -62,12 +73,8 @@ Result<RenderTarget> importTarget(void* display, const GlApi& gl, const DmaBuf& 
       reinterpret_cast<PFNEGLDESTROYIMAGEKHRPROC>(eglGetProcAddress("eglDestroyImageKHR"));
   if (!take || !destroy || !offers(display, "EGL_EXT_image_dma_buf_import"))
     return Error{Errc::kUnsupported, "the driver lacks EGL_EXT_image_dma_buf_import"};
-  EGLImageKHR image = EGL_NO_IMAGE_KHR;
-  if (offers(display, "EGL_EXT_image_dma_buf_import_modifiers"))
-    image = makeImage(display, buffer, true);
-  // Drivers that know no modifiers take memory without one as it comes from their own kernel
-  // driver.
-  if (image == EGL_NO_IMAGE_KHR) image = makeImage(display, buffer, false);
+  // A driver that refuses the modifier is not asked without: it could take rows for tiles then.
+  const EGLImageKHR image = makeImage(display, buffer, knowsModifiers(display, buffer.format));
   if (image == EGL_NO_IMAGE_KHR)
     return refused("eglCreateImage", buffer, static_cast<unsigned>(eglGetError()));
   while (gl.GetError() != GL_NO_ERROR) continue;

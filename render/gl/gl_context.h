@@ -27,9 +27,12 @@ class GlContext {
   std::string renderer() const { return info_.library + ", " + info_.name; }
 
   // Whether the GPU was reset, by a driver that gave up on it: the context and all that it holds
-  // are lost, and frames stay black. False if the driver does not report resets.
+  // are lost, and frames stay black. Stays true, since some drivers report a reset only once. False
+  // if the driver does not report resets.
   bool wasReset() const {
-    return api_.GetGraphicsResetStatus && api_.GetGraphicsResetStatus() != 0;
+    if (!was_reset_ && api_.GetGraphicsResetStatus)
+      was_reset_ = api_.GetGraphicsResetStatus() != GL_NO_ERROR;
+    return was_reset_;
   }
 
   // Creates another context by the same renderer, current on the calling thread, which must be
@@ -46,6 +49,9 @@ class GlContext {
  protected:
   GlApi api_;
   RendererInfo info_;
+
+ private:
+  mutable bool was_reset_ = false;
 };
 
 // `gpu`: as GlSettings::gpu; kAnyGpu takes the first GPU on which a context can be created, else

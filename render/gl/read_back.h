@@ -30,7 +30,7 @@ class ReadBack {
   void startRows(const RenderTarget& target, int x, int width, std::span<const int> rows);
 
   // Waits until the copy is complete and writes it to `pixels` as RenderTarget::read() does.
-  // REQUIRES: start() was called since the last finish().
+  // REQUIRES: start() or startRows() was called since the last finish().
   void finish(std::uint8_t* pixels, int stride_px);
 
  private:

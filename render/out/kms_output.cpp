@@ -17,11 +17,9 @@ class KmsOutput final : public Output {
       : worker_(std::move(worker)), number_(number) {}
 
   std::vector<DrawPlace> beginDrawing() override {
-    std::vector<DrawPlace> places;
-    for (Displays::DrawPlace& place : worker_->displays().beginDrawing(number_))
-      places.push_back({std::move(place.buffer), place.x, place.y});
-    return places;
+    return worker_->displays().beginDrawing(number_);
   }
+  std::string copyReason() const override { return worker_->displays().copyReason(number_); }
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override {
     worker_->start();
     const auto pixels = signal.drawn ? std::span<const std::uint8_t>() : signal.pixels;

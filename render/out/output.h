@@ -3,16 +3,15 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "daemon/base/clock.h"
-#include "daemon/base/dma_buf.h"
 #include "daemon/base/result.h"
 #include "render/out/frame_clock.h"
+#include "render/out/picture/draw_place.h"
 #include "render/out/picture/picture_judge.h"
 
 namespace merlin::render::out {
@@ -32,14 +31,6 @@ struct Signal {
   bool drawn = false;
 };
 
-// Where a GPU may draw an output's next signal, instead of the signal being copied there.
-struct DrawPlace {
-  // Shared, so that whoever has imported it sees when nobody uses it any more; the same object for
-  // the same memory. Null: the card's driver does not share its memory.
-  std::shared_ptr<const DmaBuf> buffer{};
-  int x = 0, y = 0;  // [px] where the signal's upper left pixel is in the buffer
-};
-
 // What one display of an output was found to show.
 struct DisplayReading {
   std::string where;  // the display, for a person: "HDMI-A-1"; empty: the output has only one
@@ -47,8 +38,8 @@ struct DisplayReading {
   std::string programs{};  // that may have drawn a foreign picture, "Xorg (812)"; empty: unknown
 };
 
-// Thread-bound to the wall's thread, except mend(), wantsFrame(), vblank(), readBack() and
-// showAgain().
+// Thread-bound to the wall's thread, except mend(), wantsFrame(), vblank(), readBack(), showAgain()
+// and copyReason().
 class Output {
  public:
   virtual ~Output() = default;
@@ -62,6 +53,10 @@ class Output {
   // drawing has finished, when present() is called; a signal that is not drawn is copied, and the
   // output may return no place from then on. Empty: it copies. None of these buffers is shown.
   virtual std::vector<DrawPlace> beginDrawing() { return {}; }
+
+  // Why signals are copied to a display of the output although somebody could draw them, for a
+  // person; empty: they are not, or the reason is not the output's. Thread-safe.
+  virtual std::string copyReason() const { return {}; }
 
   // Takes the frame and copies what it keeps. Takes bounded time: it never waits for a reader, an
   // encoder or a disk; a slow output has its own thread. Returns when the frame was or will be

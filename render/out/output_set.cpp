@@ -18,6 +18,7 @@ void OutputSet::present(std::size_t i, const Signal& signal, const FrameInfo& in
                         std::optional<Timestamp> deadline) {
   Entry& entry = entries_[i];
   if (checks_) checks_->meant(i, signal);
+  if (!signal.pixels.empty()) *entry.drawn = signal.drawn;
   const auto shown = entry.named.output->present(signal, info);
   entry.state.fault = shown ? std::string() : shown.error().what;
   if (!shown || !*shown) return;
@@ -28,6 +29,17 @@ void OutputSet::present(std::size_t i, const Signal& signal, const FrameInfo& in
   }
   entry.shown.push_back(**shown);
   while (**shown - entry.shown.front() > kSecond) entry.shown.pop_front();
+}
+
+bool OutputSet::draws() const {
+  return std::ranges::any_of(entries_, [](const Entry& entry) { return entry.drawn->load(); });
+}
+
+std::string OutputSet::copyReason() const {
+  for (const Entry& entry : entries_) {
+    if (auto reason = entry.named.output->copyReason(); !reason.empty()) return reason;
+  }
+  return {};
 }
 
 std::string OutputSet::faultNow(std::size_t i) const {

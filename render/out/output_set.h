@@ -2,6 +2,7 @@
 // each is recorded.
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -30,7 +31,7 @@ struct OutputState {
   }
 };
 
-// Thread-bound to the wall's thread, except mend() and vblank().
+// Thread-bound to the wall's thread, except mend(), vblank(), draws() and copyReason().
 class OutputSet {
  public:
   explicit OutputSet(std::vector<NamedOutput> outputs);
@@ -52,6 +53,12 @@ class OutputSet {
   std::vector<DrawPlace> beginDrawing(std::size_t i) {
     return entries_[i].named.output->beginDrawing();
   }
+
+  // Whether at least one output's last signal was drawn where it is shown (Signal::drawn).
+  // Thread-safe.
+  bool draws() const;
+  // The first output's Output::copyReason() that is not empty. Thread-safe.
+  std::string copyReason() const;
 
   bool wantsFrame(std::size_t i, Timestamp now) const {
     return entries_[i].named.output->wantsFrame(now) || (checks_ && checks_->wantsFrame(i));
@@ -82,6 +89,8 @@ class OutputSet {
     NamedOutput named;
     OutputState state;
     std::deque<Timestamp> shown;  // times of the frames of the last second
+    // Whether the last signal was drawn; an atomic that can be moved.
+    std::unique_ptr<std::atomic<bool>> drawn = std::make_unique<std::atomic<bool>>(false);
   };
   std::vector<Entry> entries_;
   PictureChecks* checks_ = nullptr;

@@ -68,6 +68,25 @@ TEST(StatusText, NamesTheContentAndWhatComesByItself) {
   EXPECT_EQ(line(), "content  skull (model); the playlist is off; a test card covers it");
 }
 
+TEST(StatusText, SaysHowCorrectedSignalsComeToTheDisplaysAndWhyTheyAreCopied) {
+  Json wall = {{"rate_asked", 30}, {"frames", 1}, {"renderer", {{"correction", "gpu"}}}};
+  const auto said = [&] {
+    const std::string table = statusTable(wall);
+    const std::size_t begin = table.find("corrections ");
+    return begin == std::string::npos ? table
+                                      : table.substr(begin, table.find('\n', begin) - begin);
+  };
+  EXPECT_EQ(said(), "corrections by a shader");
+  wall["renderer"]["scan_out"] = "drawn";
+  EXPECT_EQ(said(), "corrections by a shader, into the displays' memory");
+  wall["renderer"]["scan_out_fault"] = "another GPU's";
+  EXPECT_EQ(said(),
+            "corrections by a shader, into the displays' memory; copied to a display: another "
+            "GPU's");
+  wall["renderer"]["scan_out"] = "copied";
+  EXPECT_EQ(said(), "corrections by a shader; copied to a display: another GPU's");
+}
+
 TEST(StatusText, AFailedServiceIsNotHiddenByTheOtherRolesOfTheSameName) {
   for (const char* failed : {"devices", "wall"}) {
     Json both = Json::object();

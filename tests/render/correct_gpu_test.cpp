@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -201,11 +202,24 @@ class LendingContext final : public gl::GlContext {
       forward(count, which);
     };
     deleted.clear();
+    get_integers = api_.GetIntegerv;
+    draw_arrays = api_.DrawArrays;
+    draws_nothing_at_x = 0;
+    api_.DrawArrays = [](GLenum kind, GLint first, GLsizei count) {
+      GLint viewport[4] = {};
+      get_integers(GL_VIEWPORT, viewport);
+      if (draws_nothing_at_x == 0 || viewport[0] != draws_nothing_at_x)
+        draw_arrays(kind, first, count);
+    };
+    reset_status = GL_NO_ERROR;
+    api_.GetGraphicsResetStatus = []() -> GLenum {
+      return std::exchange(reset_status, GL_NO_ERROR);  // a reset is reported once
+    };
   }
   Result<std::unique_ptr<GlContext>> makeFurther() const override {
     return Error{Errc::kUnsupported, "one is enough"};
   }
-  // Fills the memory with blue.
+  // Fills the memory with a colour: blue.
   Result<gl::RenderTarget> importTarget(const DmaBuf& buffer) const override {
     ++imports;
     if (refuses) return Error{Errc::kUnsupported, "another GPU's memory"};
@@ -216,7 +230,7 @@ class LendingContext final : public gl::GlContext {
     auto target = gl::RenderTarget::makeOf(api_, name, buffer.width, buffer.height);
     if (!target) return target;
     target->bind();
-    api_.ClearColor(0, 0, 1, 1);
+    api_.ClearColor(0, 0, blue, 1);
     api_.Clear(GL_COLOR_BUFFER_BIT);
     return target;
   }
@@ -235,12 +249,17 @@ class LendingContext final : public gl::GlContext {
   }
 
   bool refuses = false;
+  float blue = 1;
   mutable int imports = 0;
   mutable std::map<const DmaBuf*, GLuint> names;  // of the renderbuffers
   static inline std::set<GLuint> deleted;
+  static inline GLenum reset_status = GL_NO_ERROR;
+  static inline int draws_nothing_at_x = 0;  // into memory where a signal begins in this column
 
  private:
   static inline PFNGLDELETERENDERBUFFERSPROC forward = nullptr;
+  static inline PFNGLGETINTEGERVPROC get_integers = nullptr;
+  static inline PFNGLDRAWARRAYSPROC draw_arrays = nullptr;
 };
 
 class ShaderInto : public ShaderOf {
@@ -289,8 +308,7 @@ TEST_P(ShaderInto, DrawsIntoEachPlaceWhatItWouldReturn) {
   EXPECT_TRUE(signal.drawn);
   EXPECT_EQ(partOf(*places[0].buffer, 0, 0), expected);
   EXPECT_EQ(partOf(*places[1].buffer, 17, 9), expected);
-  EXPECT_TRUE(pass_.scanOut().drawn);
-  EXPECT_EQ(pass_.scanOut().fault, "");
+  EXPECT_EQ(pass_.drawFault(), "");
 }
 
 // The picture is judged by these rows, which are read from the memory that the display shows.
@@ -321,6 +339,17 @@ TEST_P(ShaderInto, ImportsABufferOnceAndReleasesItWhenNobodyHasIt) {
   EXPECT_TRUE(std::ranges::includes(LendingContext::deleted, old));
 }
 
+TEST_P(ShaderInto, ReleasesABufferAlsoIfAllSignalsAreCopiedFromThenOn) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  std::vector<out::DrawPlace> place(1, {memory(kWidth, kHeight), 0, 0});
+  EXPECT_TRUE(correction.draw(source_, place).drawn);
+  const GLuint name = lending_->names.begin()->second;
+  place.clear();
+  EXPECT_EQ(LendingContext::deleted.count(name), 0U);
+  correction.apply(source_);
+  EXPECT_EQ(LendingContext::deleted.count(name), 1U);
+}
+
 TEST_P(ShaderInto, WhatItCannotDrawIntoIsCopiedAndTheReasonTold) {
   correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
   const auto expected = signalOf(correction, picture_);
@@ -332,11 +361,78 @@ TEST_P(ShaderInto, WhatItCannotDrawIntoIsCopiedAndTheReasonTold) {
     EXPECT_EQ(std::vector(signal.pixels.begin(), signal.pixels.end()), expected);
   }
   EXPECT_EQ(lending_->imports, 1) << "it is not tried again";
-  EXPECT_FALSE(pass_.scanOut().drawn);
-  EXPECT_EQ(pass_.scanOut().fault, "another GPU's memory");
+  EXPECT_EQ(pass_.drawFault(), "another GPU's memory");
   const out::DrawPlace unshared[] = {{nullptr, 0, 0}};
   EXPECT_FALSE(correction.draw(source_, unshared).drawn);
-  EXPECT_NE(pass_.scanOut().fault.find("does not share"), std::string::npos);
+}
+
+TEST_P(ShaderInto, AFaultIsToldAsLongAsTheDisplayHasTheMemoryThatWasRefused) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  std::vector<out::DrawPlace> first(1, {memory(kWidth, kHeight), 0, 0});
+  const out::DrawPlace second[] = {{memory(kWidth, kHeight), 0, 0}};
+  lending_->refuses = true;
+  EXPECT_FALSE(correction.draw(source_, first).drawn);
+  lending_->refuses = false;
+  EXPECT_TRUE(correction.draw(source_, second).drawn);
+  EXPECT_EQ(pass_.drawFault(), "another GPU's memory") << "the first display is still copied to";
+  first.assign(1, {memory(kWidth, kHeight), 0, 0});
+  EXPECT_TRUE(correction.draw(source_, first).drawn);
+  EXPECT_EQ(pass_.drawFault(), "");
+
+  lending_->refuses = true;
+  first.assign(1, {memory(kWidth, kHeight), 0, 0});
+  EXPECT_FALSE(correction.draw(source_, first).drawn);
+  EXPECT_NE(pass_.drawFault(), "");
+  pass_.end();
+  EXPECT_EQ(pass_.drawFault(), "");
+}
+
+// The rows that are read back cannot tell it: they come from that memory, too.
+TEST_P(ShaderInto, AnotherPictureThanWasDrawnIsNotShown) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  const auto expected = signalOf(correction, picture_);
+  const out::DrawPlace right = {memory(kWidth + 40, kHeight + 30), 16, 9};
+  const out::DrawPlace wrong = {memory(kWidth + 40, kHeight + 30), 17, 9};
+  LendingContext::draws_nothing_at_x = 17;
+  EXPECT_TRUE(correction.draw(source_, {&right, 1}).drawn);
+  const out::DrawPlace both[] = {right, wrong};
+  for (int frame = 0; frame < 2; ++frame) {
+    const out::Signal signal = correction.draw(source_, both);
+    EXPECT_FALSE(signal.drawn);
+    EXPECT_EQ(std::vector(signal.pixels.begin(), signal.pixels.end()), expected);
+  }
+  EXPECT_NE(pass_.drawFault().find("another picture"), std::string::npos);
+  EXPECT_EQ(lending_->imports, 2) << "it is not tried again";
+  EXPECT_TRUE(correction.draw(source_, {&right, 1}).drawn) << "the other display is right";
+}
+
+TEST_P(ShaderInto, ABlackPictureDoesNotProveThatTheDriverDraws) {
+  CorrectionSettings s;
+  s.corners[0] = 7;
+  correct::OutputCorrection correction(mapOf(s), 1, &pass_);
+  lending_->blue = 0;
+  LendingContext::draws_nothing_at_x = 17;
+  const out::DrawPlace places[] = {{memory(kWidth + 40, kHeight + 30), 17, 9}};
+  const auto black = test::grey(kWidth, kHeight, 0);
+  EXPECT_TRUE(correction.draw({kWidth, kHeight, black}, places).drawn);
+  EXPECT_FALSE(correction.draw(source_, places).drawn);
+}
+
+// After a reset no call fails, and none has an effect: the memory holds what it held before.
+TEST_P(ShaderInto, AfterAResetOfTheGpuTheCpuComputesTheSignal) {
+  correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
+  correct::OutputCorrection cpu(mapOf(test::everything()), 1);
+  const auto expected = signalOf(cpu, picture_);
+  const out::DrawPlace places[] = {{memory(kWidth, kHeight), 0, 0}};
+  ASSERT_TRUE(correction.draw(source_, places).drawn);
+  LendingContext::reset_status = GL_INNOCENT_CONTEXT_RESET;
+  const out::Signal signal = correction.draw(source_, places);
+  EXPECT_FALSE(signal.drawn);
+  EXPECT_EQ(std::vector(signal.pixels.begin(), signal.pixels.end()), expected);
+  const auto map = std::make_shared<const CorrectionMap>(mapOf(test::everything()));
+  std::vector<std::uint8_t> there(picture_.size());
+  EXPECT_FALSE(pass_.run(map, picture_, there));
+  EXPECT_TRUE(lending_->wasReset()) << "the wall, which asks later, ends its process";
 }
 
 TEST_P(ShaderInto, NothingIsDrawnIntoADisplaysMemoryUnlessAllowed) {
@@ -347,7 +443,7 @@ TEST_P(ShaderInto, NothingIsDrawnIntoADisplaysMemoryUnlessAllowed) {
   const out::DrawPlace places[] = {{memory(kWidth, kHeight), 0, 0}};
   EXPECT_FALSE(correction.draw(source_, places).drawn);
   EXPECT_EQ(lending_->imports, 0);
-  EXPECT_EQ(pass_.scanOut().fault, "");
+  EXPECT_EQ(pass_.drawFault(), "");
   correct::OutputCorrection on_cpu(mapOf(test::everything()), 1);
   EXPECT_FALSE(on_cpu.canDraw());
 }

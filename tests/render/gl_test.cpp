@@ -1,4 +1,6 @@
 // Tests that draw with Mesa's software renderer, through surfaceless EGL and through OSMesa.
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "render/content/model_renderer.h"
@@ -366,19 +368,23 @@ INSTANTIATE_TEST_SUITE_P(Backends, GlOf,
                            return backend.param == gl::GlBackend::kEgl ? "Egl" : "Osmesa";
                          });
 
-// Simulates a GPU context that the driver has reset.
+// Simulates a GPU context that the driver has reset, and that reports it once.
 class LostContext final : public gl::GlContext {
  public:
   LostContext() {
-    api_.GetGraphicsResetStatus = []() -> GLenum { return GL_INNOCENT_CONTEXT_RESET; };
+    status = GL_INNOCENT_CONTEXT_RESET;
+    api_.GetGraphicsResetStatus = []() -> GLenum { return std::exchange(status, GL_NO_ERROR); };
   }
+  static inline GLenum status = GL_NO_ERROR;
   Result<std::unique_ptr<GlContext>> makeFurther() const override {
     return Error{Errc::kUnsupported, "none"};
   }
 };
 
 TEST(GlContext, SaysWhetherItsGpuWasReset) {
-  EXPECT_TRUE(LostContext().wasReset());
+  const LostContext lost;
+  EXPECT_TRUE(lost.wasReset());
+  EXPECT_TRUE(lost.wasReset()) << "whoever asks next has to know it, too";
   EXPECT_FALSE((*gl::makeGlContext(gl::GlBackend::kEgl))->wasReset());
   EXPECT_FALSE((*gl::makeGlContext(gl::GlBackend::kOsmesa))->wasReset());
 }

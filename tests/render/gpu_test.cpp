@@ -147,7 +147,7 @@ TEST_F(GpuTest, DrawsIntoTheMemoryThatItsDisplaysShow) {
   correct::OutputCorrection gpu(map, 1, &pass), cpu(map, 1);
   const out::DrawPlace places[] = {{(*buffer)->shared(), kLeft, kTop}};
   const bool drawn = gpu.draw(source, places).drawn;
-  const std::string fault = pass.scanOut().fault;
+  const std::string fault = pass.drawFault();
   pass.end();
   if (!drawn) GTEST_SKIP() << "outputs are copied on this GPU: " << fault;
   const auto bytes = (*buffer)->bytes();

@@ -39,16 +39,16 @@ class KmsDrawTest : public testing::Test {
     for (std::size_t i = 2; i < pixels.size(); i += 4) pixels[i] = blue;
     return pixels;
   }
-  Id idOf(const Displays::DrawPlace& place) const {
+  Id idOf(const DrawPlace& place) const {
     return place.buffer ? bench_.buffer_of.at(place.buffer.get()) : 0;
   }
   // What a GPU does. The fourth byte is what copying leaves there, too.
-  void draw(const Displays::DrawPlace& place, std::uint8_t blue) {
+  void draw(const DrawPlace& place, std::uint8_t blue) {
     auto& bytes = *bench_.buffers.at(idOf(place));
     for (std::size_t i = 0; i < bytes.size(); i += 4) bytes[i] = blue;
   }
   // Presents a frame, drawn to output 0; returns where.
-  std::vector<Displays::DrawPlace> present(std::uint8_t blue) {
+  std::vector<DrawPlace> present(std::uint8_t blue) {
     const auto places = displays_.beginDrawing(0);
     for (const auto& place : places) draw(place, blue);
     ++sequence_;
@@ -107,6 +107,30 @@ TEST_F(KmsDrawTest, WhatIsShownOrOnItsWayIsNeverDrawnInto) {
   EXPECT_EQ(drawn.size(), 3U);
 }
 
+// Drawing takes back the picture that waits. The one that waits on the other display belongs to the
+// same frame.
+TEST_F(KmsDrawTest, NoDisplayChangesAloneWhileAPictureIsDrawnForAnother) {
+  add();
+  bench_.answers_flips = false;
+  present(1);
+  step();
+  present(2);  // waits on both displays
+  ASSERT_EQ(bench_.commits.size(), 1U);
+  const auto places = displays_.beginDrawing(0);
+  bench_.flips = {{21, clock_.now()}, {22, clock_.now()}};
+  step();
+  step();
+  EXPECT_EQ(bench_.commits.size(), 1U);
+  draw(places.at(0), 3);
+  ASSERT_TRUE(displays_.present(0, {}, ++sequence_));
+  step();
+  EXPECT_EQ(bench_.commits.size(), 1U);
+  ASSERT_TRUE(displays_.present(1, picture(3), sequence_));
+  step();
+  ASSERT_EQ(bench_.commits.size(), 2U);
+  EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 3}, {22, 3}}));
+}
+
 TEST_F(KmsDrawTest, ASmallerPictureIsDrawnInTheMiddle) {
   add("1024x768");
   const auto places = displays_.beginDrawing(0);
@@ -135,6 +159,9 @@ TEST_F(KmsDrawTest, MemoryThatIsNotSharedIsAPlaceWithoutABuffer) {
   const auto places = displays_.beginDrawing(0);
   ASSERT_EQ(places.size(), 1U);
   EXPECT_EQ(places[0].buffer, nullptr);
+  EXPECT_EQ(displays_.copyReason(0),
+            "A-1: the driver of the display's card does not share the memory that is displayed");
+  EXPECT_EQ(displays_.copyReason(1), "") << "nobody wanted to draw there";
   ASSERT_TRUE(displays_.present(0, picture(3), 1));
   ASSERT_TRUE(displays_.present(1, picture(3), 1));
   step();
@@ -161,18 +188,38 @@ TEST_F(KmsDrawTest, APictureThatIsNotDrawnIsCopiedAndSoAreTheNextOnes) {
   bench_.connectors[0].modes = {mode(640, 480, 60.2)};
   secondLater();
   EXPECT_EQ(present(6).size(), 1U) << "another display has other memory";
+
+  displays_.showAgain(0);
+  step();
+  EXPECT_NE(displays_.copyReason(0), "");
+  bench_.connectors[0].modes = {mode(640, 480, 60.1)};
+  secondLater();
+  EXPECT_EQ(displays_.copyReason(0), "") << "that was the memory before";
 }
 
 TEST_F(KmsDrawTest, ADisplayThatWasFoundToShowSomethingElseIsCopiedTo) {
   add();
   present(1);
   step();
+  EXPECT_EQ(displays_.copyReason(0), "");
   displays_.showAgain(0);
   step();
   EXPECT_TRUE(present(2).empty());
   step();
   EXPECT_EQ(bench_.shown[21], 2);
+  EXPECT_EQ(displays_.copyReason(0),
+            "A-1: pictures are copied since the checks found another picture on it");
   EXPECT_EQ(displays_.beginDrawing(1).size(), 1U) << "the other output was right";
+}
+
+// Nobody has drawn there, so that nobody need know why it is copied to.
+TEST_F(KmsDrawTest, ADisplayThatWasAlwaysCopiedToIsSoForNoReason) {
+  add();
+  present(1);
+  step();
+  displays_.showAgain(1);
+  step();
+  EXPECT_EQ(displays_.copyReason(1), "");
 }
 
 TEST_F(KmsDrawTest, NothingIsDrawnForADisplayThatShowsNoFrames) {

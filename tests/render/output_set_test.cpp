@@ -33,7 +33,9 @@ struct FakeOutput final : out::Output {
     ++times_begun;
     return places;
   }
+  std::string copyReason() const override { return copy_reason; }
   std::vector<out::DrawPlace> places;
+  std::string copy_reason;
   int times_begun = 0;
   bool was_drawn = false;
   bool wantsFrame(Timestamp) const override { return wants_frame; }
@@ -291,6 +293,48 @@ TEST_F(Delivered, ACorrectionThatCanDrawDrawsWhereTheOutputShowsIt) {
   watcher.asked = false;
   shown();
   EXPECT_TRUE(fakes_[0]->was_drawn);
+}
+
+TEST_F(Delivered, WhetherSignalsAreDrawnIsSaidOfTheLastOnes) {
+  deliverWith(std::make_unique<Drawn>(true));
+  EXPECT_FALSE(set_->draws());
+  fakes_[0]->places.resize(1);
+  shown();
+  EXPECT_TRUE(set_->draws()) << "although the second output is copied to";
+  fakes_[0]->leaves_out = true;
+  shown();
+  EXPECT_TRUE(set_->draws());
+  fakes_[0]->leaves_out = false;
+  fakes_[0]->places.clear();
+  shown();
+  EXPECT_FALSE(set_->draws());
+}
+
+TEST_F(OutputSetTest, TheFirstReasonWhySignalsAreCopiedIsTold) {
+  EXPECT_EQ(set_->copyReason(), "");
+  fakes_[1]->copy_reason = "b";
+  EXPECT_EQ(set_->copyReason(), "b");
+  fakes_[0]->copy_reason = "a";
+  EXPECT_EQ(set_->copyReason(), "a");
+}
+
+// Another thread's wish for a signal may end while the signal is made.
+struct WatcherThatIsAskedOnce final : frame::SignalWatcher {
+  bool wants(std::size_t i) const override { return i == 0 && times_asked++ == 0; }
+  void see(std::size_t, const out::Signal& signal, const out::FrameInfo&) override {
+    seen_drawn = signal.drawn;
+  }
+  mutable int times_asked = 0;
+  std::optional<bool> seen_drawn;
+};
+
+TEST_F(Delivered, WhoeverSeesASignalSeesAllOfItAlsoIfNobodyWantsItAnyMore) {
+  WatcherThatIsAskedOnce watcher;
+  deliverWith(std::make_unique<Drawn>(true), &watcher);
+  fakes_[0]->places.resize(1);
+  shown();
+  EXPECT_EQ(watcher.seen_drawn, false);
+  EXPECT_EQ(watcher.times_asked, 1);
 }
 
 TEST_F(Delivered, NothingIsBegunForACorrectionThatCannotDrawOrAFrameThatIsLeftOut) {

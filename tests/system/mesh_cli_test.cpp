@@ -99,7 +99,7 @@ TEST_F(MeshCli, PicturesEdgesByTheirWeights) {
   const auto refusal = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {kMerlin, "mesh", "picture", scan_, "-o", dir_ / "e.png"});
     const Outcome done = run(std::move(more));
-    EXPECT_EQ(done.status, 1) << done.output;
+    EXPECT_EQ(done.status, 2) << done.output;
     return done.output;
   };
   EXPECT_NE(refusal({"--weight", "colour=1"}).find("--preset and --weight: need --edges"),

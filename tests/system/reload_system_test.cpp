@@ -361,6 +361,8 @@ TEST_F(ReloadOfTwo, EachTakesItsPartAndTheWallGoesOn) {
     EXPECT_NE(done.output.find(line), std::string::npos) << line << done.output;
   EXPECT_EQ(done.output.find("is read by"), std::string::npos) << done.output;
   EXPECT_TRUE(eventually([&] { return merlind_->wall().rate_asked_hz == 12; }));
+  // A still wall that shows full detail draws no frame: something has to be drawn.
+  EXPECT_EQ(run({kMerlin, "notice", "x", "--instance", merlind_->instance()}).status, 0);
   EXPECT_TRUE(eventually([&] { return merlind_->wall().frames > frames; }));
   EXPECT_EQ(reload().output, "nothing changed\n");
 }

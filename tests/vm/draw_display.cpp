@@ -158,11 +158,10 @@ int run(const std::string& card, const std::string& connector, const std::string
   std::set<const DmaBuf*> used;
   for (int n = 0; n < kFrames; ++n) {
     const std::vector<std::uint8_t> pixels = picture(n);
-    std::vector<render::out::DrawPlace> places;
-    for (const auto& place : displays.beginDrawing(0))
-      places.push_back({place.buffer, place.x, place.y});
+    const std::vector<render::out::DrawPlace> places = displays.beginDrawing(0);
     if (places.size() != 1 || !places[0].buffer) {
-      std::fprintf(stderr, "draw_display: nothing to draw into: %s\n", displays.fault(0).c_str());
+      std::fprintf(stderr, "draw_display: nothing to draw into: %s
+", displays.fault(0).c_str());
       return 1;
     }
     used.insert(places[0].buffer.get());
@@ -179,7 +178,7 @@ int run(const std::string& card, const std::string& connector, const std::string
     }
     write(fmt::format("{}/{}.ppm", folder, n), on_cpu.apply({kWidth, kHeight, pixels}));
     fmt::print("frame {}: {}, {}, read back {}; {} buffers, {} imports{}\n", n,
-               signal.drawn ? "drawn" : "copied: " + pass.scanOut().fault,
+               signal.drawn ? "drawn" : "copied: " + pass.drawFault() + displays.copyReason(0),
                shown && *shown ? "shown" : "not shown", same ? "as meant" : "otherwise",
                used.size(), context->imports,
                places[0].buffer->device == deviceFolder(kRenderNode)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -84,6 +85,32 @@ bool isOf(const std::weak_ptr<const T>& held, const std::shared_ptr<const T>& ob
   return !held.owner_before(object) && !object.owner_before(held);
 }
 
+std::size_t bytesOf(int width, int height) {
+  return std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+constexpr int kRounding = 1;  // of 255: formats of memory may round differently
+
+struct Comparison {
+  bool same = true, lit = false;  // but for kRounding; lit: not black
+};
+
+// Compares a signal with the pixels of a memory, which end with the signal's right column and lower
+// row. The fourth channel is not displayed.
+Comparison comparisonOf(std::span<const std::uint8_t> signal, int width,
+                        std::span<const std::uint8_t> memory, const out::DrawPlace& place) {
+  Comparison result;
+  const std::size_t row = bytesOf(width, 1), memory_row = bytesOf(place.x + width, 1);
+  for (std::size_t at = 0; at < signal.size(); ++at) {
+    if (at % 4 == 3) continue;
+    const std::size_t y = at / row + static_cast<std::size_t>(place.y);
+    const int found = memory[y * memory_row + bytesOf(place.x, 1) + at % row];
+    result.same = result.same && std::abs(found - signal[at]) <= kRounding;
+    result.lit = result.lit || signal[at] > kRounding;
+  }
+  return result;
+}
+
 }  // namespace
 
 ShaderPass::~ShaderPass() { assert(!gl_); }
@@ -111,6 +138,7 @@ void ShaderPass::end() {
   tables_.clear();
   refused_.clear();
   lent_.clear();
+  tellDrawFault();
   row_reader_.reset();
   gl_->DeleteProgram(program_);
   gl_->DeleteVertexArrays(1, &vertices_);
@@ -122,16 +150,16 @@ std::string ShaderPass::fault() const {
   return fault_;
 }
 
-ScanOutReport ShaderPass::scanOut() const {
+std::string ShaderPass::drawFault() const {
   const std::lock_guard lock(mutex_);
-  return scan_out_;
+  return draw_fault_;
 }
 
-// `fault`: empty if there is no new one.
-void ShaderPass::tell(bool drawn, const std::string& fault) {
+// Called when the buffers, or what is known of them, have changed.
+void ShaderPass::tellDrawFault() {
+  const auto refused = std::ranges::find_if(lent_, [](const Lent& l) { return !l.fault.empty(); });
   const std::lock_guard lock(mutex_);
-  scan_out_.drawn = drawn;
-  if (!fault.empty()) scan_out_.fault = fault;
+  draw_fault_ = refused == lent_.end() ? std::string() : refused->fault;
 }
 
 Result<ShaderPass::Tables> ShaderPass::makeTables(
@@ -195,23 +223,48 @@ ShaderPass::Tables* ShaderPass::tablesUnlessRefused(
   return nullptr;
 }
 
-// Returns null if this buffer was refused, now or before.
-const gl::RenderTarget* ShaderPass::targetOf(const std::shared_ptr<const DmaBuf>& buffer) {
-  if (!buffer) {
-    tell(false, "the driver of the display's card does not share the memory that is displayed");
-    return nullptr;
-  }
+void ShaderPass::releaseUnheld() {
+  if (lent_.remove_if([](const Lent& l) { return l.buffer.expired(); }) > 0) tellDrawFault();
+}
+
+// Returns null if this buffer was refused, now or before, or is null.
+ShaderPass::Lent* ShaderPass::lentOf(const std::shared_ptr<const DmaBuf>& buffer) {
+  if (!buffer) return nullptr;
   auto lent = std::ranges::find_if(lent_, [&](const Lent& l) { return isOf(l.buffer, buffer); });
   if (lent == lent_.end()) {
-    lent_.remove_if([](const Lent& l) { return l.buffer.expired(); });
     lent = lent_.insert(lent_.end(), {buffer});
     auto target = context_->importTarget(*buffer);
     if (target)
       lent->target.emplace(*std::move(target));
     else
-      tell(false, target.error().what);
+      lent->fault = target.error().what;
+    tellDrawFault();
   }
-  return lent->target ? &*lent->target : nullptr;
+  return lent->target ? &*lent : nullptr;
+}
+
+// Compares what was drawn into a display's memory with what the shader draws elsewhere, since a
+// driver may import the memory and draw nothing there, or something else. Refuses the memory if
+// they differ. That a driver has drawn into a copy of the memory is for the checks of the picture
+// to find, which read the memory as the display does.
+bool ShaderPass::isDrawnRight(Lent& lent, const out::DrawPlace& place, const Tables& tables,
+                              const CorrectionMap& map) {
+  std::vector<std::uint8_t> meant(bytesOf(map.width, map.height));
+  drawAt(tables.signal, 0, 0, tables, map);
+  tables.signal.read(meant.data(), map.width);
+  const int right = place.x + map.width, bottom = place.y + map.height;
+  std::vector<std::uint8_t> found(bytesOf(right, bottom));
+  lent.target->read(found.data(), right, right, bottom);
+  const Comparison comparison = comparisonOf(meant, map.width, found, place);
+  if (!comparison.same) {
+    lent.target.reset();
+    lent.fault = "the driver has drawn another picture into the display's memory than was meant";
+    tellDrawFault();
+    return false;
+  }
+  // New memory is black, so that a black picture proves nothing.
+  lent.is_right = comparison.lit;
+  return true;
 }
 
 void ShaderPass::drawAt(const gl::RenderTarget& target, int x, int y, const Tables& tables,
@@ -232,32 +285,36 @@ void ShaderPass::drawAt(const gl::RenderTarget& target, int x, int y, const Tabl
 bool ShaderPass::run(const std::shared_ptr<const CorrectionMap>& map,
                      std::span<const std::uint8_t> picture, std::span<std::uint8_t> signal) {
   if (!gl_) return false;
+  releaseUnheld();
   const Tables* const tables = tablesUnlessRefused(map);
   if (!tables) return false;
   tables->textures[kPicture].write(picture.data());
   drawAt(tables->signal, 0, 0, *tables, *map);
   tables->signal.read(signal.data(), map->width);
-  return true;
+  return !context_->wasReset();  // after a reset nothing is drawn, and no call fails
 }
 
 bool ShaderPass::draw(const std::shared_ptr<const CorrectionMap>& map,
                       std::span<const std::uint8_t> picture, std::span<const out::DrawPlace> places,
                       std::span<const int> rows, std::span<std::uint8_t> signal) {
   if (!canDraw()) return false;
-  std::vector<const gl::RenderTarget*> targets;
+  releaseUnheld();
+  std::vector<Lent*> lent;
   for (const out::DrawPlace& place : places) {
-    targets.push_back(targetOf(place.buffer));
-    if (!targets.back()) return false;
+    lent.push_back(lentOf(place.buffer));
+    if (!lent.back()) return false;
   }
   const Tables* const tables = tablesUnlessRefused(map);
   if (!tables) return false;
   tables->textures[kPicture].write(picture.data());
-  for (std::size_t i = 0; i < targets.size(); ++i)
-    drawAt(*targets[i], places[i].x, places[i].y, *tables, *map);
-  readRows(*targets.front(), places.front(), map->width, rows, signal);
+  for (std::size_t i = 0; i < lent.size(); ++i)
+    drawAt(*lent[i]->target, places[i].x, places[i].y, *tables, *map);
+  readRows(*lent.front()->target, places.front(), map->width, rows, signal);
   // The display's card need not know when a GPU has finished, so nothing is handed over before.
   gl_->Finish();
-  tell(true, "");
+  if (context_->wasReset()) return false;
+  for (std::size_t i = 0; i < lent.size(); ++i)
+    if (!lent[i]->is_right && !isDrawnRight(*lent[i], places[i], *tables, *map)) return false;
   return true;
 }
 
@@ -266,7 +323,7 @@ void ShaderPass::readRows(const gl::RenderTarget& target, const out::DrawPlace& 
                           std::span<const int> rows, std::span<std::uint8_t> signal) {
   std::vector<int> in_target;
   for (const int row : rows) in_target.push_back(place.y + row);
-  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(width);
+  const std::size_t bytes = bytesOf(width, 1);
   row_pixels_.resize(rows.size() * bytes);
   row_reader_->startRows(target, place.x, width, in_target);
   row_reader_->finish(row_pixels_.data(), width);

@@ -20,14 +20,8 @@
 
 namespace merlin::render::correct {
 
-// How the signals that a pass draws come to the displays.
-struct ScanOutReport {
-  bool drawn = false;   // the last one was drawn into the memory that a display shows
-  std::string fault{};  // why one could not be drawn there, and is copied; empty: none was refused
-};
-
 // Serves all outputs of a wall. It is off at first: run() returns false. Thread-bound to the
-// context of begin(), except fault() and scanOut().
+// context of begin(), except fault() and drawFault().
 class ShaderPass final : public CorrectionPass {
  public:
   ShaderPass() = default;
@@ -48,17 +42,20 @@ class ShaderPass final : public CorrectionPass {
            std::span<std::uint8_t> signal) override;
 
   bool canDraw() const override { return gl_ && draws_; }
-  // The first call with a buffer imports it; buffers that nobody holds any more are released. A
-  // buffer that the context refuses is not tried again.
+  // The first call with a buffer imports it, and compares what was drawn there with what is drawn
+  // elsewhere, which costs two read-backs; so do the next calls as long as the signal is black.
+  // Buffers that nobody holds any more are released, by run() too. A buffer that the context
+  // refuses, or that held another picture, is not tried again.
   bool draw(const std::shared_ptr<const CorrectionMap>& map, std::span<const std::uint8_t> picture,
             std::span<const out::DrawPlace> places, std::span<const int> rows,
             std::span<std::uint8_t> signal) override;
 
-  // Thread-safe.
-  ScanOutReport scanOut() const;
+  // Why a display's memory was refused that somebody still holds; empty: none was. Thread-safe.
+  std::string drawFault() const;
 
   // Why run() last returned false although it is on, for example because an output is larger than
-  // OpenGL's textures; empty: it has not. Thread-safe.
+  // OpenGL's textures; empty: it has not, unless the GPU was reset (GlContext::wasReset()).
+  // Thread-safe.
   std::string fault() const;
 
  private:
@@ -68,21 +65,26 @@ class ShaderPass final : public CorrectionPass {
     std::vector<gl::DataTexture> textures;
     gl::RenderTarget signal;
   };
-  // A display's memory as a target; nothing if the context refuses it.
+  // A display's memory as a target; nothing if it was refused.
   struct Lent {
     std::weak_ptr<const DmaBuf> buffer;
     std::optional<gl::RenderTarget> target{};
+    bool is_right = false;  // a picture that was drawn there was the one that was meant
+    std::string fault{};    // why it was refused
   };
   Result<Tables> makeTables(const std::shared_ptr<const CorrectionMap>& map) const;
   Result<Tables*> tablesOf(const std::shared_ptr<const CorrectionMap>& map);
   Tables* tablesUnlessRefused(const std::shared_ptr<const CorrectionMap>& map);
-  const gl::RenderTarget* targetOf(const std::shared_ptr<const DmaBuf>& buffer);
+  void releaseUnheld();
+  Lent* lentOf(const std::shared_ptr<const DmaBuf>& buffer);
+  bool isDrawnRight(Lent& lent, const out::DrawPlace& place, const Tables& tables,
+                    const CorrectionMap& map);
   void setLight(const Light& light) const;
   void drawAt(const gl::RenderTarget& target, int x, int y, const Tables& tables,
               const CorrectionMap& map) const;
   void readRows(const gl::RenderTarget& target, const out::DrawPlace& place, int width,
                 std::span<const int> rows, std::span<std::uint8_t> signal);
-  void tell(bool drawn, const std::string& fault);
+  void tellDrawFault();
 
   const gl::GlContext* context_ = nullptr;
   const gl::GlApi* gl_ = nullptr;  // null: off
@@ -94,8 +96,7 @@ class ShaderPass final : public CorrectionPass {
   std::optional<gl::ReadBack> row_reader_;
   std::vector<std::uint8_t> row_pixels_;
   mutable std::mutex mutex_;  // guards the next two
-  std::string fault_;
-  ScanOutReport scan_out_;
+  std::string fault_, draw_fault_;
 };
 
 }  // namespace merlin::render::correct

@@ -56,6 +56,10 @@ class Buffer {
   virtual std::size_t pitch() const = 0;  // [bytes] from one row to the next
   // The same memory for a GPU that draws into it; null if the card's driver does not share it.
   virtual std::shared_ptr<const DmaBuf> shared() const { return nullptr; }
+  // Why shared() is null; for a person.
+  virtual std::string unsharedReason() const {
+    return "the driver of the display's card does not share the memory that is displayed";
+  }
 };
 
 // One display's share of a commit.

@@ -19,6 +19,7 @@
 #include "render/out/kms/buffer_turns.h"
 #include "render/out/kms/card.h"
 #include "render/out/kms/settings.h"
+#include "render/out/picture/draw_place.h"
 #include "render/out/picture/picture_judge.h"
 
 namespace merlin::render::out::kms {
@@ -45,15 +46,17 @@ class Displays {
   static constexpr std::size_t kMostOfEvery = 16;
 
   // Where the next picture of output i may be drawn by a GPU: a buffer of each of its displays that
-  // is neither shown nor on its way to the display. Each is null if the card's driver does not
-  // share it. Empty if no display takes part in commits; if a picture was copied although it might
-  // have been drawn, or after showAgain(), until the display has other buffers. Called by
-  // present()'s thread, which then calls present() for this output next.
-  struct DrawPlace {
-    std::shared_ptr<const DmaBuf> buffer;
-    int x = 0, y = 0;  // [px] of the picture's upper left pixel
-  };
+  // is neither shown nor on its way to the display. A place's buffer is null if the card's driver
+  // does not share its memory. Returns no place if none of the output's displays takes part in
+  // commits. Once a picture was not drawn into the places that were returned, or showAgain() was
+  // called, returns none until the display has other buffers. Called by present()'s thread, which
+  // then calls present() for this output next; nothing is committed meanwhile.
   std::vector<DrawPlace> beginDrawing(std::size_t i);
+
+  // Why pictures are copied to a display of output i that takes part in commits, with the display's
+  // name: the card's driver does not share its memory, or showAgain() was called after a picture
+  // had been drawn there. Empty: neither is so.
+  std::string copyReason(std::size_t i) const;
 
   // Writes the picture (RGBA, rows from top to bottom without padding) of frame `sequence` into a
   // buffer of each display of output i; `rgba` empty: it is drawn into those of beginDrawing(). A
@@ -105,7 +108,10 @@ class Displays {
     std::string name{};  // of the connector
     std::array<std::shared_ptr<Buffer>, BufferTurns::kCount> buffers{};
     BufferTurns turns{};
-    bool copies = false;  // nothing is drawn into its buffers, since a try has failed
+    // Nothing is drawn into its buffers: a try has failed, or the checks found another picture.
+    bool copies = false;
+    bool was_drawn = false;     // into one of its buffers
+    std::string copy_reason{};  // for copyReason()
   };
   struct Screen {
     KmsSettings settings{};

@@ -54,7 +54,7 @@ void Displays::copy(std::unique_lock<std::mutex>& lock, const Write& write,
   place.turns.endWrite(write.buffer);
 }
 
-std::vector<Displays::DrawPlace> Displays::beginDrawing(std::size_t i) {
+std::vector<DrawPlace> Displays::beginDrawing(std::size_t i) {
   const std::lock_guard lock(mutex_);
   assert(begun_.empty());
   const bool copies = std::ranges::any_of(screens_, [i](const Screen& s) {
@@ -65,12 +65,25 @@ std::vector<Displays::DrawPlace> Displays::beginDrawing(std::size_t i) {
   for (Screen& screen : screens_) {
     const auto write = screen.output == i ? beginWrite(screen) : std::nullopt;
     if (!write) continue;
-    const Mode& mode = write->place->mode;
+    Place& place = *write->place;
+    const Mode& mode = place.mode;
+    const Buffer& buffer = *place.buffers[write->buffer];
     const Corner corner = middle(write->width, write->height, mode.width, mode.height);
-    places.push_back({write->place->buffers[write->buffer]->shared(), corner.x, corner.y});
+    places.push_back({buffer.shared(), corner.x, corner.y});
+    if (!places.back().buffer) place.copy_reason = place.name + ": " + buffer.unsharedReason();
     begun_.push_back(*write);
+    whole_ = false;  // what waits on the other displays is not to be shown without this one
   }
   return places;
+}
+
+std::string Displays::copyReason(std::size_t i) const {
+  const std::lock_guard lock(mutex_);
+  for (const Screen& screen : screens_) {
+    if (screen.output == i && screen.lit && !screen.place->copy_reason.empty())
+      return screen.place->copy_reason;
+  }
+  return {};
 }
 
 // Ends what beginDrawing() has begun; copies the picture if it was not drawn. Returns whether a
@@ -80,6 +93,7 @@ bool Displays::endDrawing(std::unique_lock<std::mutex>& lock, std::span<const st
   for (const Write& write : std::exchange(begun_, {})) {
     shown = shown || !write.replaces;
     if (rgba.empty()) {
+      write.place->was_drawn = true;
       write.place->turns.endWrite(write.buffer);
     } else {
       write.place->copies = true;

@@ -77,7 +77,12 @@ void Displays::lightAskedFor() {
   const std::lock_guard lock(mutex_);
   for (Screen& screen : screens_) {
     if (!std::exchange(screen.again, false) || !screen.lit) continue;
-    screen.place->copies = true;
+    Place& place = *screen.place;
+    place.copies = true;
+    if (place.was_drawn) {
+      place.copy_reason =
+          place.name + ": pictures are copied since the checks found another picture on it";
+    }
     lightAgain(screen);
   }
 }

@@ -31,6 +31,9 @@ class DumbBuffer final : public Buffer {
   std::span<std::uint8_t> bytes() override { return bytes_; }
   std::size_t pitch() const override { return pitch_; }
   std::shared_ptr<const DmaBuf> shared() const override { return shared_; }
+  std::string unsharedReason() const override {
+    return fmt::format("{}: {}", Buffer::unsharedReason(), errnoText(unshared_errno_));
+  }
 
   // Returns false, with errno set, if the card has no memory for the buffer.
   bool create(std::uint32_t width, std::uint32_t height) {
@@ -69,7 +72,10 @@ class DumbBuffer final : public Buffer {
   void share(std::uint32_t handle, std::uint32_t width, std::uint32_t height) {
     int fd = -1;
     struct stat node {};
-    if (drmPrimeHandleToFD(file_->get(), handle, DRM_CLOEXEC | DRM_RDWR, &fd) != 0) return;
+    if (drmPrimeHandleToFD(file_->get(), handle, DRM_CLOEXEC | DRM_RDWR, &fd) != 0) {
+      unshared_errno_ = errno;
+      return;
+    }
     auto shared = std::make_shared<DmaBuf>();
     shared->file = UniqueFd(fd);
     shared->width = static_cast<int>(width);
@@ -86,6 +92,7 @@ class DumbBuffer final : public Buffer {
   Id id_ = 0;
   std::span<std::uint8_t> bytes_;
   std::shared_ptr<const DmaBuf> shared_;
+  int unshared_errno_ = 0;
 };
 
 }  // namespace
