@@ -20,7 +20,7 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 HEADS = 4
-DEADLINE_S = 120  # for every wait: a loaded machine emulates slowly
+DEADLINE_S = 400  # against a hang only: the machine may be busy
 MODULES = ("virtio_pci", "virtio_console", "virtio-gpu", "9pnet_virtio", "9p")
 
 
