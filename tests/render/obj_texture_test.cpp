@@ -400,7 +400,7 @@ TEST_F(TexturedObj, MayBeAPlyWhosePictureDiffersInCapitals) {
   EXPECT_FALSE(loaded->mesh.texture.empty());
   EXPECT_EQ(notesOf(*loaded),
             Names{"four.png: is taken for FOUR.PNG, which is not there; the names "
-                  "differs only in capitals"});
+                  "differ only in capitals"});
   EXPECT_EQ(mesh::meshFileSize(dir_ / "a.ply")->pictures, Names{dir_ / "four.png"});
 }
 
