@@ -60,8 +60,8 @@ class FileCopy {
 // own writers replace files and never truncate them.
 class MappedFile {
  public:
-  // Errors: kNotFound, kIo, kMalformed (not a regular file), kNoMemory (it is larger than what this
-  // process may still have of addresses). An empty file is an empty span.
+  // Errors: kNotFound, kIo, kMalformed (not a regular file), kNoMemory (this process's limit on
+  // its address space leaves no room for it). An empty file is an empty span.
   static Result<MappedFile> open(const std::string& path);
 
   MappedFile() = default;
