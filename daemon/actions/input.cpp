@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/actions/pinch.h"
+#include "drivers/port/axis_names.h"
 
 namespace merlin::actions {
 namespace {
@@ -44,12 +45,11 @@ std::optional<std::string> takeDevice(std::string_view& name, std::string_view p
 
 // The bit of pushedAxes() for "x+", "rz-" ...
 std::optional<std::uint32_t> axisBit(std::string_view name) {
-  constexpr std::string_view kAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
   if (name.empty() || (name.back() != '+' && name.back() != '-')) return std::nullopt;
   const std::string_view axis = name.substr(0, name.size() - 1);
-  const auto* const found = std::find(std::begin(kAxes), std::end(kAxes), axis);
-  if (found == std::end(kAxes)) return std::nullopt;
-  const auto index = static_cast<unsigned>(found - std::begin(kAxes));
+  const auto* const found = std::find(std::begin(kAxisNames), std::end(kAxisNames), axis);
+  if (found == std::end(kAxisNames)) return std::nullopt;
+  const auto index = static_cast<unsigned>(found - std::begin(kAxisNames));
   return 1U << (kMostButtons + 2 * index + (name.back() == '-' ? 1 : 0));
 }
 

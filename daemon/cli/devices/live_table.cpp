@@ -10,6 +10,7 @@
 
 #include "daemon/base/fixed_text.h"
 #include "drivers/io/evdev_stream.h"
+#include "drivers/port/axis_names.h"
 
 namespace merlin::cli {
 namespace {
@@ -26,11 +27,10 @@ std::string inputOf(std::uint16_t code) {
 
 // Axes, buttons and keys by the names that bindings use after the device's name.
 std::string ballLines(const BallSample& ball) {
-  constexpr const char* kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
   std::string text;
   for (int i = 0; i < 6; ++i) {
     const float share = i < 3 ? ball.translation[i] : ball.rotation[i - 3];
-    const std::string name = fmt::format("axis.{}{}", kNames[i],
+    const std::string name = fmt::format("axis.{}{}", kAxisNames[i],
                                          share > 0   ? "+"
                                          : share < 0 ? "-"
                                                      : "");

@@ -10,17 +10,13 @@
 
 #include "daemon/base/files.h"
 #include "daemon/base/printable_text.h"
+#include "daemon/base/words.h"
 #include "render/mesh/io/writer.h"
 
 namespace merlin::render::mesh {
 namespace {
 
 constexpr std::size_t kMostNames = 65536;  // that are looked at in a folder
-
-std::string inLowerCase(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
 
 bool exists(const std::string& path) {
   std::error_code error;
@@ -29,7 +25,7 @@ bool exists(const std::string& path) {
 
 // Of names that differ only in case, the first one by its bytes is kept.
 void addName(const std::string& name, std::map<std::string, std::string>& names) {
-  const auto [found, fresh] = names.try_emplace(inLowerCase(name), name);
+  const auto [found, fresh] = names.try_emplace(lowerCase(name), name);
   if (!fresh) found->second = std::min(found->second, name);
 }
 
@@ -103,7 +99,7 @@ std::string CompanionFinder::inAnyCase(const std::string& path) {
     std::string name = path.substr(at, end - at);
     if (!exists(found + name)) {
       const Names& names = namesIn(found);
-      const auto like = names.find(inLowerCase(name));
+      const auto like = names.find(lowerCase(name));
       if (like == names.end()) return path;
       name = like->second;
     }
