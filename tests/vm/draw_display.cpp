@@ -160,8 +160,7 @@ int run(const std::string& card, const std::string& connector, const std::string
     const std::vector<std::uint8_t> pixels = picture(n);
     const std::vector<render::out::DrawPlace> places = displays.beginDrawing(0);
     if (places.size() != 1 || !places[0].buffer) {
-      std::fprintf(stderr, "draw_display: nothing to draw into: %s
-", displays.fault(0).c_str());
+      std::fprintf(stderr, "draw_display: nothing to draw into: %s\n", displays.fault(0).c_str());
       return 1;
     }
     used.insert(places[0].buffer.get());
