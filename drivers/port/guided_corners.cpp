@@ -10,7 +10,7 @@
 namespace merlin {
 namespace {
 
-constexpr GuidedStep kSteps[] = {
+constexpr GuidedStep kCornerSteps[] = {
     {"top left", "touch the top left corner of the picture with one finger, and hold it there"},
     {"top right", "the same at the top right corner"},
     {"bottom left", "the same at the bottom left corner"},
@@ -27,7 +27,7 @@ bool isAlongX(const SurfacePlace& way) { return std::abs(way[0]) >= std::abs(way
 
 }  // namespace
 
-std::span<const GuidedStep> cornerSteps() { return kSteps; }
+std::span<const GuidedStep> cornerSteps() { return kCornerSteps; }
 
 void GuidedCorners::begin(std::size_t step) {
   step_ = step;

@@ -10,7 +10,7 @@
 namespace merlin {
 namespace {
 
-constexpr GuidedStep kSteps[] = {
+constexpr GuidedStep kPadSteps[] = {
     {"rest", "take your hands off it"},
     {"right",
      "move what is to move the model to the right, as far as it goes, and hold it there; "
@@ -32,7 +32,7 @@ constexpr double kLeastDeadZone = 0.05, kMostDeadZone = 0.5;  // sticks seldom r
 
 }  // namespace
 
-std::span<const GuidedStep> padSteps() { return kSteps; }
+std::span<const GuidedStep> padSteps() { return kPadSteps; }
 
 bool GuidedPad::Axis::isTrigger() const noexcept { return std::abs(rest()) > kTriggerRest; }
 
@@ -128,7 +128,7 @@ Result<Ok> GuidedPad::checkUnused(const std::string& source) const {
       if (std::ranges::find(names, used) == names.end()) continue;
       return Error{Errc::kMalformed, fmt::format("{} answered, as it did to \"{}\": move something "
                                                  "else, or nothing",
-                                                 used, kSteps[before].name)};
+                                                 used, kPadSteps[before].name)};
     }
   }
   return Ok{};

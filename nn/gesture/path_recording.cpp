@@ -10,21 +10,27 @@ namespace {
 
 constexpr std::int64_t kSessionGap_ns = 500'000'000;
 
-// Returns the index of the take that overlaps at least half of the stroke's time.
+// Returns the index of the take that overlaps at least half of the stroke's time. The takes are in
+// the order of time; a recording may have as many of them as poses, so that they are not all looked
+// at for each stroke.
 std::optional<std::size_t> takeOf(const std::vector<Take>& takes, std::int64_t first_ns,
                                   std::int64_t last_ns) {
-  for (std::size_t n = 0; n < takes.size(); ++n) {
+  auto take = std::partition_point(takes.begin(), takes.end(),
+                                   [&](const Take& t) { return t.last_ns < first_ns; });
+  for (; take != takes.end() && take->first_ns <= last_ns; ++take) {
     const std::int64_t shared =
-        std::min(last_ns, takes[n].last_ns) - std::max(first_ns, takes[n].first_ns);
-    if (2 * shared >= last_ns - first_ns) return n;
+        std::min(last_ns, take->last_ns) - std::max(first_ns, take->first_ns);
+    if (2 * shared >= last_ns - first_ns) return static_cast<std::size_t>(take - takes.begin());
   }
   return std::nullopt;
 }
 
+// Of the takes that began before, the last one also ended last.
 bool isJustAfter(const std::vector<Take>& takes, std::int64_t first_ns, double after_s) {
-  return std::any_of(takes.begin(), takes.end(), [&](const Take& take) {
-    return first_ns > take.first_ns && static_cast<double>(first_ns - take.last_ns) < after_s * 1e9;
-  });
+  const auto later = std::partition_point(takes.begin(), takes.end(),
+                                          [&](const Take& t) { return t.first_ns < first_ns; });
+  return later != takes.begin() &&
+         static_cast<double>(first_ns - std::prev(later)->last_ns) < after_s * 1e9;
 }
 
 // Logarithm of length times speed, since both features are logarithms.

@@ -7,7 +7,7 @@
 namespace merlin::render::out {
 namespace {
 
-constexpr auto kStep = std::chrono::milliseconds(500);
+constexpr auto kLongestWait = std::chrono::milliseconds(500);
 
 }  // namespace
 
@@ -56,7 +56,8 @@ void PngOutput::encodeLoop(const std::stop_token& stop, Progress& progress) {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      const bool waits = wake_.wait_for(lock, stop, kStep, [&] { return !waiting_.empty(); });
+      const bool waits =
+          wake_.wait_for(lock, stop, kLongestWait, [&] { return !waiting_.empty(); });
       progress.step();
       if (!waits && stop.stop_requested()) return;
       if (!waits) continue;

@@ -108,6 +108,9 @@ TEST_F(MeshCli, PicturesEdgesByTheirWeights) {
             std::string::npos);
   EXPECT_NE(refusal({"--edges", "--weight", "heat=1"}).find("weight heat: the mesh has no such"),
             std::string::npos);
+  EXPECT_NE(refusal({"--edges", "--memory", "40M"}).find("a lower resolution with --percent"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--memory", "1M"}).find("reading its "), std::string::npos);
 }
 
 // A square of two triangles in the plane z = `height`, as ASCII PLY.

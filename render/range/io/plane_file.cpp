@@ -86,9 +86,9 @@ Plane planeOf(const std::string& name, const image::ImageFile& picture) {
 // pictures would keep only the upper 8 bits, after a gamma correction.
 bool isPng16(std::span<const std::byte> file) {
   constexpr std::size_t kDepthAt = 24;  // behind the mark, the chunk's head, width and height
-  constexpr std::string_view kMark = "\x89PNG";
+  constexpr std::string_view kPngMark = "\x89PNG";
   return file.size() > kDepthAt && file[kDepthAt] == std::byte{16} &&
-         std::equal(kMark.begin(), kMark.end(), file.begin(),
+         std::equal(kPngMark.begin(), kPngMark.end(), file.begin(),
                     [](char c, std::byte b) { return std::byte(c) == b; });
 }
 
