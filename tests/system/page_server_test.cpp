@@ -420,10 +420,12 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
   ASSERT_EQ(page_->send("align", "list").status, 200);  // all threads have been started by now
   const std::size_t threads_before = threads(pid);
   HttpFlood flood(port_, 2);
-  // Sends ten requests within a second, and expects that they are answered.
+  // Sends ten requests within a second, and expects that they are answered. The flood is on once a
+  // few of its requests were refused: on a busy machine most are answered so late that there are
+  // not too many of them.
   const auto modest = [&](const char* when) {
     const std::uint64_t refused_before = flood.refused();
-    EXPECT_TRUE(eventually([&] { return flood.refused() > refused_before + 500; })) << when;
+    EXPECT_TRUE(eventually([&] { return flood.refused() > refused_before + 20; })) << when;
     KeptConnection client(port_);
     for (int i = 0; i < 10; ++i) EXPECT_EQ(client.get("/api/status"), 200) << when << ": " << i;
   };
@@ -475,7 +477,7 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
       status = askPage(port_, request).status;
       return status != 0 && status != 429;
     };
-    eventually(answered, std::chrono::seconds(5));
+    eventually(answered);
     return status;
   };
   const std::string large(1'000'000, ' ');
