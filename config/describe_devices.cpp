@@ -212,7 +212,8 @@ void describeMachine(DevicesSettings& d, SettingsVisitor& v) {
              "model, rests, grabs it, lets go; turning: always twists the ball; still: does "
              "nothing; grabbing: makes a fist and opens it in turn while the hand moves; "
              "alignment: makes the movements that `merlin calibrate tracker` asks for; pushes: "
-             "pushes and twists the ball as `merlin calibrate ball` asks.");
+             "pushes and twists the ball as `merlin calibrate ball` asks; panel: works the "
+             "operator's panel with the ball.");
 }
 
 }  // namespace

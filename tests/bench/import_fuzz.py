@@ -12,6 +12,7 @@ import collections
 import concurrent.futures
 import gzip
 import json
+import os
 import pathlib
 import random
 import re
@@ -22,7 +23,12 @@ import sys
 import tempfile
 import time
 
+import figures
+
 HERE = pathlib.Path(__file__).resolve().parent
+BATCH = 100  # files, between two looks at the clock
+KINDS = ("made", "refused", "contained", "FAULT")  # with one of these words each outcome begins
+WAY_OUT = "'./dev bench fuzz-imports' builds merlin-import and merlin"
 NUMBERS = [b"-1", b"0", b"1e38", b"-1e30", b"nan", b"inf", b"4294967295", b"99999999999", b"0.5"]
 
 
@@ -124,6 +130,52 @@ def one(options, pictures, number):
         return name, outcome
 
 
+def outcomes_of(options):
+    """How many files of each ending had each outcome, and a sentence for each fault."""
+    counts, faults = collections.Counter(), []
+    with tempfile.TemporaryDirectory() as work:
+        options.work = work
+        models = pathlib.Path(work) / "models"
+        models.mkdir()
+        figures.run([sys.executable, "-B", HERE.parent / "support/textured_models.py", models], "textured_models.py",
+                    "it makes the undamaged models; run it by hand")
+        options.originals = originals(models)
+        pictures = sorted(models.glob("*.png"))
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            numbers, began = range(options.first, options.first + options.count), time.monotonic()
+            for at in range(0, len(numbers), BATCH):
+                if time.monotonic() - began > options.seconds:
+                    break
+                some = numbers[at:at + BATCH]
+                for number, (name, outcome) in zip(some, pool.map(lambda n: one(options, pictures, n), some)):
+                    counts[name.split(".", 1)[1], outcome] += 1
+                    if outcome.startswith("FAULT"):
+                        faults.append(f"{name}: {outcome}; again: --count 1 --first {number} --seed {options.seed}")
+    return counts, faults
+
+
+def measure(options, report):
+    options.program, options.merlin = options.bin + "/merlin-import", options.bin + "/merlin"
+    for program in (options.program, options.merlin):
+        if not os.access(program, os.X_OK):
+            figures.did_not_run(program, "there is no such program", WAY_OUT)
+    counts, faults = outcomes_of(options)
+    total = sum(counts.values())
+    made = sum(n for (_, outcome), n in counts.items() if outcome.startswith("made"))
+    if total >= BATCH and made == 0:  # of a few files all may be refused
+        figures.did_not_run("merlin-import", f"it made nothing of {total} files", WAY_OUT)
+    for (ending, outcome), n in sorted(counts.items()):
+        report.text(f"{ending:8} {outcome:32} {n:6}  {100 * n / total:.2f} %")
+    for kind in KINDS:
+        n = sum(n for (_, outcome), n in counts.items() if outcome.startswith(kind))
+        report.figure(kind.lower(), figures.share_of(n, total, "files"), "1")
+    report.text(f"{total} files, {made} made, {len(faults)} faults")
+    for fault in faults:
+        report.text(fault)
+    report.more["faults"] = faults
+    return not faults
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=5000, help="number of files")
@@ -131,35 +183,10 @@ def main():
     parser.add_argument("--first", type=int, default=0, help="number of the first file")
     parser.add_argument("--seconds", type=float, default=600, help="no further file is begun after this time")
     parser.add_argument("--bin", required=True, help="folder of merlin-import and merlin")
+    parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
     options = parser.parse_args()
-    options.program, options.merlin = options.bin + "/merlin-import", options.bin + "/merlin"
-    counts, faults = collections.Counter(), []
-    with tempfile.TemporaryDirectory() as work:
-        options.work = work
-        models = pathlib.Path(work) / "models"
-        models.mkdir()
-        subprocess.run([sys.executable, "-B", str(HERE.parent / "support/textured_models.py"), str(models)], check=True)
-        options.originals = originals(models)
-        pictures = sorted(models.glob("*.png"))
-        with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            numbers, began = range(options.first, options.first + options.count), time.monotonic()
-            for at in range(0, len(numbers), 100):
-                if time.monotonic() - began > options.seconds:
-                    break
-                some = numbers[at:at + 100]
-                for number, (name, outcome) in zip(some, pool.map(lambda n: one(options, pictures, n), some)):
-                    counts[name.split(".", 1)[1], outcome] += 1
-                    if outcome.startswith("FAULT"):
-                        faults.append(f"{name}: {outcome}; again: --count 1 --first {number} --seed {options.seed}")
-    total = sum(counts.values())
-    for (ending, outcome), n in sorted(counts.items()):
-        print(f"{ending:8} {outcome:32} {n:6}  {100 * n / total:.2f} %")
-    made = sum(n for (_, outcome), n in counts.items() if outcome.startswith("made"))
-    print(f"{total} files, {made} made, {len(faults)} faults")
-    for fault in faults:
-        print(fault)
-    return 0 if total > 0 and made > 0 and not faults else 1
+    figures.run_bench("fuzz-imports", options.json, lambda report: measure(options, report))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
