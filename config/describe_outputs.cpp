@@ -129,7 +129,7 @@ void describeWindow(render::out::WindowSettings& w, SettingsVisitor& v) {
 void describeKms(render::out::kms::KmsSettings& k, SettingsVisitor& v) {
   v.text("card", k.card,
          "Device file of the graphics card, for example /dev/dri/card0. Empty: the first card that "
-         "has connectors. All displays of a card change in one frame.");
+         "has connectors. All displays of one card show a new picture in the same frame.");
   v.text("connector", k.connector,
          "Name of the connector that the display is plugged in at, as in /sys/class/drm, for "
          "example HDMI-A-1. Empty: the first connector that has a display; only for a single "

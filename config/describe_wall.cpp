@@ -19,7 +19,7 @@ void describeInput(InputSettings& in, SettingsVisitor& v) {
             "endpoint", in.endpoint,
             "Address of the merlind that reads the devices, tcp://HOST:PORT. Empty: the wall uses "
             "the devices of this machine.");
-        v.text("server_key", in.server_key, "Public key of the merlind at endpoint.");
+        v.text("server_key", in.server_key, "Public key of the merlind at `endpoint`.");
         v.secretFile("keys", in.keys,
                      "File with this machine's key pair, written by `merlin keys -o FILE`.");
       });
@@ -91,8 +91,9 @@ void describeWall(WallSettings& w, SettingsVisitor& v) {
          "contents is shown first.");
   describeContents(w.contents, v);
   v.group("playlist",
-          "What the wall shows while nobody touches it: its contents in turn. The first input ends "
-          "it; the content that is shown at that moment stays, at full brightness.",
+          "What the wall shows after a time without input: the contents of the playlist in turn. "
+          "The first input ends the playlist; the content that is shown at that moment stays, at "
+          "full brightness.",
           [&] { describePlaylist(w.playlist, v); });
   v.group("shown", "Files that `merlin show FILE` shows.", [&] { describeShown(w.shown, v); });
   describeRate(w.governor, v);

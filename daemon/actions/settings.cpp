@@ -70,7 +70,8 @@ std::string conflictText(const Binding& a, const Binding& b) {
                        a.action, b.action, when);
   if (areSameChord(a, b))
     return fmt::format(
-        "\"{}\" with \"{}\" is the same chord, named in the other order, and would both {} and {}",
+        "\"{}\" with \"{}\" and the same two inputs in the other order are one chord, which would "
+        "both {} and {}",
         b.input, b.with, a.action, b.action);
   return fmt::format(
       "\"{}\" would both {} and {} when {}; of the actions that change what is shown or what the "

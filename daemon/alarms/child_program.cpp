@@ -73,10 +73,10 @@ std::string whyNoProgram(const std::string& path) {
   return S_ISREG(status.st_mode) ? "" : "it is not a file";
 }
 
-// Why a file cannot be executed, by its beginning, as the kernel reads it: it is neither a script
-// whose interpreter can be executed nor another kind of program; empty if it can. A file with a
-// zero byte is taken for another kind, because the kernel may know more kinds than ELF
-// (binfmt_misc).
+// Returns why the kernel cannot execute a file with this beginning; empty if it can. It can execute
+// a script (#!) whose interpreter can be executed, and programs of other formats. A file that does
+// not begin with #! but has a zero byte in its beginning is assumed to be such a program, because
+// the kernel may know more formats than ELF (binfmt_misc).
 std::string whyNoScript(std::string_view begin) {
   constexpr const char* kNone =
       "it is not a program; a script begins with a line such as #!/bin/sh";

@@ -11,8 +11,8 @@
 
 namespace merlin {
 
-// The role of merlind that executes a command. kPanel: a command of the control panel, which the
-// role devices executes.
+// Which role of merlind executes a command. kPanel marks the commands of the control panel; the
+// role `devices` executes them.
 enum class CommandOf { kEachRole, kDevices, kPanel, kWall };
 
 // Whether inputs may be bound to a command. kOnce: the command is executed when the input begins

@@ -102,8 +102,8 @@ Result<std::size_t> SlotTable::locate(const std::string& slot, Describe describe
     const Field* found = find(expected.name);
     if (!found) return malformed(slot, fmt::format("lacks the field {}", expected.name));
     if (!agree(*found, expected)) {
-      return malformed(slot, fmt::format("has the field {} as {}; allowed is {}", expected.name,
-                                         textOf(*found), textOf(expected)));
+      return malformed(slot, fmt::format("has the field {} as {}; this program expects {}",
+                                         expected.name, textOf(*found), textOf(expected)));
     }
   }
   return place;

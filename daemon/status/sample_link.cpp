@@ -201,8 +201,19 @@ class Apply {
     const auto last = slot.read();
     if (!last || last->counter != s.counter || last->passed_over != s.passed_over) slot.publish(s);
   }
-  // The order of the actions is not transmitted: those that begin between two documents are taken
-  // in the order of kActions.
+  // The documents do not contain the order in which actions began: `recent` lists those that began
+  // between two documents in the order of kActions.
+  static void list(const shm::ActionState& last, shm::ActionState& s) {
+    constexpr std::uint32_t kKept = sizeof(s.recent);
+    s.sequence = last.sequence;
+    std::copy(std::begin(last.recent), std::end(last.recent), s.recent);
+    for (std::size_t i = 0; i < kActions.size(); ++i) {
+      const std::uint32_t times =
+          s.begun[i] > last.begun[i] ? std::min(s.begun[i] - last.begun[i], kKept) : 0;
+      for (std::uint32_t n = 0; n < times; ++n)
+        s.recent[s.sequence++ % kKept] = static_cast<std::uint8_t>(i);
+    }
+  }
   void actions(const std::string& source, shm::SeqSlot<shm::ActionState>& slot) {
     const Json* all = object(document_, "actions");
     const Json* found = all ? object(*all, source) : nullptr;
@@ -220,6 +231,7 @@ class Apply {
       s.held[i] = is_held && isHeldAction(kActions[i]) ? 1 : 0;
     }
     const bool same = last && last->generation == s.generation;
+    if (same) list(*last, s);
     const bool news = !same || !std::equal(std::begin(s.begun), std::end(s.begun), last->begun) ||
                       !std::equal(std::begin(s.held), std::end(s.held), last->held);
     if (news) slot.publish(s);

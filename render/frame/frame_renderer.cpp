@@ -199,7 +199,8 @@ void FrameRenderer::drawFrom(TilePainter& painter, const Request& request, TileT
   }
 }
 
-// Draws the operator's views at a coarser step, in the time that is left.
+// Draws the operator's views at the level of detail `step`, which operatorStep() chooses by the
+// time that is left for the frame.
 void FrameRenderer::drawOperators(const Eigen::Isometry3f& T_eye_content, std::size_t step,
                                   DrawTimes& times) {
   choose(T_eye_content, step, operators_);

@@ -62,8 +62,8 @@ Result<std::vector<View>> viewsOf(std::span<const range::RangeImage> scans, Fuse
   return views;
 }
 
-// The space around all surfaces, with room for the truncation. Errors: kMalformed,
-// kInvalidArgument.
+// Returns a grid that encloses all surfaces, with a margin for the truncation distance. Errors:
+// kMalformed (no scan has a surface), kInvalidArgument (too many voxels along an axis).
 Result<Grid> gridOf(std::span<const View> views, const FuseSettings& settings) {
   Grid grid{{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}, settings.voxel};
   std::size_t points = 0;

@@ -39,8 +39,9 @@ class GraphCheck {
       }
     }
     if (shapes_[root] <= kMostShapes) return Ok{};
-    return Error{Errc::kMalformed, fmt::format("uses its shapes {:.3g} times; allowed are {:.0f}",
-                                               shapes_[root], kMostShapes)};
+    return Error{Errc::kMalformed,
+                 fmt::format("uses its shapes {:.3g} times in all; at most {:.0f} uses are allowed",
+                             shapes_[root], kMostShapes)};
   }
 
  private:

@@ -43,7 +43,9 @@ Result<Ok> checkTree(const Dendrogram::Arrays& a) {
   for (std::size_t k = 0; k < a.parents.size(); ++k) {
     const std::uint32_t parent = a.parents[k];
     if (parent >= nodes - 2 * k - 2) {
-      return broken(fmt::format("collapse {}: parent {} is not above its children", k, parent));
+      return broken(fmt::format(
+          "collapse {}: the number of the parent, {}, is not less than the numbers of its children",
+          k, parent));
     }
     if (made[parent]) return broken(fmt::format("collapse {}: node {} is made twice", k, parent));
     made[parent] = true;
@@ -67,7 +69,9 @@ Result<Ok> checkValues(const Dendrogram::Arrays& a) {
           fmt::format("level {}: {} triangles, at most {} are possible", k, a.alive[k], most));
     most = a.alive[k];
     if (!std::isfinite(a.error[k]) || (k > 0 && a.error[k] < a.error[k - 1])) {
-      return broken(fmt::format("level {}: the error falls or is not finite", k));
+      return broken(fmt::format(
+          "level {}: its error is not finite, or is less than the error of the level before it",
+          k));
     }
   }
   const auto finite = [](float v) { return std::isfinite(v); };

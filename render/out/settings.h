@@ -62,7 +62,8 @@ struct Rectangle {
     return x < o.x + o.width && o.x < x + width && y < o.y + o.height && o.y < y + height;
   }
 };
-// Where the tile is in the output's picture. `tile`: the one of `all` that `placed` names.
+// Returns the rectangle that a placed tile covers in the picture of its output. `tile` is the tile
+// in `all` that `placed` names.
 Rectangle placeOf(const PlacedTile& placed, const tiles::TileSettings& tile,
                   const tiles::TilesSettings& all);
 

@@ -50,7 +50,7 @@ struct OperatorFacts {
   bool operator==(const OperatorFacts&) const = default;
 };
 
-// Port (an interface): where the facts come from.
+// Port (an interface): supplies the facts that the operator's tile shows.
 class OperatorSource {
  public:
   virtual ~OperatorSource() = default;

@@ -11,7 +11,6 @@
 #include <cstring>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
@@ -21,6 +20,7 @@
 #include "render/out/shared_frame.h"
 #include "tests/bench/demo_picture.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::bench {
@@ -155,14 +155,13 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("The cost of reading back what outputs show");
+  merlin::bench::Options app("The cost of reading back what outputs show");
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
-      ->check(CLI::Range(6.0, 3600.0));
-  app.add_option("--rounds", options.rounds, "Runs of each kind")->check(CLI::Range(1, 1000));
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--seconds", options.seconds, "Length of each run, in seconds").range(6.0, 3600.0);
+  app.option("--rounds", options.rounds, "Runs of each kind").range(1, 1000);
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("checks", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);
   });

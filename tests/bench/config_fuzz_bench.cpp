@@ -6,7 +6,6 @@
 #include <map>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 #include "daemon/cli/progress.h"
 #include "tests/bench/config_fuzz.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -107,17 +107,17 @@ bool fuzz(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Gives mutated configurations to the loader.");
-  app.add_option("--seed", options.seed,
-                 "Seed of the first configuration; each further one has the next seed")
-      ->capture_default_str();
-  app.add_option("--count", options.count, "Number of configurations")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
-      ->capture_default_str();
-  app.add_option("--configurations", options.configurations,
-                 "Folder of the example configurations; the default is config");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Gives mutated configurations to the loader.");
+  app.option("--seed", options.seed,
+             "Seed of the first configuration; each further one has the next seed")
+      .showDefault();
+  app.option("--count", options.count, "Number of configurations")
+      .range(std::size_t{1}, std::size_t{1'000'000'000})
+      .showDefault();
+  app.option("--configurations", options.configurations,
+             "Folder of the example configurations; the default is config");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("fuzz-config", json, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(options, report);
   });

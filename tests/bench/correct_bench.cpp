@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/base/thread_team.h"
@@ -22,6 +21,7 @@
 #include "render/gl/gl_context.h"
 #include "render/governor/settings.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -165,16 +165,14 @@ bool measure(int frames, const std::string& gpu, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("The cost of an output's correction for each frame");
+  merlin::bench::Options app("The cost of an output's correction for each frame");
   int frames = 200;
   bool json = false;
-  app.add_option("--frames", frames, "Number of frames for each correction")
-      ->check(CLI::Range(1, 100'000));
+  app.option("--frames", frames, "Number of frames for each correction").range(1, 100'000);
   std::string gpu = merlin::render::gl::kAnyGpu;
-  app.add_option("--gpu", gpu, "The GPU that runs the shader, as in /wall/render/gpu")
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--gpu", gpu, "The GPU that runs the shader, as in /wall/render/gpu").showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("correct", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(frames, gpu, report);
   });

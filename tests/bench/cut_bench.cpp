@@ -13,7 +13,6 @@
 #include <fstream>
 #include <random>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -22,6 +21,7 @@
 #include "render/lod/io/mrm_file.h"
 #include "render/reduce/reduce.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/model_frames.h"
 
 namespace merlin::bench {
@@ -373,17 +373,17 @@ bool run(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  merlin::bench::Options app{
       "Cuts of large models compared with a memcpy; pictures of a budget spent evenly and by view"};
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--hgt", options.hgt,
-                 "An SRTM 3 tile; the default is " + std::string(merlin::bench::kTile) +
-                     " or, if that does not exist, synthetic hills");
-  app.add_option("--out", options.out, "Folder for models and pictures")->capture_default_str();
-  app.add_flag("--small", options.small, "Leaves out the model of 11.5 million triangles");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--hgt", options.hgt,
+             "An SRTM 3 tile; the default is " + std::string(merlin::bench::kTile) +
+                 " or, if that does not exist, synthetic hills");
+  app.option("--out", options.out, "Folder for models and pictures").showDefault();
+  app.flag("--small", options.small, "Leaves out the model of 11.5 million triangles");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("cut", json, [&](merlin::bench::Report& report) {
     return merlin::bench::run(options, report);
   });

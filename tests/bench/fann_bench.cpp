@@ -14,7 +14,6 @@
 #else
 #include <floatfann.h>
 #endif
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "nn/fit.h"
@@ -22,6 +21,7 @@
 #include "nn/train.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
+#include "tests/bench/options.h"
 #include "tests/nn/shipped.h"
 
 namespace merlin::bench {
@@ -142,9 +142,9 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("Recall compared with FANN with the same weights.");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Recall compared with FANN with the same weights.");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench(
       merlin::bench::kDouble ? "posture beside FANN in double" : "posture beside FANN in float",
       json, merlin::bench::run);

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "render/frame/pointer_marker.h"
 #include "render/lod/io/mrm_file.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/model_frames.h"
 
 namespace merlin::bench {
@@ -125,10 +125,10 @@ bool run(const std::vector<std::string>& paths, Report& report) {
 int main(int argc, char** argv) {
   std::vector<std::string> models;
   bool json = false;
-  CLI::App app("Hashes of a fixed script of frames of each model.");
-  app.add_option("models", models, "Models (.mrm)")->required();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Hashes of a fixed script of frames of each model.");
+  app.option("models", models, "Models (.mrm)").required();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("frames", json, [&](merlin::bench::Report& report) {
     return merlin::bench::run(models, report);
   });

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/base/random.h"
@@ -31,6 +30,7 @@
 #include "drivers/vrpn/protocol.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/fuzz_drivers.h"
+#include "tests/bench/options.h"
 #include "tests/support/extreme_length.h"
 #include "tests/support/osc_packets.h"
 
@@ -352,13 +352,11 @@ int main(int argc, char** argv) {
   double bytes = 1e8;
   std::uint64_t seed = 1;
   bool json = false;
-  CLI::App app("Gives random and mutated bytes to every parser.");
-  app.add_option("--bytes", bytes, "Number of bytes for each parser")
-      ->check(CLI::Range(1.0, 1e15))
-      ->capture_default_str();
-  app.add_option("--seed", seed, "Seed of the bytes")->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Gives random and mutated bytes to every parser.");
+  app.option("--bytes", bytes, "Number of bytes for each parser").range(1.0, 1e15).showDefault();
+  app.option("--seed", seed, "Seed of the bytes").showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("fuzz", json, [&](merlin::bench::Report& report) {
 #ifndef MERLIN_ADDRESS_SANITIZER
     report.text("(without sanitizers: only a crash would show)\n");

@@ -9,13 +9,13 @@
 #include <cmath>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "nn/gesture/evaluation.h"
 #include "nn/io/gesture_file.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
+#include "tests/bench/options.h"
 #include "tests/nn/moving.h"
 
 namespace merlin::bench {
@@ -299,8 +299,9 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("Gestures: rates, confusions, false reports, training from few takes, cost.");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app(
+      "Gestures: rates, confusions, false reports, training from few takes, cost.");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("gesture", json, merlin::bench::run);
 }

@@ -9,11 +9,11 @@
 #include <cstdlib>
 #include <fstream>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "tests/bench/figures.h"
 #include "tests/bench/governor_laws.h"
+#include "tests/bench/options.h"
 #include "tests/support/governor_plant.h"
 
 namespace merlin::bench {
@@ -205,13 +205,12 @@ int main(int argc, char** argv) {
   std::size_t seeds = 20;
   std::string trace = MERLIN_SOURCE_DIR "/tests/data/governor_demo.txt";
   bool json = false;
-  CLI::App app("MERLIN's governor compared with other control laws, on a virtual clock.");
-  app.add_option("--seeds", seeds, "Number of runs of each law on each trace")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--trace", trace, "File with recorded frames of the real renderer")
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app(
+      "MERLIN's governor compared with other control laws, on a virtual clock.");
+  app.option("--seeds", seeds, "Number of runs of each law on each trace").range(1, 1000);
+  app.option("--trace", trace, "File with recorded frames of the real renderer").showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("governor", json, [&](merlin::bench::Report& report) {
     return merlin::bench::bench(seeds, trace, report);
   });

@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "render/mesh/non_manifold.h"
 #include "render/reduce/reduce.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/hostile_shapes.h"
 
 namespace merlin::bench {
@@ -66,15 +65,14 @@ bool run(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app{"Reduces hostile shapes and, for comparison, a regular mesh of the same size"};
+  merlin::bench::Options app{
+      "Reduces hostile shapes and, for comparison, a regular mesh of the same size"};
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--triangles", options.triangles, "Number of triangles of each shape")
-      ->capture_default_str();
-  app.add_option("--turns", options.turns, "Number of turns; each reduces all shapes")
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--triangles", options.triangles, "Number of triangles of each shape").showDefault();
+  app.option("--turns", options.turns, "Number of turns; each reduces all shapes").showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("hostile", json, [&](merlin::bench::Report& report) {
     return merlin::bench::run(options, report);
   });

@@ -12,7 +12,6 @@
 #include <map>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -22,6 +21,7 @@
 #include "tests/bench/figures.h"
 #include "tests/bench/latency_daemon.h"
 #include "tests/bench/latency_round.h"
+#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -194,17 +194,15 @@ void benchKinds(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Latency from a line's byte to a client of the shared memory.");
-  app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
-  app.add_option("--config", options.config, "The demo's configuration")->required();
-  app.add_option("--samples", options.round.samples, "Number of samples in a round")
-      ->check(CLI::Range(1, 60'000))
-      ->capture_default_str();
-  app.add_option("--rounds", options.rounds, "Number of rounds")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Latency from a line's byte to a client of the shared memory.");
+  app.option("--bin", options.bin, "Folder of merlind and merlin").required();
+  app.option("--config", options.config, "The demo's configuration").required();
+  app.option("--samples", options.round.samples, "Number of samples in a round")
+      .range(1, 60'000)
+      .showDefault();
+  app.option("--rounds", options.rounds, "Number of rounds").range(1, 1000).showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("latency", json, [&](merlin::bench::Report& report) {
     const merlin::test::TempDir dir;
     benchCpu(options, dir, report);

@@ -6,7 +6,6 @@
 #include <map>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -14,6 +13,7 @@
 #include "daemon/cli/progress.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/mesh_fuzz.h"
+#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -90,16 +90,14 @@ bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Gives hostile meshes to every step of mesh processing.");
+  merlin::bench::Options app("Gives hostile meshes to every step of mesh processing.");
   std::uint64_t seed = 1, count = 10'000'000;
   bool json = false;
-  app.add_option("--seed", seed, "Seed of the first mesh; each further one has the next seed")
-      ->capture_default_str();
-  app.add_option("--count", count, "Number of meshes")
-      ->check(CLI::Range(1, 1'000'000'000))
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--seed", seed, "Seed of the first mesh; each further one has the next seed")
+      .showDefault();
+  app.option("--count", count, "Number of meshes").range(1, 1'000'000'000).showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("fuzz-meshes", json, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(seed, count, report);
   });

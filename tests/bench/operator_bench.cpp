@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "render/panel/panel_overlay.h"
 #include "render/text/operator_overlay.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/fake_clock.h"
 
 namespace merlin::bench {
@@ -146,13 +145,13 @@ bool measure(int frames, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("The cost of the plates and the panel over the operator's tile for each frame");
+  merlin::bench::Options app(
+      "The cost of the plates and the panel over the operator's tile for each frame");
   int frames = 100;
   bool json = false;
-  app.add_option("--frames", frames, "Number of frames that draw the plates anew")
-      ->check(CLI::Range(1, 100'000));
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--frames", frames, "Number of frames that draw the plates anew").range(1, 100'000);
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("operator", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(frames, report);
   });

@@ -18,7 +18,6 @@
 #include <thread>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -33,6 +32,7 @@
 #include "render/out/window_output.h"
 #include "tests/bench/demo_picture.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/x_server.h"
 
@@ -376,16 +376,15 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  merlin::bench::Options app(
       "The cost of an output of each kind, and late frames of the others while one is slow or "
       "stuck");
   merlin::bench::Options options;
   bool json = false;
-  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
-      ->check(CLI::Range(1.0, 3600.0));
-  app.add_option("--rounds", options.rounds, "Runs of each kind")->check(CLI::Range(1, 1000));
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--seconds", options.seconds, "Length of each run, in seconds").range(1.0, 3600.0);
+  app.option("--rounds", options.rounds, "Runs of each kind").range(1, 1000);
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("outputs", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);
   });

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -20,6 +19,7 @@
 #include "daemon/status/client.h"
 #include "tests/bench/demo_daemon.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -258,15 +258,16 @@ bool benchPictures(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  CLI::App app("Late frames and memory with large pictures, and the time to the first picture.");
+  merlin::bench::Options app(
+      "Late frames and memory with large pictures, and the time to the first picture.");
   bool json = false;
-  app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
-  app.add_option("--config", options.config, "The demo's configuration")->required();
-  app.add_option("--work", options.work, "Folder for the pictures");
-  app.add_option("--seconds", options.seconds, "Seconds of motion of each kind");
-  app.add_option("--shows", options.shows, "Number of calls of merlin show");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--bin", options.bin, "Folder of merlind and merlin").required();
+  app.option("--config", options.config, "The demo's configuration").required();
+  app.option("--work", options.work, "Folder for the pictures");
+  app.option("--seconds", options.seconds, "Seconds of motion of each kind");
+  app.option("--shows", options.shows, "Number of calls of merlin show");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("pictures", json, [&](merlin::bench::Report& report) {
     return merlin::bench::benchPictures(options, report);
   });

@@ -10,7 +10,6 @@
 #include <ctime>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "nn/adapt.h"
@@ -21,6 +20,7 @@
 #include "nn/train.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
+#include "tests/bench/options.h"
 #include "tests/nn/drifting.h"
 #include "tests/nn/shipped.h"
 
@@ -246,8 +246,8 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  CLI::App app("The posture network: training, adapting, drift, flicker, recall.");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("The posture network: training, adapting, drift, flicker, recall.");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("posture", json, merlin::bench::run);
 }

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +25,7 @@
 #include "render/range/io/range_file.h"
 #include "render/range/triangulate.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/process.h"
 
 namespace merlin::bench {
@@ -206,19 +206,18 @@ bool measure(int rounds, const std::string& folder, const std::string& peer, Rep
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  merlin::bench::Options app(
       "From a range image to two million triangles, compared with reading and writing the bytes "
       "alone");
   int rounds = 15;
   bool json = false;
   std::string work = "build/bench/range", peer;
-  app.add_option("--rounds", rounds, "Number of imports, and of copies of the bytes")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--work", work, "Folder for the files")->capture_default_str();
-  app.add_option("--peer-program", peer,
-                 "Program with the same steps by PCL; ./dev bench range --peer builds it");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--rounds", rounds, "Number of imports, and of copies of the bytes").range(1, 1000);
+  app.option("--work", work, "Folder for the files").showDefault();
+  app.option("--peer-program", peer,
+             "Program with the same steps by PCL; ./dev bench range --peer builds it");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("range", json, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(rounds, work, peer, report);
   });

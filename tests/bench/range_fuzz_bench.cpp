@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -29,6 +28,7 @@
 #include "render/range/io/range_file.h"
 #include "render/range/triangulate.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/clouds.h"
 
 namespace merlin::bench {
@@ -287,13 +287,13 @@ bool fuzz(std::uint64_t seed, std::uint64_t inputs, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Gives damaged range files and point clouds to MERLIN's own readers");
+  merlin::bench::Options app("Gives damaged range files and point clouds to MERLIN's own readers");
   std::uint64_t inputs = 10'000'000, seed = 1;
   bool json = false;
-  app.add_option("--inputs", inputs, "Number of files");
-  app.add_option("--seed", seed, "Seed of the first file; each further one has the next seed");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--inputs", inputs, "Number of files");
+  app.option("--seed", seed, "Seed of the first file; each further one has the next seed");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("fuzz-ranges", json, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(seed, inputs, report);
   });

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "render/image/image_file.h"
@@ -18,6 +17,7 @@
 #include "render/mesh/io/mesh_file.h"
 #include "render/reduce/reduce.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/model_frames.h"
 
 namespace merlin::bench {
@@ -211,14 +211,14 @@ bool run(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Rates at full resolution, compared with those of 1998.");
-  app.add_option("--scan", options.scan, "A scan with colours")->capture_default_str();
-  app.add_option("--raster-threads", options.raster_threads,
-                 "Number of threads of Mesa's software renderer")
-      ->check(CLI::Range(0, 16));
-  app.add_flag("!--coloured", options.textured, "Colours at the vertices instead of a texture");
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Rates at full resolution, compared with those of 1998.");
+  app.option("--scan", options.scan, "A scan with colours").showDefault();
+  app.option("--raster-threads", options.raster_threads,
+             "Number of threads of Mesa's software renderer")
+      .range(0, 16);
+  app.flag("!--coloured", options.textured, "Colours at the vertices instead of a texture");
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("rates", json, [&](merlin::bench::Report& report) {
     return merlin::bench::run(options, report);
   });

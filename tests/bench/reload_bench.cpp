@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
 #include "daemon/status/client.h"
 #include "tests/bench/demo_daemon.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -159,20 +159,19 @@ bool bench(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Late frames, descriptors, threads and memory during thousands of reloads.");
-  app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
-  app.add_option("--config", options.config, "The wall's configuration")->required();
-  app.add_option("--reloads", options.reloads, "Number of reloads")
-      ->check(CLI::Range(1, 10'000'000))
-      ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "Length of the run without reloads, in seconds")
-      ->check(CLI::Range(1, 86'400))
-      ->capture_default_str();
-  app.add_option("--pause", options.pause, "Pause between two reloads, in seconds")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app(
+      "Late frames, descriptors, threads and memory during thousands of reloads.");
+  app.option("--bin", options.bin, "Folder of merlind and merlin").required();
+  app.option("--config", options.config, "The wall's configuration").required();
+  app.option("--reloads", options.reloads, "Number of reloads").range(1, 10'000'000).showDefault();
+  app.option("--seconds", options.seconds, "Length of the run without reloads, in seconds")
+      .range(1, 86'400)
+      .showDefault();
+  app.option("--pause", options.pause, "Pause between two reloads, in seconds")
+      .range(0.0, 3600.0)
+      .showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("reload", json, [&](merlin::bench::Report& report) {
     return merlin::bench::bench(options, report);
   });

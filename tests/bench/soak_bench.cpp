@@ -6,7 +6,6 @@
 #include <sstream>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sched.h>
@@ -14,6 +13,7 @@
 #include "config/loader.h"
 #include "daemon/base/clock.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/bench/soak/virtual_day.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
@@ -284,18 +284,16 @@ int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
   double warm_up_h = -1;
-  CLI::App app("A day of the wall on a virtual clock, with people, faults and reloads.");
-  app.add_option("--hours", options.hours, "Hours of virtual time")
-      ->check(CLI::Range(0.2, 10'000.0))
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "Seed of people, faults and devices")
-      ->capture_default_str();
-  app.add_option("--warm-up", warm_up_h,
-                 "Hours at the beginning whose memory does not count; the default is a quarter, at "
-                 "most two")
-      ->check(CLI::Range(0.0, 1000.0));
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app(
+      "A day of the wall on a virtual clock, with people, faults and reloads.");
+  app.option("--hours", options.hours, "Hours of virtual time").range(0.2, 10'000.0).showDefault();
+  app.option("--seed", options.seed, "Seed of people, faults and devices").showDefault();
+  app.option("--warm-up", warm_up_h,
+             "Hours at the beginning whose memory does not count; the default is a quarter, at "
+             "most two")
+      .range(0.0, 1000.0);
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   options.warm_up_h = warm_up_h >= 0 ? warm_up_h : std::min(2.0, options.hours / 4);
   return merlin::bench::runBench("soak", json, [&](merlin::bench::Report& report) {
     return merlin::bench::bench(options, report);

@@ -12,7 +12,6 @@
 #include <optional>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,6 +27,7 @@
 #include "tests/bench/figures.h"
 #include "tests/bench/latency_kind.h"
 #include "tests/bench/latency_line.h"
+#include "tests/bench/options.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
 
@@ -291,16 +291,14 @@ bool bench(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Latency from a ball's byte to a client of the space-mouse socket.");
-  app.add_option("--bin", options.bin, "Folder of merlind")->required();
-  app.add_option("--samples", options.samples, "Number of records in a round")
-      ->check(CLI::Range(10U, 60'000U))
-      ->capture_default_str();
-  app.add_option("--rounds", options.rounds, "Number of rounds")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Latency from a ball's byte to a client of the space-mouse socket.");
+  app.option("--bin", options.bin, "Folder of merlind").required();
+  app.option("--samples", options.samples, "Number of records in a round")
+      .range(10, 60'000)
+      .showDefault();
+  app.option("--rounds", options.rounds, "Number of rounds").range(1, 1000).showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("spnav", json, [&](merlin::bench::Report& report) {
     return merlin::bench::bench(options, report);
   });

@@ -8,11 +8,11 @@
 #include <cstring>
 #include <numeric>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/base/files.h"
 #include "render/mesh/io/mesh_file.h"
+#include "tests/bench/options.h"
 
 namespace merlin {
 namespace {
@@ -131,14 +131,15 @@ int run(const std::string& scan, double triangles, const std::string& output) {
 }  // namespace merlin
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes copies of a scan in tiles as a binary PLY with a given number of triangles");
+  merlin::bench::Options app(
+      "Writes copies of a scan in tiles as a binary PLY with a given number of triangles");
   std::string scan, output;
   double triangles = 1e6;
-  app.add_option("scan", scan, "The scan that each tile is a copy of (.ply, .obj)")->required();
-  app.add_option("triangles", triangles, "Number of triangles; it may be written as 1e8")
-      ->required()
-      ->check(CLI::Range(1.0, 1e9));
-  app.add_option("output", output, "The mesh to be written (.ply)")->required();
-  CLI11_PARSE(app, argc, argv);
+  app.option("scan", scan, "The scan that each tile is a copy of (.ply, .obj)").required();
+  app.option("triangles", triangles, "Number of triangles; it may be written as 1e8")
+      .required()
+      .range(1.0, 1e9);
+  app.option("output", output, "The mesh to be written (.ply)").required();
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::run(scan, triangles, output);
 }

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -23,6 +22,7 @@
 #include "daemon/shm/fields.h"
 #include "daemon/shm/segment.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::bench {
@@ -245,19 +245,19 @@ bool benchKills(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Torn reads of the shared memory; killed writers.");
-  app.add_option("--reads", options.reads, "Number of reads, of all processes together")
-      ->check(CLI::Range(1.0, 1e15))
-      ->capture_default_str();
-  app.add_option("--kills", options.kills,
-                 "Number of writers that are killed with -9 in the middle of a value")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--readers", options.readers, "Number of processes that read")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Torn reads of the shared memory; killed writers.");
+  app.option("--reads", options.reads, "Number of reads, of all processes together")
+      .range(1.0, 1e15)
+      .showDefault();
+  app.option("--kills", options.kills,
+             "Number of writers that are killed with -9 in the middle of a value")
+      .range(1, 1'000'000)
+      .showDefault();
+  app.option("--readers", options.readers, "Number of processes that read")
+      .range(1, 1000)
+      .showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("torn", json, [&](merlin::bench::Report& report) {
     const bool torn = benchTorn(options, report);
     const bool killed = benchKills(options, report);

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
 #include "tests/bench/demo_daemon.h"
 #include "tests/bench/figures.h"
+#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -345,17 +345,15 @@ bool benchFaults(const Options& options, const test::TempDir& dir, Report& repor
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  CLI::App app("Late frames of the wall compared with those of a bare loop.");
-  app.add_option("--bin", options.bin, "Folder of merlind and merlin")->required();
-  app.add_option("--config", options.config, "The wall's configuration")->required();
-  app.add_option("--seconds", options.seconds, "Length of each run, in seconds")
-      ->check(CLI::Range(1, 86'400))
-      ->capture_default_str();
-  app.add_option("--rounds", options.rounds, "Number of rounds")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_flag("--json", json, "The figures as one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  merlin::bench::Options app("Late frames of the wall compared with those of a bare loop.");
+  app.option("--bin", options.bin, "Folder of merlind and merlin").required();
+  app.option("--config", options.config, "The wall's configuration").required();
+  app.option("--seconds", options.seconds, "Length of each run, in seconds")
+      .range(1, 86'400)
+      .showDefault();
+  app.option("--rounds", options.rounds, "Number of rounds").range(1, 1000).showDefault();
+  app.flag("--json", json, "The figures as one JSON object");
+  if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("wall", json, [&](merlin::bench::Report& report) {
     const merlin::test::TempDir dir;
     benchLate(options, dir, report);

@@ -114,6 +114,24 @@ TEST(ApplySamples, BringsEverythingOverAsOldAsItWas) {
   EXPECT_STREQ(here->health[test::kBall].read()->port, "tcp://a:1");
 }
 
+// What moves a corner of an output is taken from this list.
+TEST(ApplySamples, ListsTheActionsThatBeganBetweenTwoDocuments) {
+  const auto here = std::make_unique<shm::DevicesSegment>();
+  const auto apply = [&](std::uint32_t counter) {
+    EXPECT_TRUE(applySamples(newestSamples(filled(1, counter).slots(), fromNanoseconds(2)), "", {},
+                             test::defaultSlotNames(), *here));
+    return *here->actions[shm::kFirstHandSource].read();
+  };
+  EXPECT_EQ(apply(7).sequence, 0u) << "what began before is not executed";
+  const shm::ActionState next = apply(9);
+  EXPECT_EQ(next.sequence, 2u);
+  EXPECT_EQ(next.recent[0], 2);
+  EXPECT_EQ(next.recent[1], 2);
+  EXPECT_EQ(apply(9).sequence, 2u);
+  EXPECT_EQ(apply(1000).sequence, 2u + sizeof next.recent) << "as many as there is room for";
+  EXPECT_EQ(apply(3).sequence, 2u + sizeof next.recent) << "a count that falls is no action";
+}
+
 TEST(ApplySamples, TheSameSampleIsPublishedOnce) {
   const auto there = filled(1, 7);
   const auto here = std::make_unique<shm::DevicesSegment>();

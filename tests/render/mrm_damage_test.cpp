@@ -273,11 +273,14 @@ TEST_F(MrmDamage, SoundBytesWithoutSenseAreRefused) {
     file.put(kind, index, value);
     return faultOf(file.seal().bytes);
   };
-  EXPECT_EQ(faultOfPut(Kind::kParents, 0, 13U), "collapse 0: parent 13 is not above its children");
+  EXPECT_EQ(
+      faultOfPut(Kind::kParents, 0, 13U),
+      "collapse 0: the number of the parent, 13, is not less than the numbers of its children");
   EXPECT_EQ(faultOfPut(Kind::kTriangles, 35, 14U),
             "triangle 11: there is no node 14, the model has 14");
   EXPECT_EQ(faultOfPut(Kind::kAlive, 6, 5U), "level 6: 5 triangles, at most 2 are possible");
-  EXPECT_EQ(faultOfPut(Kind::kError, 6, 0.5F), "level 6: the error falls or is not finite");
+  EXPECT_EQ(faultOfPut(Kind::kError, 6, 0.5F),
+            "level 6: its error is not finite, or is less than the error of the level before it");
   EXPECT_EQ(faultOfPut(Kind::kPositions, 0, std::nanf("")), "a position is not finite");
 }
 

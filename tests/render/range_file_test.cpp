@@ -233,6 +233,17 @@ TEST(RawLayout, FaultsNameWhatIsAllowed) {
   }
 }
 
+TEST(RawLayout, HasAtMost64Planes) {
+  std::string text = "2x2:range=u8";
+  for (int skipped = 0; skipped < 63; ++skipped) text += ",-=u8";
+  EXPECT_TRUE(parseRawLayout(text).ok());
+  const auto layout = parseRawLayout(text + ",-=u8");
+  ASSERT_FALSE(layout);
+  EXPECT_NE(layout.error().what.find("\": more than 64 planes are given; allowed: "),
+            std::string::npos)
+      << layout.error().what;
+}
+
 TEST(AngleTable, RowsHaveAltitudeAndAzimuth) {
   ImageHeader header;
   ASSERT_TRUE(parseAngleTable("# row altitude\n0 10 4.5\n1 -5.5 -4.5 # last\n\n", header).ok());

@@ -180,7 +180,7 @@ TEST_F(Inventor, BrokenFieldsGiveOneErrorAndDrawNothingUntilTheyAreMended) {
   } kDamages[] = {
       {"parents", [](SoField& f) { static_cast<SoMFInt32&>(f).deleteValues(5); }, "collapses need"},
       {"parents", [](SoField& f) { static_cast<SoMFInt32&>(f).set1Value(3, -1); },
-       "collapse 3: parent"},
+       "collapse 3: the number of the parent"},
       {"faces", [](SoField& f) { static_cast<SoMFInt32&>(f).set1Value(7, 1 << 30); },
        "triangle 2: there is no node 1073741824"},
       {"faces", [](SoField& f) { static_cast<SoMFInt32&>(f).deleteValues(100); }, "not triples"},

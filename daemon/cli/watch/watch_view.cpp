@@ -176,7 +176,8 @@ Row outputRow(const std::string& name, const Json& o) {
       fmt::format("{}, {} % late", text(o, "kind"), figure(number(o, "late_percent"), 2)));
 }
 
-// A row for each service that has failed: configuration, state, shared memory and the like.
+// Returns a row for each service within merlind whose health is not "ok", such as the
+// configuration, the state or shared memory.
 std::vector<Row> serviceRows(const Json& s) {
   Json failed = Json::object();
   for (const auto& [name, service] : object(s, "services").items())

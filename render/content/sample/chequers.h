@@ -34,7 +34,8 @@ class Chequers final : public Content {
 
   // The squares that the renderers draw.
   struct Chosen {
-    // x [m], y [m], brightness 0..1; six for each square.
+    // The vertices: x [m], y [m], brightness 0..1. Each square has six: the corners of its two
+    // triangles.
     std::vector<std::array<float, 3>> corners;
     std::vector<Eigen::Matrix4f> views;  // clip_from_metres of each view, by tile number
   };

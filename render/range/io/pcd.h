@@ -18,11 +18,12 @@ struct PcdImage {
 };
 
 // The fields x, y, z become ranges and rays, rgb or rgba becomes the plane "colour", and each other
-// field a plane of its name; normals are left out, since they are computed anew. Points that are
-// not finite count as no return. A viewpoint whose distance from the points is 10^4 units and 100
-// diagonals of their box, such as the default 0 0 0 in a file with map coordinates, is ignored: the
-// points are then seen from above, which a note says. Errors, with the line of the header or the
-// number of the point: kMalformed, kUnsupported (not organised).
+// field becomes a plane with the field's name; normals are left out, since they are computed anew.
+// Points that are not finite count as no return. The viewpoint is ignored if its distance from the
+// middle of the points' bounding box is 10^4 to 10^15 units along an axis and more than 100
+// diagonals of the box, as with the default 0 0 0 in a file with map coordinates: the ranges are
+// then measured from a place above the points, and a note says so. Errors, with the line of the
+// header or the number of the point: kMalformed, kUnsupported (not organised).
 Result<PcdImage> parsePcd(std::string_view bytes);
 
 }  // namespace merlin::render::range

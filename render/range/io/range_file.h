@@ -49,7 +49,7 @@ struct LoadedRange {
 // name. False also if it cannot be opened.
 bool isRangeFile(const std::string& path);
 
-// What isRangeFile() recognises, for messages and help.
+// Returns the names of the formats that readRange() reads, for error messages and help.
 std::string readableRanges();
 
 // The returned image has at least one return and a geometry without fault (faultOf()). Ranges that

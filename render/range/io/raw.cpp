@@ -49,10 +49,13 @@ std::string_view takeUntil(std::string_view& text, char end) {
 }
 
 std::string addPlane(std::string_view text, RawLayout& layout) {
+  constexpr std::size_t kMostPlanes = 64;
   std::string_view type = text;
   const std::string name(takeUntil(type, '='));
-  if (name.empty() || type.empty() || layout.planes.size() == 64)
+  if (name.empty() || type.empty())
     return fmt::format("\"{}\" is not NAME=TYPE", oneLine(excerpt(text)));
+  if (layout.planes.size() == kMostPlanes)
+    return fmt::format("more than {} planes are given", kMostPlanes);
   for (const RawPlane& plane : layout.planes) {
     if (plane.name == name && name != "-") return fmt::format("two planes are named {}", name);
   }
