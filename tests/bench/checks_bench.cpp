@@ -18,9 +18,9 @@
 #include "render/out/output_set.h"
 #include "render/out/picture_checks.h"
 #include "render/out/shared_frame.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/demo_picture.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::bench {
@@ -155,7 +155,7 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app("The cost of reading back what outputs show");
+  merlin::bench::CommandLine app("The cost of reading back what outputs show");
   merlin::bench::Options options;
   bool json = false;
   app.option("--seconds", options.seconds, "Length of each run, in seconds").range(6.0, 3600.0);

@@ -13,9 +13,9 @@
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
 #include "daemon/cli/progress.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/config_fuzz.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -107,7 +107,7 @@ bool fuzz(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  merlin::bench::Options app("Gives mutated configurations to the loader.");
+  merlin::bench::CommandLine app("Gives mutated configurations to the loader.");
   app.option("--seed", options.seed,
              "Seed of the first configuration; each further one has the next seed")
       .showDefault();

@@ -20,8 +20,8 @@
 #include "render/correct/output_correction.h"
 #include "render/gl/gl_context.h"
 #include "render/governor/settings.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -165,7 +165,7 @@ bool measure(int frames, const std::string& gpu, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app("The cost of an output's correction for each frame");
+  merlin::bench::CommandLine app("The cost of an output's correction for each frame");
   int frames = 200;
   bool json = false;
   app.option("--frames", frames, "Number of frames for each correction").range(1, 100'000);

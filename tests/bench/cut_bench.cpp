@@ -20,8 +20,8 @@
 #include "render/image/png_writer.h"
 #include "render/lod/io/mrm_file.h"
 #include "render/reduce/reduce.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/model_frames.h"
 
 namespace merlin::bench {
@@ -373,7 +373,7 @@ bool run(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app{
+  merlin::bench::CommandLine app{
       "Cuts of large models compared with a memcpy; pictures of a budget spent evenly and by view"};
   merlin::bench::Options options;
   bool json = false;

@@ -19,9 +19,9 @@
 #include "nn/fit.h"
 #include "nn/recall.h"
 #include "nn/train.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
-#include "tests/bench/options.h"
 #include "tests/nn/shipped.h"
 
 namespace merlin::bench {
@@ -142,7 +142,7 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  merlin::bench::Options app("Recall compared with FANN with the same weights.");
+  merlin::bench::CommandLine app("Recall compared with FANN with the same weights.");
   app.flag("--json", json, "The figures as one JSON object");
   if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench(

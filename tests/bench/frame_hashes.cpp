@@ -10,8 +10,8 @@
 
 #include "render/frame/pointer_marker.h"
 #include "render/lod/io/mrm_file.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/model_frames.h"
 
 namespace merlin::bench {
@@ -125,7 +125,7 @@ bool run(const std::vector<std::string>& paths, Report& report) {
 int main(int argc, char** argv) {
   std::vector<std::string> models;
   bool json = false;
-  merlin::bench::Options app("Hashes of a fixed script of frames of each model.");
+  merlin::bench::CommandLine app("Hashes of a fixed script of frames of each model.");
   app.option("models", models, "Models (.mrm)").required();
   app.flag("--json", json, "The figures as one JSON object");
   if (const auto status = app.parse(argc, argv)) return *status;

@@ -28,9 +28,9 @@
 #include "drivers/spacenav/protocol.h"
 #include "drivers/tuio/sources.h"
 #include "drivers/vrpn/protocol.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/fuzz_drivers.h"
-#include "tests/bench/options.h"
 #include "tests/support/extreme_length.h"
 #include "tests/support/osc_packets.h"
 
@@ -352,7 +352,7 @@ int main(int argc, char** argv) {
   double bytes = 1e8;
   std::uint64_t seed = 1;
   bool json = false;
-  merlin::bench::Options app("Gives random and mutated bytes to every parser.");
+  merlin::bench::CommandLine app("Gives random and mutated bytes to every parser.");
   app.option("--bytes", bytes, "Number of bytes for each parser").range(1.0, 1e15).showDefault();
   app.option("--seed", seed, "Seed of the bytes").showDefault();
   app.flag("--json", json, "The figures as one JSON object");

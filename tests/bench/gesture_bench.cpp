@@ -13,9 +13,9 @@
 
 #include "nn/gesture/evaluation.h"
 #include "nn/io/gesture_file.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
-#include "tests/bench/options.h"
 #include "tests/nn/moving.h"
 
 namespace merlin::bench {
@@ -299,7 +299,7 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "Gestures: rates, confusions, false reports, training from few takes, cost.");
   app.flag("--json", json, "The figures as one JSON object");
   if (const auto status = app.parse(argc, argv)) return *status;

@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/governor_laws.h"
-#include "tests/bench/options.h"
 #include "tests/support/governor_plant.h"
 
 namespace merlin::bench {
@@ -205,7 +205,7 @@ int main(int argc, char** argv) {
   std::size_t seeds = 20;
   std::string trace = MERLIN_SOURCE_DIR "/tests/data/governor_demo.txt";
   bool json = false;
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "MERLIN's governor compared with other control laws, on a virtual clock.");
   app.option("--seeds", seeds, "Number of runs of each law on each trace").range(1, 1000);
   app.option("--trace", trace, "File with recorded frames of the real renderer").showDefault();

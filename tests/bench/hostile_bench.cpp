@@ -7,8 +7,8 @@
 
 #include "render/mesh/non_manifold.h"
 #include "render/reduce/reduce.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/hostile_shapes.h"
 
 namespace merlin::bench {
@@ -65,7 +65,7 @@ bool run(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app{
+  merlin::bench::CommandLine app{
       "Reduces hostile shapes and, for comparison, a regular mesh of the same size"};
   merlin::bench::Options options;
   bool json = false;

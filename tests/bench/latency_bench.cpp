@@ -18,10 +18,10 @@
 #include <sys/wait.h>
 
 #include "drivers/io/cpu_latency.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/latency_daemon.h"
 #include "tests/bench/latency_round.h"
-#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -194,7 +194,7 @@ void benchKinds(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  merlin::bench::Options app("Latency from a line's byte to a client of the shared memory.");
+  merlin::bench::CommandLine app("Latency from a line's byte to a client of the shared memory.");
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();
   app.option("--config", options.config, "The demo's configuration").required();
   app.option("--samples", options.round.samples, "Number of samples in a round")

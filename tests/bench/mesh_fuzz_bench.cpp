@@ -11,9 +11,9 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/cli/progress.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/mesh_fuzz.h"
-#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -90,7 +90,7 @@ bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app("Gives hostile meshes to every step of mesh processing.");
+  merlin::bench::CommandLine app("Gives hostile meshes to every step of mesh processing.");
   std::uint64_t seed = 1, count = 10'000'000;
   bool json = false;
   app.option("--seed", seed, "Seed of the first mesh; each further one has the next seed")

@@ -8,8 +8,8 @@
 
 #include "render/panel/panel_overlay.h"
 #include "render/text/operator_overlay.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/fake_clock.h"
 
 namespace merlin::bench {
@@ -145,7 +145,7 @@ bool measure(int frames, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "The cost of the plates and the panel over the operator's tile for each frame");
   int frames = 100;
   bool json = false;

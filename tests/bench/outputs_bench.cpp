@@ -30,9 +30,9 @@
 #include "render/out/png_output.h"
 #include "render/out/shared_frame.h"
 #include "render/out/window_output.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/demo_picture.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/x_server.h"
 
@@ -376,7 +376,7 @@ bool measure(const Options& options, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "The cost of an output of each kind, and late frames of the others while one is slow or "
       "stuck");
   merlin::bench::Options options;

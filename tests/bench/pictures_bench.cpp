@@ -17,9 +17,9 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/status/client.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/demo_daemon.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -258,7 +258,7 @@ bool benchPictures(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "Late frames and memory with large pictures, and the time to the first picture.");
   bool json = false;
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();

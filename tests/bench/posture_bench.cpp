@@ -18,9 +18,9 @@
 #include "nn/fit.h"
 #include "nn/hold.h"
 #include "nn/train.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/nanoseconds.h"
-#include "tests/bench/options.h"
 #include "tests/nn/drifting.h"
 #include "tests/nn/shipped.h"
 
@@ -246,7 +246,8 @@ bool run(Report& report) {
 
 int main(int argc, char** argv) {
   bool json = false;
-  merlin::bench::Options app("The posture network: training, adapting, drift, flicker, recall.");
+  merlin::bench::CommandLine app(
+      "The posture network: training, adapting, drift, flicker, recall.");
   app.flag("--json", json, "The figures as one JSON object");
   if (const auto status = app.parse(argc, argv)) return *status;
   return merlin::bench::runBench("posture", json, merlin::bench::run);

@@ -24,8 +24,8 @@
 #include "render/range/io/plane_file.h"
 #include "render/range/io/range_file.h"
 #include "render/range/triangulate.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/process.h"
 
 namespace merlin::bench {
@@ -206,7 +206,7 @@ bool measure(int rounds, const std::string& folder, const std::string& peer, Rep
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "From a range image to two million triangles, compared with reading and writing the bytes "
       "alone");
   int rounds = 15;

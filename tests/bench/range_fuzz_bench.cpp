@@ -27,8 +27,8 @@
 #include "render/range/io/plane_file.h"
 #include "render/range/io/range_file.h"
 #include "render/range/triangulate.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/clouds.h"
 
 namespace merlin::bench {
@@ -287,7 +287,8 @@ bool fuzz(std::uint64_t seed, std::uint64_t inputs, Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app("Gives damaged range files and point clouds to MERLIN's own readers");
+  merlin::bench::CommandLine app(
+      "Gives damaged range files and point clouds to MERLIN's own readers");
   std::uint64_t inputs = 10'000'000, seed = 1;
   bool json = false;
   app.option("--inputs", inputs, "Number of files");

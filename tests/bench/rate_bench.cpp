@@ -16,8 +16,8 @@
 #include "render/image/png_writer.h"
 #include "render/mesh/io/mesh_file.h"
 #include "render/reduce/reduce.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/model_frames.h"
 
 namespace merlin::bench {
@@ -211,7 +211,7 @@ bool run(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  merlin::bench::Options app("Rates at full resolution, compared with those of 1998.");
+  merlin::bench::CommandLine app("Rates at full resolution, compared with those of 1998.");
   app.option("--scan", options.scan, "A scan with colours").showDefault();
   app.option("--raster-threads", options.raster_threads,
              "Number of threads of Mesa's software renderer")

@@ -11,9 +11,9 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/status/client.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/demo_daemon.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -159,7 +159,7 @@ bool bench(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "Late frames, descriptors, threads and memory during thousands of reloads.");
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();
   app.option("--config", options.config, "The wall's configuration").required();

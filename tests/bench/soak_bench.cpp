@@ -12,8 +12,8 @@
 
 #include "config/loader.h"
 #include "daemon/base/clock.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/bench/soak/virtual_day.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
@@ -284,7 +284,7 @@ int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
   double warm_up_h = -1;
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "A day of the wall on a virtual clock, with people, faults and reloads.");
   app.option("--hours", options.hours, "Hours of virtual time").range(0.2, 10'000.0).showDefault();
   app.option("--seed", options.seed, "Seed of people, faults and devices").showDefault();

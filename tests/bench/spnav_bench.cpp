@@ -24,10 +24,10 @@
 #include <unistd.h>
 
 #include "drivers/io/pty_master.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/latency_kind.h"
 #include "tests/bench/latency_line.h"
-#include "tests/bench/options.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
 
@@ -291,7 +291,8 @@ bool bench(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  merlin::bench::Options app("Latency from a ball's byte to a client of the space-mouse socket.");
+  merlin::bench::CommandLine app(
+      "Latency from a ball's byte to a client of the space-mouse socket.");
   app.option("--bin", options.bin, "Folder of merlind").required();
   app.option("--samples", options.samples, "Number of records in a round")
       .range(10, 60'000)

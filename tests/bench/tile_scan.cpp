@@ -12,7 +12,7 @@
 
 #include "daemon/base/files.h"
 #include "render/mesh/io/mesh_file.h"
-#include "tests/bench/options.h"
+#include "tests/bench/command_line.h"
 
 namespace merlin {
 namespace {
@@ -131,7 +131,7 @@ int run(const std::string& scan, double triangles, const std::string& output) {
 }  // namespace merlin
 
 int main(int argc, char** argv) {
-  merlin::bench::Options app(
+  merlin::bench::CommandLine app(
       "Writes copies of a scan in tiles as a binary PLY with a given number of triangles");
   std::string scan, output;
   double triangles = 1e6;

@@ -21,8 +21,8 @@
 #include "daemon/base/random.h"
 #include "daemon/shm/fields.h"
 #include "daemon/shm/segment.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 #include "tests/support/temp_dir.h"
 
 namespace merlin::bench {
@@ -245,7 +245,7 @@ bool benchKills(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  merlin::bench::Options app("Torn reads of the shared memory; killed writers.");
+  merlin::bench::CommandLine app("Torn reads of the shared memory; killed writers.");
   app.option("--reads", options.reads, "Number of reads, of all processes together")
       .range(1.0, 1e15)
       .showDefault();

@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 
 #include "daemon/base/clock.h"
+#include "tests/bench/command_line.h"
 #include "tests/bench/demo_daemon.h"
 #include "tests/bench/figures.h"
-#include "tests/bench/options.h"
 
 namespace merlin::bench {
 namespace {
@@ -345,7 +345,7 @@ bool benchFaults(const Options& options, const test::TempDir& dir, Report& repor
 int main(int argc, char** argv) {
   merlin::bench::Options options;
   bool json = false;
-  merlin::bench::Options app("Late frames of the wall compared with those of a bare loop.");
+  merlin::bench::CommandLine app("Late frames of the wall compared with those of a bare loop.");
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();
   app.option("--config", options.config, "The wall's configuration").required();
   app.option("--seconds", options.seconds, "Length of each run, in seconds")

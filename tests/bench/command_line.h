@@ -1,5 +1,5 @@
 // Command-line options of a benchmark. The header of CLI11 adds seconds to the compilation of each
-// file that includes it, so only options.cpp includes it.
+// file that includes it, so only command_line.cpp includes it.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,10 @@
 
 namespace merlin::bench {
 
-class Options {
+class CommandLine {
  public:
-  explicit Options(const std::string& about);  // what the benchmark measures, for its help
-  ~Options();
+  explicit CommandLine(const std::string& about);  // what the benchmark measures, for its help
+  ~CommandLine();
 
   // As of cli::Command.
   template <typename T>
