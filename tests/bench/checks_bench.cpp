@@ -157,12 +157,9 @@ bool measure(const Options& options, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::CommandLine app("The cost of reading back what outputs show");
   merlin::bench::Options options;
-  bool json = false;
   app.option("--seconds", options.seconds, "Length of each run, in seconds").range(6.0, 3600.0);
   app.option("--rounds", options.rounds, "Runs of each kind").range(1, 1000);
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("checks", json, [&](merlin::bench::Report& report) {
+  return app.run("checks", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);
   });
 }

@@ -18,4 +18,12 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
   }
 }
 
+int CommandLine::run(const std::string& name, int argc, char** argv,
+                     const std::function<bool(Report&)>& measure) {
+  bool json = false;
+  flag("--json", json, "The figures as one JSON object");
+  if (const auto status = parse(argc, argv)) return *status;
+  return runBench(name, json, measure);
+}
+
 }  // namespace merlin::bench

@@ -2,11 +2,13 @@
 // file that includes it, so only command_line.cpp includes it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "daemon/cli/arguments.h"
+#include "tests/bench/figures.h"
 
 namespace merlin::bench {
 
@@ -15,7 +17,7 @@ class CommandLine {
   explicit CommandLine(const std::string& about);  // what the benchmark measures, for its help
   ~CommandLine();
 
-  // As of cli::Command.
+  // Adds an option or a flag, as cli::Command does.
   template <typename T>
   cli::Argument option(const std::string& names, T& value, const std::string& help = "") {
     return command().option(names, value, help);
@@ -24,9 +26,13 @@ class CommandLine {
     return command().flag(names, value, help);
   }
 
-  // Returns nothing if the benchmark is to run. Otherwise, after --help or an invalid argument,
+  // Returns nothing if the program is to run. Otherwise, after --help or an invalid argument,
   // prints the text and returns the exit status.
   std::optional<int> parse(int argc, char** argv);
+
+  // Adds --json, parses, and runs the benchmark `name` with runBench(); returns the exit status.
+  int run(const std::string& name, int argc, char** argv,
+          const std::function<bool(Report&)>& measure);
 
  private:
   cli::Command command();

@@ -106,7 +106,6 @@ bool fuzz(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   merlin::bench::CommandLine app("Gives mutated configurations to the loader.");
   app.option("--seed", options.seed,
              "Seed of the first configuration; each further one has the next seed")
@@ -116,9 +115,7 @@ int main(int argc, char** argv) {
       .showDefault();
   app.option("--configurations", options.configurations,
              "Folder of the example configurations; the default is config");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("fuzz-config", json, [&](merlin::bench::Report& report) {
+  return app.run("fuzz-config", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(options, report);
   });
 }

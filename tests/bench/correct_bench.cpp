@@ -167,13 +167,10 @@ bool measure(int frames, const std::string& gpu, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::CommandLine app("The cost of an output's correction for each frame");
   int frames = 200;
-  bool json = false;
   app.option("--frames", frames, "Number of frames for each correction").range(1, 100'000);
   std::string gpu = merlin::render::gl::kAnyGpu;
   app.option("--gpu", gpu, "The GPU that runs the shader, as in /wall/render/gpu").showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("correct", json, [&](merlin::bench::Report& report) {
+  return app.run("correct", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(frames, gpu, report);
   });
 }

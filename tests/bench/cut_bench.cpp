@@ -376,15 +376,12 @@ int main(int argc, char** argv) {
   merlin::bench::CommandLine app{
       "Cuts of large models compared with a memcpy; pictures of a budget spent evenly and by view"};
   merlin::bench::Options options;
-  bool json = false;
   app.option("--hgt", options.hgt,
              "An SRTM 3 tile; the default is " + std::string(merlin::bench::kTile) +
                  " or, if that does not exist, synthetic hills");
   app.option("--out", options.out, "Folder for models and pictures").showDefault();
   app.flag("--small", options.small, "Leaves out the model of 11.5 million triangles");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("cut", json, [&](merlin::bench::Report& report) {
+  return app.run("cut", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::run(options, report);
   });
 }

@@ -141,11 +141,8 @@ bool run(Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  bool json = false;
   merlin::bench::CommandLine app("Recall compared with FANN with the same weights.");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench(
+  return app.run(
       merlin::bench::kDouble ? "posture beside FANN in double" : "posture beside FANN in float",
-      json, merlin::bench::run);
+      argc, argv, merlin::bench::run);
 }

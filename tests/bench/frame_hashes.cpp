@@ -124,12 +124,8 @@ bool run(const std::vector<std::string>& paths, Report& report) {
 
 int main(int argc, char** argv) {
   std::vector<std::string> models;
-  bool json = false;
   merlin::bench::CommandLine app("Hashes of a fixed script of frames of each model.");
   app.option("models", models, "Models (.mrm)").required();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("frames", json, [&](merlin::bench::Report& report) {
-    return merlin::bench::run(models, report);
-  });
+  return app.run("frames", argc, argv,
+                 [&](merlin::bench::Report& report) { return merlin::bench::run(models, report); });
 }

@@ -351,13 +351,10 @@ void fuzz(const FuzzTarget& target, double most, std::uint64_t seed, Report& rep
 int main(int argc, char** argv) {
   double bytes = 1e8;
   std::uint64_t seed = 1;
-  bool json = false;
   merlin::bench::CommandLine app("Gives random and mutated bytes to every parser.");
   app.option("--bytes", bytes, "Number of bytes for each parser").range(1.0, 1e15).showDefault();
   app.option("--seed", seed, "Seed of the bytes").showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("fuzz", json, [&](merlin::bench::Report& report) {
+  return app.run("fuzz", argc, argv, [&](merlin::bench::Report& report) {
 #ifndef MERLIN_ADDRESS_SANITIZER
     report.text("(without sanitizers: only a crash would show)\n");
 #endif

@@ -298,10 +298,7 @@ bool run(Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  bool json = false;
   merlin::bench::CommandLine app(
       "Gestures: rates, confusions, false reports, training from few takes, cost.");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("gesture", json, merlin::bench::run);
+  return app.run("gesture", argc, argv, merlin::bench::run);
 }

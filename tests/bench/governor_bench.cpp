@@ -204,14 +204,11 @@ bool bench(std::size_t seeds, const std::string& recorded, Report& report) {
 int main(int argc, char** argv) {
   std::size_t seeds = 20;
   std::string trace = MERLIN_SOURCE_DIR "/tests/data/governor_demo.txt";
-  bool json = false;
   merlin::bench::CommandLine app(
       "MERLIN's governor compared with other control laws, on a virtual clock.");
   app.option("--seeds", seeds, "Number of runs of each law on each trace").range(1, 1000);
   app.option("--trace", trace, "File with recorded frames of the real renderer").showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("governor", json, [&](merlin::bench::Report& report) {
+  return app.run("governor", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::bench(seeds, trace, report);
   });
 }

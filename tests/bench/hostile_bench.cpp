@@ -68,12 +68,9 @@ int main(int argc, char** argv) {
   merlin::bench::CommandLine app{
       "Reduces hostile shapes and, for comparison, a regular mesh of the same size"};
   merlin::bench::Options options;
-  bool json = false;
   app.option("--triangles", options.triangles, "Number of triangles of each shape").showDefault();
   app.option("--turns", options.turns, "Number of turns; each reduces all shapes").showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("hostile", json, [&](merlin::bench::Report& report) {
+  return app.run("hostile", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::run(options, report);
   });
 }

@@ -193,7 +193,6 @@ void benchKinds(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   merlin::bench::CommandLine app("Latency from a line's byte to a client of the shared memory.");
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();
   app.option("--config", options.config, "The demo's configuration").required();
@@ -201,9 +200,7 @@ int main(int argc, char** argv) {
       .range(1, 60'000)
       .showDefault();
   app.option("--rounds", options.rounds, "Number of rounds").range(1, 1000).showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("latency", json, [&](merlin::bench::Report& report) {
+  return app.run("latency", argc, argv, [&](merlin::bench::Report& report) {
     const merlin::test::TempDir dir;
     benchCpu(options, dir, report);
     benchEquation(options, dir, report);

@@ -92,13 +92,10 @@ bool fuzz(std::uint64_t seed, std::uint64_t count, Report& report) {
 int main(int argc, char** argv) {
   merlin::bench::CommandLine app("Gives hostile meshes to every step of mesh processing.");
   std::uint64_t seed = 1, count = 10'000'000;
-  bool json = false;
   app.option("--seed", seed, "Seed of the first mesh; each further one has the next seed")
       .showDefault();
   app.option("--count", count, "Number of meshes").range(1, 1'000'000'000).showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("fuzz-meshes", json, [&](merlin::bench::Report& report) {
+  return app.run("fuzz-meshes", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(seed, count, report);
   });
 }

@@ -148,11 +148,8 @@ int main(int argc, char** argv) {
   merlin::bench::CommandLine app(
       "The cost of the plates and the panel over the operator's tile for each frame");
   int frames = 100;
-  bool json = false;
   app.option("--frames", frames, "Number of frames that draw the plates anew").range(1, 100'000);
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("operator", json, [&](merlin::bench::Report& report) {
+  return app.run("operator", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(frames, report);
   });
 }

@@ -380,12 +380,9 @@ int main(int argc, char** argv) {
       "The cost of an output of each kind, and late frames of the others while one is slow or "
       "stuck");
   merlin::bench::Options options;
-  bool json = false;
   app.option("--seconds", options.seconds, "Length of each run, in seconds").range(1.0, 3600.0);
   app.option("--rounds", options.rounds, "Runs of each kind").range(1, 1000);
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("outputs", json, [&](merlin::bench::Report& report) {
+  return app.run("outputs", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(options, report);
   });
 }

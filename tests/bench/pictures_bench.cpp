@@ -260,15 +260,12 @@ int main(int argc, char** argv) {
   merlin::bench::Options options;
   merlin::bench::CommandLine app(
       "Late frames and memory with large pictures, and the time to the first picture.");
-  bool json = false;
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();
   app.option("--config", options.config, "The demo's configuration").required();
   app.option("--work", options.work, "Folder for the pictures");
   app.option("--seconds", options.seconds, "Seconds of motion of each kind");
   app.option("--shows", options.shows, "Number of calls of merlin show");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("pictures", json, [&](merlin::bench::Report& report) {
+  return app.run("pictures", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::benchPictures(options, report);
   });
 }

@@ -245,10 +245,7 @@ bool run(Report& report) {
 }  // namespace merlin::bench
 
 int main(int argc, char** argv) {
-  bool json = false;
   merlin::bench::CommandLine app(
       "The posture network: training, adapting, drift, flicker, recall.");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("posture", json, merlin::bench::run);
+  return app.run("posture", argc, argv, merlin::bench::run);
 }

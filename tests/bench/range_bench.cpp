@@ -210,15 +210,12 @@ int main(int argc, char** argv) {
       "From a range image to two million triangles, compared with reading and writing the bytes "
       "alone");
   int rounds = 15;
-  bool json = false;
   std::string work = "build/bench/range", peer;
   app.option("--rounds", rounds, "Number of imports, and of copies of the bytes").range(1, 1000);
   app.option("--work", work, "Folder for the files").showDefault();
   app.option("--peer-program", peer,
              "Program with the same steps by PCL; ./dev bench range --peer builds it");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("range", json, [&](merlin::bench::Report& report) {
+  return app.run("range", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::measure(rounds, work, peer, report);
   });
 }

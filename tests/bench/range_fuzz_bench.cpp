@@ -290,12 +290,9 @@ int main(int argc, char** argv) {
   merlin::bench::CommandLine app(
       "Gives damaged range files and point clouds to MERLIN's own readers");
   std::uint64_t inputs = 10'000'000, seed = 1;
-  bool json = false;
   app.option("--inputs", inputs, "Number of files");
   app.option("--seed", seed, "Seed of the first file; each further one has the next seed");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("fuzz-ranges", json, [&](merlin::bench::Report& report) {
+  return app.run("fuzz-ranges", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::fuzz(seed, inputs, report);
   });
 }

@@ -210,16 +210,13 @@ bool run(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   merlin::bench::CommandLine app("Rates at full resolution, compared with those of 1998.");
   app.option("--scan", options.scan, "A scan with colours").showDefault();
   app.option("--raster-threads", options.raster_threads,
              "Number of threads of Mesa's software renderer")
       .range(0, 16);
   app.flag("!--coloured", options.textured, "Colours at the vertices instead of a texture");
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("rates", json, [&](merlin::bench::Report& report) {
+  return app.run("rates", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::run(options, report);
   });
 }

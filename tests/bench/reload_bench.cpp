@@ -158,7 +158,6 @@ bool bench(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   merlin::bench::CommandLine app(
       "Late frames, descriptors, threads and memory during thousands of reloads.");
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();
@@ -170,9 +169,7 @@ int main(int argc, char** argv) {
   app.option("--pause", options.pause, "Pause between two reloads, in seconds")
       .range(0.0, 3600.0)
       .showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("reload", json, [&](merlin::bench::Report& report) {
+  return app.run("reload", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::bench(options, report);
   });
 }

@@ -282,7 +282,6 @@ bool bench(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   double warm_up_h = -1;
   merlin::bench::CommandLine app(
       "A day of the wall on a virtual clock, with people, faults and reloads.");
@@ -292,10 +291,8 @@ int main(int argc, char** argv) {
              "Hours at the beginning whose memory does not count; the default is a quarter, at "
              "most two")
       .range(0.0, 1000.0);
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  options.warm_up_h = warm_up_h >= 0 ? warm_up_h : std::min(2.0, options.hours / 4);
-  return merlin::bench::runBench("soak", json, [&](merlin::bench::Report& report) {
+  return app.run("soak", argc, argv, [&](merlin::bench::Report& report) {
+    options.warm_up_h = warm_up_h >= 0 ? warm_up_h : std::min(2.0, options.hours / 4);
     return merlin::bench::bench(options, report);
   });
 }

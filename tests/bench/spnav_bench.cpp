@@ -290,7 +290,6 @@ bool bench(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   merlin::bench::CommandLine app(
       "Latency from a ball's byte to a client of the space-mouse socket.");
   app.option("--bin", options.bin, "Folder of merlind").required();
@@ -298,9 +297,7 @@ int main(int argc, char** argv) {
       .range(10, 60'000)
       .showDefault();
   app.option("--rounds", options.rounds, "Number of rounds").range(1, 1000).showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("spnav", json, [&](merlin::bench::Report& report) {
+  return app.run("spnav", argc, argv, [&](merlin::bench::Report& report) {
     return merlin::bench::bench(options, report);
   });
 }

@@ -244,7 +244,6 @@ bool benchKills(const Options& options, Report& report) {
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   merlin::bench::CommandLine app("Torn reads of the shared memory; killed writers.");
   app.option("--reads", options.reads, "Number of reads, of all processes together")
       .range(1.0, 1e15)
@@ -256,9 +255,7 @@ int main(int argc, char** argv) {
   app.option("--readers", options.readers, "Number of processes that read")
       .range(1, 1000)
       .showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("torn", json, [&](merlin::bench::Report& report) {
+  return app.run("torn", argc, argv, [&](merlin::bench::Report& report) {
     const bool torn = benchTorn(options, report);
     const bool killed = benchKills(options, report);
     return torn && killed;

@@ -344,7 +344,6 @@ bool benchFaults(const Options& options, const test::TempDir& dir, Report& repor
 
 int main(int argc, char** argv) {
   merlin::bench::Options options;
-  bool json = false;
   merlin::bench::CommandLine app("Late frames of the wall compared with those of a bare loop.");
   app.option("--bin", options.bin, "Folder of merlind and merlin").required();
   app.option("--config", options.config, "The wall's configuration").required();
@@ -352,9 +351,7 @@ int main(int argc, char** argv) {
       .range(1, 86'400)
       .showDefault();
   app.option("--rounds", options.rounds, "Number of rounds").range(1, 1000).showDefault();
-  app.flag("--json", json, "The figures as one JSON object");
-  if (const auto status = app.parse(argc, argv)) return *status;
-  return merlin::bench::runBench("wall", json, [&](merlin::bench::Report& report) {
+  return app.run("wall", argc, argv, [&](merlin::bench::Report& report) {
     const merlin::test::TempDir dir;
     benchLate(options, dir, report);
     return benchFaults(options, dir, report);
