@@ -141,6 +141,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/usr/lib/systemd/system/merlin-alarms.service",
                            "/usr/lib/sysusers.d/merlin-alarms.conf",
                            "/usr/lib/systemd/system/merlin.target",
+                           "/usr/lib/systemd/system/merlin.slice",
                            "/usr/lib/systemd/system/merlin-wall.service.d/displays.conf",
                            "/usr/lib/tmpfiles.d/merlin.conf",
                            "/usr/lib/udev/rules.d/60-merlin.rules",

@@ -275,6 +275,10 @@ class Package(unittest.TestCase):
         MACHINE.run("systemctl start merlin.target merlin-devices merlin-wall || { journalctl -u 'merlin-*' --no-pager | tail -n 30; false; }")
         print(f"from systemctl start to READY {time.monotonic() - begin:.1f} s")
         self.assertEqual([state(u) for u in ("merlin.target",) + UNITS], ["active"] * 4)
+        self.assertEqual(MACHINE.run("systemctl show -p Slice --value merlin-wall").strip(), "merlin.slice")
+        tasks = f"/proc/{pid('merlin-wall')}/task/*"
+        nice = MACHINE.run(f"for t in {tasks}; do [ \"$(cat $t/comm)\" != wall ] || cut -d' ' -f19 $t/stat; done").strip()
+        self.assertEqual(nice, "-10", "the wall's thread may not go first")
         print(MACHINE.run("merlin status"))
         until = time.monotonic() + 10 + vm.DEADLINE_S  # the playlist begins after ten seconds
         shown = []
