@@ -10,7 +10,7 @@
 
 namespace merlin {
 
-void giveWay() noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 19); }
+void giveWay() noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10); }
 
 void goFirst() noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), -10); }
 

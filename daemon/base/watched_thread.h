@@ -47,8 +47,9 @@ class Progress {
   std::atomic<bool> paused_{false};
 };
 
-// Gives the calling thread, and threads that it starts, the lowest priority (nice 19), so that
-// drawing frames comes first.
+// Gives the calling thread, and threads that it starts, a low priority (nice 10), so that drawing
+// frames comes first. Not the lowest: on a machine that other programs keep busy, a thread with
+// nice 19 gets a hundredth of a processor, and a reload takes minutes.
 void giveWay() noexcept;
 
 // Gives the calling thread, and threads that it starts, a higher priority than other programs have
@@ -59,7 +60,7 @@ void goFirst() noexcept;
 // Names the calling thread for `top -H` and debuggers, which show the first 15 characters.
 void nameThread(const std::string& name) noexcept;
 
-// State of one thread.
+// State of one thread, copied by ThreadWatch::threads().
 struct ThreadState {
   std::uint64_t id = 0;  // unique within the watch
   std::string name;      // for a person: "status of the wall"
