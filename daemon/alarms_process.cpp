@@ -28,13 +28,13 @@ namespace merlin {
 namespace {
 
 constexpr Duration kWatchdogPing = std::chrono::seconds(1);
-// A run that began longer ago than this is not asked for the events of its start.
+// The events of a run's start are requested only if the run began less than this time ago.
 constexpr Duration kStartIsNews = std::chrono::minutes(10);
 constexpr const char* kTest = "this is a test, asked for by SIGUSR1";
 constexpr Duration kAskAgain = std::chrono::seconds(3);
 constexpr Duration kAnswerWithin = std::chrono::seconds(2);
 
-// Whether a process of this role has something to do on this machine.
+// Whether the configuration has work for the role wall, or for the role devices, on this machine.
 bool hasWall(const Settings& settings) {
   const auto contents = wall::contentsOf(settings.wall);
   return std::ranges::any_of(contents, [](const auto& entry) { return !entry.path.empty(); });
@@ -71,8 +71,8 @@ void waitForTests() {
 
 using Tell = std::function<void(const alarms::AlarmEvent&)>;
 
-// One role of merlind, followed over its restarts: whether it is missed, and what it said before it
-// was followed.
+// Follows one role of merlind across its restarts: reports when the role is missing, and requests
+// the events that it published before it was followed.
 template <typename Watch>
 class FollowedRole {
  public:
@@ -80,7 +80,7 @@ class FollowedRole {
                page::EventLog& events)
       : events_(events), watch_(instance, role, events), state_(role, expected, now) {}
 
-  // Never waits. `tell`: is called with each event of the role's answer.
+  // Never waits. `tell` is called with each event in the role's answer to the command `events`.
   void update(Timestamp now, const Tell& tell) {
     watch_.update(now);
     if (const auto said = state_.update(watch_.generation(), now))
@@ -90,8 +90,8 @@ class FollowedRole {
   const auto* segment() const noexcept { return watch_.segment(); }
 
  private:
-  // Asks a run that starts for its events twice: the second answer also has what the role said
-  // between the first answer and the moment from which its events reach us.
+  // Requests the events of a newly started run twice. The second answer also has the events that
+  // the role published after the first answer and before its events reach us by subscription.
   void askForStart(Timestamp now, const Tell& tell) {
     if (std::exchange(generation_, watch_.generation()) != watch_.generation()) {
       answers_due_ = isStarting(now) ? 2 : 0;
@@ -102,7 +102,7 @@ class FollowedRole {
       ask_at_ = now + kAskAgain;
     }
     queue_.update(watch_.commandEndpoint(), now, [&](std::uint64_t of, const auto& answer) {
-      if (!answer || of != generation_) return;  // the run is asked again
+      if (!answer || of != generation_) return;  // failed, or of an earlier run
       if (answers_due_ > 0) --answers_due_;
       for (const alarms::AlarmEvent& event : alarms::eventsOf(watch_.role(), *answer)) tell(event);
     });
@@ -120,7 +120,7 @@ class FollowedRole {
   Timestamp ask_at_{};
 };
 
-// One alarm: its events and its program, of which one runs at a time.
+// One alarm: its queue of events, and its program, which runs at most once at a time.
 class Alarm {
  public:
   Alarm(const AlarmSettings& settings, std::string instance)
@@ -150,8 +150,8 @@ class Alarm {
   }
 
  private:
-  // REQUIRES: no start is allowed now. Logs once that events wait, and again only after none
-  // waited.
+  // Logs that events wait, and again only after the queue was empty. REQUIRES: queue_.next() has
+  // returned nothing.
   void sayWhatWaits() {
     const bool waits = queue_.waiting() > 0;
     if (waits && !told_that_some_wait_) {
@@ -205,7 +205,7 @@ class AlarmsProcess {
     devices_.update(now, tell);
     for (const page::LoggedEvent& event : events_.after(seen_)) {
       seen_ = event.number;
-      if (event.role == "page") continue;  // from the watches, of a role: RoleState waits first
+      if (event.role == "page") continue;  // RoleWatch's report; RoleState waits before its own
       add({event.role, event.time_utc, event.kind, event.what, event.severity});
     }
     for (Alarm& alarm : alarms_) alarm.tend(now);

@@ -1,5 +1,6 @@
-// The process of `merlind --role alarms`: starts the programs of /alarms when something happens. It
-// has no other role, so that it keeps running when another merlind ends, and can report that.
+// The process of `merlind --role alarms`: starts the programs that the setting /alarms names when
+// an event occurs. It has no other role, so that it keeps running when another merlind ends, and
+// can report that.
 #pragma once
 
 #include <functional>
@@ -10,9 +11,10 @@
 
 namespace merlin {
 
-// Runs until it is asked to stop or to start again, as askedBySignal() says, and returns which of
-// the two; notifies systemd of its start and its progress. Events before its start raise no alarm.
-// REQUIRES: SIGTERM, SIGINT and SIGHUP are blocked.
+// Runs the role until a signal asks it to stop or to start again (see askedBySignal()), and returns
+// Asked::kStop or Asked::kStartAgain. Notifies systemd of its start and its progress. Events that a
+// role published before this process started raise alarms only if that role itself started less
+// than 10 minutes ago. REQUIRES: SIGTERM, SIGINT and SIGHUP are blocked.
 Asked runAlarms(const Settings& settings, Clock& clock, const std::function<bool()>& is_valid);
 
 }  // namespace merlin

@@ -78,7 +78,8 @@ void checkSpnavSocket(LoadedSettings& loaded) {
   take(checkWritableFolder(folder.empty() ? "." : folder), kPointer, loaded);
 }
 
-// A start goes on without a state file that can be written (see StateKeeper); a reload refuses it.
+// Checks that the state file can be written. If it cannot, a start continues with a warning (see
+// StateKeeper), but a reload is refused.
 void checkStateWritable(Reading reading, const char* pointer, LoadedSettings& loaded) {
   const std::string& path = loaded.settings.state_file;
   const std::string folder = std::filesystem::path(path).parent_path().string();

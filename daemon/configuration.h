@@ -13,24 +13,25 @@ namespace merlin {
 struct DaemonOptions {
   bool devices = true, wall = true;  // the roles of this process
   bool emulate = false;
-  bool page = false;    // the role page; without devices and wall
-  bool alarms = false;  // the role alarms; without devices and wall
-  // The file in which the settings in effect are kept; empty: they are not kept.
+  bool page = false;    // whether this process has the role page; it then has no other
+  bool alarms = false;  // whether this process has the role alarms; it then has no other
+  // The file in which the last good settings are kept (daemon/last_good.h); empty: they are not
+  // kept.
   std::string last_good{};
 };
 
 struct Configuration {
   LoadedSettings loaded;  // the settings, with all findings
-  // For the role wall; not to be used if the verdict is kInvalid.
+  // The wall's contents; only for the role wall, and not to be used if the verdict is kInvalid.
   std::vector<wall::WallContent> contents;
   std::string file;
-  // A sentence: why this is not the configuration of `file` but the previous one
-  // (daemon/last_good.h); empty: it is that of the file.
+  // Why the last good settings are used instead of those of `file` (daemon/last_good.h), as a
+  // sentence; empty: these are the settings of `file`.
   std::string instead_of{};
 };
 
-// kAgain: merlind already runs with a configuration of this file; contents and renderer are not
-// read again, because that may take long.
+// Why the configuration is read. kStart: merlind starts. kAgain: merlind runs and reloads the file;
+// the contents are not read and the renderer is not checked again, because that may take long.
 enum class Reading { kStart, kAgain };
 
 // Reads the file and all other files that merlind reads when it starts with these roles; files that
@@ -40,7 +41,8 @@ enum class Reading { kStart, kAgain };
 Configuration readConfiguration(const std::string& file, const DaemonOptions& options,
                                 Reading reading = Reading::kStart);
 
-// The findings as lines, and how many further ones there are.
+// Returns one line of text for each finding and, if some findings were left out, a last line with
+// their number. `file`: name of the configuration, for the lines.
 std::vector<std::string> findingLines(const std::string& file, const LoadedSettings& loaded);
 
 }  // namespace merlin

@@ -29,16 +29,16 @@ sigset_t takenSignals() {
   return set;
 }
 
-// Also sets systemd's watchdog time to that of the unit again: tellEnd() lengthened it if this
-// program has started itself again.
+// Notifies systemd that the service is ready, and resets the watchdog time to that of the unit,
+// because tellEnd() has lengthened it if this program has restarted itself.
 void tellReady() {
   std::uint64_t usec = 0;
   const bool watched = ::sd_watchdog_enabled(0, &usec) > 0;
   ::sd_notify(0, watched ? fmt::format("READY=1\nWATCHDOG_USEC={}", usec).c_str() : "READY=1");
 }
 
-// Ends the process after 20 s: a thread that hangs, for example in a file system that does not
-// answer, cannot be joined.
+// Makes an alarm end the process in 20 s, because a thread that hangs, for example in a file system
+// that does not answer, cannot be joined.
 void limitStop() {
   constexpr unsigned kSeconds = 20;  // less than systemd's stop time-out
   ::signal(SIGALRM, [](int) {
@@ -53,8 +53,9 @@ void limitStop() {
   ::alarm(kSeconds);
 }
 
-// Error kBusy if a running daemon has a segment of these roles. To be checked before the emulators
-// start, because they would replace the links to another daemon's pseudo-terminals.
+// Returns the error kBusy if a running daemon owns the segment of one of these roles. To be called
+// before the emulators start, because they would replace the links to another daemon's
+// pseudo-terminals.
 Result<Ok> checkNotRunning(const std::string& instance, const DaemonOptions& roles) {
   for (const auto& [role, wanted] :
        {std::pair{"devices", roles.devices}, std::pair{"wall", roles.wall}}) {
@@ -195,7 +196,8 @@ void Daemon::connectRoles() {
                    threads_, clock_);
 }
 
-// A person at a window gives commands, as clients of the sockets do.
+// Lets a person at a window send the same commands as clients of the sockets, and stop merlind by
+// closing the window.
 void Daemon::serveWindows() {
   wall_->onWindow({[this](const std::string& name, const std::string& argument) {
                      return commands_->run(name, argument);
@@ -206,8 +208,8 @@ void Daemon::serveWindows() {
                    }});
 }
 
-// Executes the actions that the role devices and the panel are responsible for. Actions for walls
-// are executed by the walls.
+// Executes the bound actions that belong to the role devices and its control panel. Each wall
+// executes its own actions.
 void Daemon::executeActions() {
   for (const std::size_t action : device_actions_.read(devices_->slots()).in_order) {
     if (action >= kActions.size()) continue;  // shared memory may be written by other processes
@@ -227,8 +229,8 @@ void Daemon::tendLamp(Timestamp now) {
   warned_of_ = std::move(why);
 }
 
-// Executes what was asked for on the operator's panel by the ball, and tells the panel the state of
-// the projectors.
+// Executes the commands that the ball has requested on the operator's panel, and passes the state
+// of the projectors to the panel.
 void Daemon::tendPanel() {
   commands_->runPanel();
   if (devices_beside_) {

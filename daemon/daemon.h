@@ -46,16 +46,16 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Runs until SIGTERM or SIGINT; on SIGHUP it reads the configuration again. If that has changes
-  // that only a start can apply, it returns too, and startsAgain() is true. Tells systemd when the
-  // first frame is shown, and from then on that every thread still makes progress (its watchdog).
-  // Errors: those of starting the servers; the first frame could not be drawn; kClosed (stopped
-  // before the first frame); a thread has ended unexpectedly.
+  // Runs until SIGTERM or SIGINT; on SIGHUP it reads the configuration again. If a change takes
+  // effect only at a start, run() returns, and startsAgain() is true. Tells systemd when the first
+  // frame is shown, and from then on that every thread still makes progress (its watchdog). Errors:
+  // those of starting the servers; the first frame could not be drawn; kClosed (stopped before the
+  // first frame); a thread has ended unexpectedly.
   Result<Ok> run();
   bool startsAgain() const noexcept { return starts_again_; }
   // Whether run() has told systemd READY=1.
   bool wasReady() const noexcept { return was_ready_; }
-  // Returns the files that are to stay open for the next start: see ProgramRestart.
+  // Returns the open files that the restarted program takes over, for ProgramRestart::now().
   std::vector<std::pair<std::string, UniqueFd>> handOver() { return kept_files_.handOver(); }
 
  private:
@@ -82,7 +82,7 @@ class Daemon {
   // them, so that it is destroyed first.
   Settings settings_;
   Reloader::Configured configured_;          // as configured in the files; moved into reloader_
-  const std::string file_, instead_of_;      // Configuration's
+  const std::string file_, instead_of_;      // as in Configuration
   std::vector<wall::WallContent> contents_;  // moved into wall_ when that is created
   DaemonOptions options_;
   Clock& clock_;

@@ -19,15 +19,17 @@ class DevicesBeside {
  public:
   explicit DevicesBeside(const std::string& instance);
 
-  // Queues the command, which the next update() sends. Thread-safe. Errors: kBusy (too many wait).
+  // Queues the command; update() sends queued commands one after another. Thread-safe. Errors:
+  // kBusy (too many commands wait).
   Result<Ok> send(const std::string& command, Timestamp now);
 
-  // To be called on one thread, ten times a second: sends commands and takes what has arrived;
-  // never waits. Calls `refused` with the reason for each command that was not executed.
+  // Sends queued commands, and receives answers and status documents, without waiting. Calls
+  // `refused` with the reason for each command that was not executed. To be called ten times a
+  // second, always by the same thread.
   void update(Timestamp now, const std::function<void(const std::string& why)>& refused);
 
-  // The projectors in the newest status document; none while the role does not run. To be called on
-  // the thread of update().
+  // Returns the projectors in the newest status document; none while the role devices does not run.
+  // To be called on the thread of update().
   const std::vector<wall::ProjectorsSeen>& projectors() const noexcept { return projectors_; }
 
  private:

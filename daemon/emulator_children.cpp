@@ -18,7 +18,7 @@
 namespace merlin {
 namespace {
 
-// The path of the program merlin, which is in the same folder as this program. Errors: kIo.
+// Returns the path of the program merlin, which is in the same folder as this program. Errors: kIo.
 Result<std::string> merlinProgram() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -56,8 +56,8 @@ std::string placeLine(DeviceSettings& device, const std::string& instance,
   return port.substr(kPty.size());
 }
 
-// The highest station that a hand or the head uses of this tracker, at least 1: the emulated
-// Fastrak has that many receivers.
+// Returns the highest station number of this tracker that a hand or the head uses, at least 1. The
+// emulated Fastrak has that many receivers.
 int stationsOf(const Settings& settings, const std::string& tracker) {
   int highest = 1;
   const auto use = [&](const std::string& name, int station) {
@@ -71,7 +71,7 @@ int stationsOf(const Settings& settings, const std::string& tracker) {
   return highest;
 }
 
-// The command line of `merlin emulate` for this device.
+// Returns the command line of `merlin emulate` for this device.
 std::vector<std::string> emulateCommand(const std::string& program, const Settings& settings,
                                         const DeviceSettings& device, const std::string& link) {
   const LineSettings& line = device.line;

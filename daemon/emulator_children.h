@@ -1,5 +1,5 @@
-// The processes that `merlind --emulate` starts: `merlin emulate DEVICE --link PATH`, one per
-// device, so that each can be killed separately.
+// Manages the processes that `merlind --emulate` starts: `merlin emulate DEVICE --link PATH`, one
+// per device, so that each can be killed separately.
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ class EmulatorChildren {
   struct Emulated {
     std::string device, driver;  // the device's name, and the driver that is emulated
   };
-  // The devices whose emulator process has ended since the last call.
+  // Returns the devices whose emulator process has ended since the last call.
   std::vector<Emulated> takeEnded();
 
  private:

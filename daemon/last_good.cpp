@@ -20,14 +20,15 @@ namespace fs = std::filesystem;
 constexpr Duration kStep = std::chrono::milliseconds(200);
 constexpr Duration kTryAgain = std::chrono::seconds(5);  // after a failure: the disk may be full
 
-// Removes from `mode` the permissions that the file does not give.
+// Removes from `mode` the permission bits that the file does not have; does nothing if the file is
+// missing.
 void restrictTo(const fs::path& file, mode_t& mode) {
   struct stat status {};
   if (::stat(file.c_str(), &status) == 0) mode &= status.st_mode;
 }
 
-// The permissions of the kept file: for others than its owner at most those that every file of the
-// configuration gives. The group can read it because, under systemd's units, the roles page and
+// Returns the permissions of the kept file: 0640, or 0600 if the group may not read every file of
+// the configuration. The group needs access because, under systemd's units, the roles page and
 // alarms run as other users of the group merlin.
 mode_t modeLike(const std::string& configuration) {
   mode_t mode = 0640;
@@ -49,7 +50,7 @@ std::optional<Configuration> readLastGood(const std::string& file, const Configu
   Configuration kept = readConfiguration(file, options);
   for (const std::string& line : findingLines(file, kept.loaded)) logWarning("{}", line);
   if (kept.loaded.verdict() == LoadedSettings::Verdict::kInvalid) return std::nullopt;
-  kept.file = broken.file;  // what a reload reads
+  kept.file = broken.file;  // the file that a reload reads
   const auto findings = findingLines(broken.file, broken.loaded);
   kept.instead_of = fmt::format(
       "{}; merlind runs with the last valid configuration, kept in {}: correct the file, then "
@@ -95,7 +96,7 @@ void LastGoodKeeper::loop(const std::stop_token& stop, Progress& progress) {
       if (write(*unwritten)) unwritten.reset();
       next_try = clock.now() + kTryAgain;
     }
-    if (last) return;  // even if it failed
+    if (last) return;  // even if writing failed
   }
 }
 

@@ -13,25 +13,26 @@
 
 namespace merlin {
 
-// Returns the configuration kept in `file` (state::lastGoodFile()), to replace `broken`; it is
-// checked as any other, and has the reason why it is used. Nothing if none is kept, or if the kept
-// one is not valid (any more).
+// Reads the last good settings from `file` (state::lastGoodFile()), which are to be used instead of
+// the invalid configuration `broken`. They are checked like any configuration; `instead_of` says
+// why they are used. Returns nothing if `file` is empty or missing, or its settings are invalid.
 std::optional<Configuration> readLastGood(const std::string& file, const Configuration& broken,
                                           const DaemonOptions& options);
 
-// Writes on a thread of its own, so that a slow disk delays nobody. Thread-bound.
+// Writes the file on a thread of its own, so that a slow disk does not delay the caller.
+// Thread-bound.
 class LastGoodKeeper {
  public:
-  // `configuration`: the file whose settings are kept in `file`. Only those who may read every file
-  // of the configuration may read `file`, and at most its owner and group, since it contains
-  // everything that is in them. `watch` must outlive this object.
+  // `configuration`: the configuration file whose settings are kept in `file`. Since `file`
+  // contains all of these settings, its group can read it only if the permissions of every file of
+  // the configuration allow that, and others never can. `watch` must outlive this object.
   LastGoodKeeper(std::string file, const std::string& configuration, ThreadWatch& watch);
-  ~LastGoodKeeper();  // writes what is not written yet
+  ~LastGoodKeeper();  // writes the settings that are not written yet
   LastGoodKeeper(const LastGoodKeeper&) = delete;
   LastGoodKeeper& operator=(const LastGoodKeeper&) = delete;
 
-  // Keeps these settings. If the file cannot be written, the log says so, once for each reason, and
-  // it is tried again every 5 s.
+  // Queues these settings for writing. If writing fails, it is tried again every 5 s, and each new
+  // reason is logged once.
   void keep(const Settings& settings);
 
  private:

@@ -72,8 +72,8 @@ DaemonOptions daemonOptions(const Options& options) {
           options.last_good ? state::lastGoodFile(options.config, options.role) : std::string()};
 }
 
-// The settings to start with when the configuration is invalid. The page and the alarms, which save
-// no settings, take those of the processes that they follow.
+// Returns the settings to start with when the configuration is invalid. The page and the alarms,
+// which save no settings, take those of the processes that they follow.
 std::optional<Configuration> lastGood(const Options& options, const Configuration& broken) {
   const DaemonOptions with = daemonOptions(options);
   if (!options.last_good) return std::nullopt;
@@ -131,8 +131,8 @@ void blockSignals() {
   ::sigemptyset(&set);
   for (const int s : {SIGTERM, SIGINT, SIGHUP, SIGCHLD}) ::sigaddset(&set, s);
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  // If whoever started merlind ignores it, no end of a child could be waited for, and no alarm
-  // would be told after the first.
+  // If the program that started merlind ignored SIGCHLD, merlind could not wait for the end of a
+  // child, and would report no alarm after the first one.
   ::signal(SIGCHLD, SIG_DFL);
   // Signals that have no meaning for merlind are ignored. With SIGXFSZ ignored, write() returns an
   // error when a file-size limit is exceeded.
@@ -157,7 +157,8 @@ int exitStatusOf(const Result<Ok>& ran) {
   return ran.error().code == Errc::kClosed ? kExitDone : exitStatus(ran.error());
 }
 
-// Runs the role page or alarms, which starts the program again for a changed configuration.
+// Runs the role page or alarms. To apply a changed configuration, these roles start the program
+// again.
 int runBeside(const Options& options, const Settings& settings, const ProgramRestart& restart) {
   const auto is_valid = [&] {
     const Configuration fresh = checkedConfiguration(options.config, options);
@@ -200,9 +201,9 @@ int runDaemon(const Options& options, const ProgramRestart& restart) {
   const Result<Ok> ran = (*daemon)->run();
   if (!ran || !(*daemon)->startsAgain()) {
     const int status = exitStatusOf(ran);
-    // Not after a fault of a process that ran: its successor is to be there at once.
+    // No delay after a fault of a process that was ready, so that its successor starts at once.
     const bool waits = !ran && !(*daemon)->wasReady() && ran.error().code != Errc::kClosed;
-    daemon->reset();  // holds no line and no socket while it waits
+    daemon->reset();  // releases all lines and sockets before the delay
     if (waits) delayRestart();
     return status;
   }

@@ -12,7 +12,7 @@
 
 namespace merlin {
 
-// By JSON pointer of the setting that names the file.
+// A file that a setting names. NamedFiles has an entry for each such setting, by its JSON pointer.
 struct NamedFile {
   std::string name;
   std::size_t contents = 0;  // a hash of the bytes, or of why they cannot be read
@@ -24,8 +24,8 @@ using NamedFiles = std::map<std::string, NamedFile>;
 // files).
 NamedFiles readNamedFiles(const Settings& settings);
 
-// Returns a change for each file that has the same name but different contents in the two. Changed
-// names are found by comparing the settings.
+// Returns a change for each setting that names the same file in both, if the file's contents
+// differ. A changed name is not reported, because comparing the settings finds it.
 std::vector<SettingChange> changesBetween(const NamedFiles& before, const NamedFiles& after);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// The contents of a configuration's wall, for the operator's page.
+// Lists the contents of a configuration's wall for the operator's page.
 #pragma once
 
 #include <vector>

@@ -27,14 +27,15 @@
 namespace merlin {
 namespace {
 
-// The wall's own threads take precedence on a machine that is busy with both.
+// Nice value of this process, so that the wall's threads take precedence on a busy machine.
 constexpr int kNice = 10;
 
 std::uint64_t milliseconds1970(Timestamp now) {
   return static_cast<std::uint64_t>((toNanoseconds(now) + realtimeOffset().count()) / 1'000'000);
 }
 
-// Models' pictures are kept in the unit's cache, which outlives a restart of the machine.
+// Returns the folder for the models' thumbnails: the unit's cache folder, which survives a restart
+// of the machine, or else the run directory.
 std::string thumbnailFolder(const Settings& settings) {
   const char* const cache = std::getenv("CACHE_DIRECTORY");
   return cache && *cache == '/' ? cache : settings.run_directory;

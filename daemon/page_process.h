@@ -11,12 +11,12 @@
 
 namespace merlin {
 
-// Runs until it is asked to stop or to start again, as askedBySignal() says, and returns which of
-// the two; notifies systemd of its start and its progress. A port that is in use is no error: it is
-// tried again every five seconds. If the page is switched off, it only waits. REQUIRES: SIGTERM,
-// SIGINT and SIGHUP are blocked; no thread has been started. Errors: kBusy (another process serves
-// the page of this instance), kIo (the run directory or the token's file), a thread has ended
-// unexpectedly.
+// Runs the role until a signal asks it to stop or to start again (see askedBySignal()), and returns
+// Asked::kStop or Asked::kStartAgain. Notifies systemd of its start and its progress. A port that
+// is in use is no error: the server is started again every five seconds until it succeeds. If the
+// page and the metrics are switched off, it only waits for a signal. REQUIRES: SIGTERM, SIGINT and
+// SIGHUP are blocked; no thread has been started. Errors: kBusy (another process serves the page of
+// this instance), kIo (the run directory or the token's file), a thread has ended unexpectedly.
 Result<Asked> runPage(Settings settings, Clock& clock, const std::function<bool()>& is_valid);
 
 }  // namespace merlin

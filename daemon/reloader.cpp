@@ -32,8 +32,8 @@ std::optional<std::uint32_t> numberIn(const std::string& text) {
   return number;
 }
 
-// Whether a setting that had to be adjusted is among the changes. A start uses the adjusted value,
-// because a wall that runs is worth more; a reload refuses it and keeps the previous value.
+// Whether one of the changed settings had to be adjusted. A start uses the adjusted value, so that
+// the wall runs at all; a reload refuses the file and keeps the previous settings.
 bool adjustsChange(const LoadedSettings& loaded, const std::vector<SettingChange>& changes) {
   return std::ranges::any_of(loaded.findings, [&](const Finding& finding) {
     return std::ranges::any_of(changes, [&](const SettingChange& change) {
@@ -66,7 +66,7 @@ void Reloader::request() {
 
 // REQUIRES: mutex_ is held.
 Result<std::string> Reloader::add(bool only_check, bool is_command) {
-  // The start that is due reads the file anew, and so answers this request, too.
+  // The restart that is due reads the file again, and so fulfils this request, too.
   if (restart_at_) return fmt::format("{{\"request\": {}}}", restart_number_);
   if (waiting_.size() >= kMostWaiting) {
     return Error{Errc::kBusy,
@@ -201,8 +201,8 @@ Reloader::ReadFile Reloader::read() const {
   return file;
 }
 
-// Says in the answer which alignments the wall sets aside or brings back, if its aligner gets
-// settings of the file that changed.
+// Adds to the answer which alignments the wall sets aside or brings back, if the file changes
+// settings that the wall's aligner uses.
 void Reloader::fitAlignments(ReadFile& file) const {
   reload::Answer& answer = file.answer;
   const bool fits = answer.outcome == Outcome::kRestarts ||

@@ -27,14 +27,15 @@
 
 namespace merlin {
 
-// The file is read and checked on a thread of its own, which exists only meanwhile and gives way to
-// all others. tend(), on the main thread, then swaps what changed, or, if a change takes effect
-// only at a start, returns kRestart. Either everything is applied or nothing. Several requests are
-// executed one after another.
+// Reads and checks the file on a thread that exists only during a request and has the lowest
+// priority. Then tend(), on the main thread, applies the changes or, if a change takes effect only
+// at a start, returns kRestart. Either all changes are applied or none. Requests are executed one
+// after another.
 class Reloader {
  public:
-  // What tend() did. kRestart: the file is valid and needs a restart; the requester was told so,
-  // and the caller must restart the process now.
+  // What tend() did. kSwapped: the settings of a valid file were put into effect. kRestart: the
+  // file is valid and needs a restart; the requester was told so, and the caller must restart the
+  // process now.
   enum class Done { kNothing, kSwapped, kRestart };
 
   struct Parts {
@@ -53,24 +54,27 @@ class Reloader {
     Settings settings;
     NamedFiles named;
   };
-  // `configured`: the settings of `file` that are in effect. `running`: the same with the changes
-  // made at the start (the emulators' ports); only tend() changes it. All must outlive this.
+  // `configured`: the settings of `file` that are in effect. `running`: these settings with the
+  // changes made at the start (the emulators' ports); only tend() changes them. `running` and the
+  // parts must outlive this object.
   Reloader(std::string file, const DaemonOptions& options, Configured configured, Settings& running,
            const Parts& parts);
 
   // Executes the command reload. "now" and "check" (which only reports what would be done) return
   // {"request": N}. The argument N returns {"pending": true} until that request was executed, then
-  // its answer (reload::answerText()). The last 32 answers are kept. Once the process is to start
-  // again, N is the number of the request that causes it. Errors: kInvalidArgument; kBusy (8
-  // requests wait). Returns at once. Thread-safe.
+  // its answer (reload::answerText()). The last 32 answers are kept. While a restart is due, a
+  // further request is not queued and N is the number of the request that causes the restart.
+  // Errors: kInvalidArgument; kBusy (8 requests wait). Returns at once. Thread-safe.
   Result<std::string> run(const std::string& argument);
-  // The same as "now", but the result is only reported in the log and by events. Thread-safe.
+  // Requests a reload like run("now"), but its result is reported only in the log and by events.
+  // Does nothing if 8 requests wait already. Thread-safe.
   void request();
 
-  // Begins to execute a request, and swaps what was read. To be called by the main thread, from the
-  // first frame on. Takes up to 50 ms for each device that is recreated.
+  // Starts the thread for the next request, and applies the settings that a thread has read. To be
+  // called by the main thread, from the first frame on. Takes up to 50 ms for each device that is
+  // recreated.
   Done tend();
-  // The settings of the file that are in effect. On the thread of tend().
+  // Returns the settings of the file that are in effect. To be called by the thread of tend().
   const Settings& configured() const noexcept { return configured_.settings; }
 
  private:
@@ -113,7 +117,7 @@ class Reloader {
   // announces it.
   std::optional<Timestamp> restart_at_;
   std::uint32_t restart_number_ = 0;
-  WatchedThread thread_;  // reads
+  WatchedThread thread_;  // runs read() for current_
 };
 
 }  // namespace merlin

@@ -79,8 +79,8 @@ bool readNumbers(std::string_view text, std::array<Number, count>& numbers, cons
   return at == end;
 }
 
-// Six numbers: see the list of commands. The limits keep a single command from moving the model out
-// of reach.
+// Executes the command move, whose argument is six numbers (see kCommands). The limits keep a
+// single command from moving the model out of reach.
 Answer move(const Parts& p, std::string_view argument) {
   constexpr float kMostRadii = 10, kMostDegrees = 360;
   std::array<float, 6> step{};
@@ -101,7 +101,8 @@ Answer notice(const Parts& p, const std::string& text) {
   return shown ? done() : Answer(shown.error());
 }
 
-// Answers with the request's number, which shm::WallContent::finished will have.
+// Returns the request's number as JSON. shm::WallContent::finished has this number once the request
+// is finished.
 Answer requestOf(const Result<std::uint32_t>& request) {
   if (!request) return request.error();
   return fmt::format("{{\"request\": {}}}", *request);
@@ -115,14 +116,15 @@ Answer rate(const Parts& p, const std::string& argument) {
   return done();
 }
 
-// The number of the newest known frame: a frame after it shows what was requested before this call.
+// Returns the number of the newest known frame. A frame with a higher number shows what was
+// requested before this call.
 std::uint64_t framesOf(const Parts& p) {
   const auto stats = p.wall->segment().stats.read();
   return stats ? stats->frames : 0;
 }
 
-// Answers with the segment into which the signal of the output will be copied, and with the number
-// of the newest frame: the copy is that of a later frame.
+// Returns, as JSON, the shared memory into which the signal of the output will be copied, and the
+// number of the newest frame; the copy will be of a later frame.
 Answer signal(const Parts& p, const std::string& output) {
   const auto segment = p.wall->outputs().signals().ask(output);
   if (!segment) return segment.error();
@@ -161,7 +163,7 @@ Answer toggle(const Parts& p, void (wall::Attendance::*what)()) {
   return done();
 }
 
-// Counts as a use of the wall, so that an alignment or a test card can be seen.
+// Counts a successful command as use of the wall, so that its alignment or test card is visible.
 Answer seen(const Parts& p, Answer answer) {
   if (answer) p.wall->attendance().touch();
   return answer;
@@ -173,7 +175,7 @@ Answer testcard(const Parts& p, const std::string& name) {
   return fmt::format("{{\"after\": {}}}", framesOf(p));
 }
 
-// "X Y 0|1", or "out".
+// Executes the command operator_pointer, whose argument is "X Y 0|1" or "out".
 Answer operatorPointer(wall::OperatorPanel& panel, std::string_view argument) {
   std::array<int, 3> numbers{};
   const bool good = readNumbers(argument, numbers, [](std::size_t) { return 1'000'000; }) &&

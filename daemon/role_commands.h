@@ -40,7 +40,8 @@ class RoleCommands {
   // devices; the panel shows why one was refused. Returns at once if there are none.
   void runPanel() const;
 
-  // The commands that a role's socket accepts, except `status` and `events`.
+  // Returns the commands that a role's socket accepts, without `status` and `events`, which the
+  // servers add.
   std::vector<status::Command> of(CommandOf role) const;
 
  private:

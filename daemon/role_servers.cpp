@@ -22,7 +22,7 @@ Error errorAt(const char* pointer, const Error& error) {
   return {error.code, fmt::format("{}: {}", pointer, error.what)};
 }
 
-// The public keys in a file; none if no file is named.
+// Returns the public keys in a file; none if `file` is empty.
 Result<std::vector<std::string>> keysOf(const std::string& file) {
   if (file.empty()) return std::vector<std::string>();
   return status::readPublicKeys(file);
@@ -236,7 +236,8 @@ void RoleServers::add(RoleEvents& to, const EventKind& kind,
   }
 }
 
-// Each event of a service is delivered once, to the role whose server asks first.
+// Adds the events of the services, and returns all collected documents. Each event of a service is
+// delivered once, to the role whose server asks first.
 std::vector<std::string> RoleServers::taken(RoleEvents& events) const {
   add(events, kServiceEvent, parts_.services.takeEvents());
   events.logger.tellLeftOut(clock_.now());
@@ -256,8 +257,8 @@ std::vector<std::string> RoleServers::deviceEvents(RoleEvents& events,
   return taken(events);
 }
 
-// The events of the wall, its models and its servers and, if the wall uses another machine's
-// devices, those of the devices.
+// Returns the documents of the new events of the wall, its contents and its servers and, if the
+// wall uses another machine's devices, of these devices.
 std::vector<std::string> RoleServers::wallEvents(RoleEvents& events, status::WallEvents& wall,
                                                  status::HealthEvents* remote) {
   add(events, kWallEvent, wall.take());

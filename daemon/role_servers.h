@@ -25,11 +25,12 @@
 
 namespace merlin {
 
-// Addresses of a role's sockets. REQUIRES: settings.run_directory is the directory in use.
+// Returns the addresses of a role's status and command sockets. REQUIRES: settings.run_directory is
+// the directory in use.
 shm::Endpoints endpointsOf(const Settings& settings, const std::string& role);
 
-// The threads of its servers call the parts, and end with this object. To be used by the main
-// thread.
+// The threads of the servers call the parts; the destructor stops these threads. To be used by the
+// main thread.
 class RoleServers {
  public:
   // The parts of this process; null: this process lacks the part. They must outlive this object.
@@ -49,9 +50,10 @@ class RoleServers {
         clock_(clock),
         servers_(parts.devices ? "devices" : "wall", watch, clock) {}
 
-  // Start the sockets of a role, and the servers for other programs (libspnav, VRPN) if there are
-  // devices, of this or another machine; these are restarted if they fail. Errors: those of
-  // Servers::startRole() and of reading keys. REQUIRES: the process has the role.
+  // Each function starts the sockets of its role and, if the role has devices of this or another
+  // machine, the servers for other programs (libspnav, VRPN). tend() restarts these servers if they
+  // fail. Errors: those of Servers::startRole() and of reading keys. REQUIRES: the process has the
+  // role.
   Result<Ok> startDevices();
   Result<Ok> startWall();
   // Restarts servers; to be called about ten times a second.
@@ -63,7 +65,7 @@ class RoleServers {
   Result<Ok> startStatus(const std::string& role, CommandOf commands,
                          status::StatusServerSettings settings);
   void startServersForOthers(const shm::DeviceSlots& devices);
-  // The sources of one role's events; for its server's thread.
+  // Collects one role's events. Used only by the thread of the role's server.
   struct RoleEvents {
     explicit RoleEvents(std::string_view role) : logger(role) {}
     EventLogger logger;

@@ -1,5 +1,5 @@
-// The signals that end or restart the processes of the roles page and alarms, and the watchdog of
-// every role.
+// Handles the signals that end or restart the processes of the roles page and alarms, and the
+// watchdog interval of every role.
 #pragma once
 
 #include <functional>
@@ -8,22 +8,23 @@
 
 namespace merlin {
 
-// How long a role waits for a signal before it looks after the rest of its work.
+// Longest time for which a role waits for a signal before it does its periodic work.
 inline constexpr Duration kSignalBeat = std::chrono::milliseconds(100);
 
-// Half of systemd's watchdog time; zero if there is no watchdog.
+// Returns the time between two watchdog pings: half of systemd's watchdog time; zero if there is no
+// watchdog.
 Duration watchdogInterval();
 
 enum class Asked { kNothing, kStop, kStartAgain, kTest };
 
-// Waits up to `wait` for a signal. SIGTERM and SIGINT: kStop. SIGHUP: kStartAgain if `is_valid`,
-// which reads the configuration and says in the log what is wrong with it, returns true. SIGUSR1:
-// kTest, where it is not ignored. REQUIRES: the first three are blocked, and the fourth where it is
-// not ignored.
+// Waits up to `wait` (less than 1 s) for a signal and returns what it asks for: kStop after SIGTERM
+// or SIGINT, kStartAgain after SIGHUP if is_valid() returns true, kTest after SIGUSR1, otherwise
+// kNothing. `is_valid` reads the configuration and logs its faults. REQUIRES: SIGTERM, SIGINT and
+// SIGHUP are blocked; SIGUSR1 is blocked or ignored.
 Asked askedBySignal(Duration wait, const std::function<bool()>& is_valid);
 
-// Reports the end to the log, and to systemd unless the process starts again, because to systemd it
-// then goes on.
+// Logs whether the process stops or starts again, and notifies systemd if it stops. systemd is not
+// notified of a restart, because the same process continues.
 void tellEnd(Asked asked);
 
 }  // namespace merlin

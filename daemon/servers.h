@@ -26,10 +26,10 @@ class Servers {
   Servers(const Servers&) = delete;
   Servers& operator=(const Servers&) = delete;
 
-  // Starts a role's own sockets and, if settings.network has an address, the server that sends
-  // samples to other machines; likewise the one that answers their requests (network_commands). To
-  // be called from the main thread. Errors: those of StatusServer::start(). A server for other
-  // machines that cannot start is not an error: it is tried again.
+  // Starts a role's own sockets and the servers for other machines that have an address:
+  // settings.network publishes topics, settings.network_commands answers requests. To be called
+  // from the main thread. Errors: those of StatusServer::start(). A server for other machines that
+  // cannot start is not an error: tend() tries again.
   Result<Ok> startRole(const std::string& role, status::StatusServerSettings settings);
   // Adds a server for other programs and starts it. If it cannot start, or has ended, tend() tries
   // again. To be called from the main thread.

@@ -1,4 +1,4 @@
-// ActionReader: reads from shared memory which actions have begun since the last read, and which
+// ActionReader: reads from shared memory which actions have begun since its last read, and which
 // are held.
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace merlin::actions {
 
-// State of actions, indexed like kActions (daemon/base/commands.h).
+// State of all actions. The arrays are indexed like kActions (daemon/base/commands.h).
 struct ActionCounts {
-  // How often each action has begun since the last read().
+  // How often each action has begun since the last ActionReader::read().
   std::array<std::uint32_t, shm::kMostActions> begun{};
   std::array<bool, shm::kMostActions> held{};
 
@@ -22,24 +22,26 @@ struct ActionCounts {
 
 struct Actions {
   ActionCounts all;
-  // The summands of `all`, indexed like DeviceSlots::actions.
+  // The state by source, indexed like DeviceSlots::actions; `all` is the sum of these.
   std::vector<ActionCounts> by_source;
-  // The actions that have begun, source by source, in the order in which they began; at most the
-  // last twelve of each source.
+  // Indexes (into kActions) of the actions that have begun since the last read(): those of the
+  // first source in the order in which they began, then those of the second source, and so on. At
+  // most the last twelve of each source are listed.
   std::vector<std::size_t> in_order;
-  // The parts of in_order, by source.
+  // The part of in_order that belongs to each source, indexed like by_source.
   std::vector<std::vector<std::size_t>> in_order_by_source;
 };
 
-// Thread-bound. Never waits.
+// Thread-bound; read() never waits. Use one ActionReader for each consumer.
 class ActionReader {
  public:
-  // Actions that began before the first read, or before the first one after a restart of the daemon
-  // that counts them, are not reported.
+  // Reads the state of the actions of all sources. Actions that began before the first read() are
+  // not counted as begun, nor are those before the first read() after a restart of the daemon that
+  // writes the state. Held actions are always reported.
   Actions read(const shm::DeviceSlots& devices);
 
  private:
-  std::vector<std::optional<shm::ActionState>> last_;  // by source
+  std::vector<std::optional<shm::ActionState>> last_;  // the last state read, by source
 };
 
 }  // namespace merlin::actions

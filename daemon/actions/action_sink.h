@@ -1,5 +1,5 @@
-// ActionSink: gives a device's samples and health to an ActionWriter, and passes them on. Runs on
-// the device's thread.
+// ActionSink: passes a device's samples and health to an ActionWriter and then to the next sinks.
+// Runs on the device's thread.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,15 @@
 
 namespace merlin::actions {
 
-// One for each device. Takes no lock and allocates nothing, except in reload(). The actions are
-// published before the sample, so that a reader that waits for the sample finds them. If a device
-// works but lacks a key that a binding names, its health gets a text about it, unless the health
-// has another text.
+// Each device that has inputs has one ActionSink. It takes no lock and allocates nothing, except in
+// reload(). The actions are published before the sample, so that a reader that waits for the sample
+// finds them. If a device works but lacks a key that a binding names, a sentence about this is
+// written into the reason of its health, unless the health already has a reason.
 class ActionSink final : public SampleSink, public HealthSink {
  public:
-  // `postures`: where the current posture is published before each glove sample; null: not a glove.
-  // `stale_after`: a device that has not worked for this time counts as lost, and its inputs end.
+  // `postures`: slot in which the current posture is published before each glove sample; null if
+  // the device is not a glove. `samples`, `health`: the next sinks. `stale_after`: if a device has
+  // not worked for this time, it counts as lost, and all its inputs count as released.
   struct Parts {
     const shm::SeqSlot<PostureState>* postures;
     SampleSink& samples;
@@ -29,15 +30,16 @@ class ActionSink final : public SampleSink, public HealthSink {
   ActionSink(ActionWriter writer, const Parts& parts)
       : writer_(std::move(writer)), parts_(parts), stale_after_(parts.stale_after) {}
 
-  // For one other thread: see ActionWriter::rebind(). A device that sends nothing uses the new
-  // bindings from its next health record on, within 250 ms.
+  // Replaces bindings and `stale_after`: see ActionWriter::rebind(). May be called by one other
+  // thread while the device's thread runs. If the device sends no samples, the new bindings are
+  // used from its next health record on, i.e. within 250 ms.
   void reload(const std::vector<Binding>& bindings, Duration stale_after) {
     stale_after_ = stale_after;
     writer_.rebind(bindings);
   }
 
-  // To be called when the device was closed: ends all its inputs. REQUIRES: no thread of the device
-  // runs.
+  // Ends all inputs of the device, and thus the actions that they hold. To be called after the
+  // device was closed. REQUIRES: the device's thread does not run.
   void release(std::int64_t now_ns) noexcept { writer_.release(now_ns); }
 
   void publish(const GloveSample& sample) noexcept override {
@@ -72,7 +74,7 @@ class ActionSink final : public SampleSink, public HealthSink {
   ActionWriter writer_;
   Parts parts_;
   std::atomic<Duration> stale_after_;
-  std::optional<DeviceKeys> keys_;  // of the device that was opened last
+  std::optional<DeviceKeys> keys_;  // keys of the device that was opened last; empty: not known
 };
 
 }  // namespace merlin::actions

@@ -42,7 +42,7 @@ ActionWriter::ParsedBindings ActionWriter::parse(const std::vector<Binding>& bin
   return parsed;
 }
 
-// All inputs are of one source, so their parts tell whether they are the same.
+// All bindings are to inputs of one source, so the device of an input need not be compared.
 void ActionWriter::findChords(ParsedBindings& bindings) {
   std::map<std::tuple<Input::Kind, std::uint32_t, std::string>, std::size_t> alone;
   const auto partOf = [](const Input& i) { return std::tuple(i.kind, i.button, i.name); };
@@ -97,7 +97,7 @@ void ActionWriter::takeBindings(std::int64_t now_ns) noexcept {
   slot_.publish(state_);
 }
 
-// Counts the action, unless it lasts and ends.
+// Counts the action as begun. Returns true: the state has changed.
 bool ActionWriter::begin(ParsedBinding& binding) noexcept {
   ++state_.begun[binding.action];
   state_.recent[state_.sequence++ % std::size(state_.recent)] =
@@ -105,16 +105,16 @@ bool ActionWriter::begin(ParsedBinding& binding) noexcept {
   return true;
 }
 
-// Whether a binding that waits for a longer press of the same input has begun: then letting go is
-// the end of that one, and not the short press.
+// Whether a binding to the same input with a longer after_s has begun. If so, the release of the
+// input ends that binding, and is not the end of a short press.
 bool ActionWriter::longerOneHeld(const ParsedBinding& binding) const noexcept {
   return std::any_of(bindings_.begin(), bindings_.end(), [&](const ParsedBinding& other) {
     return other.after_ns > binding.after_ns && other.input == binding.input && other.was_held;
   });
 }
 
-// Finds the bindings to one input whose press is now part of a chord's: only the chord acts. Cost:
-// linear.
+// Marks the bindings to a single input that is now pressed as a part of a chord: only the chord
+// acts then. Cost: linear.
 void ActionWriter::markChords() noexcept {
   for (ParsedBinding& binding : bindings_) binding.in_chord = false;
   for (const ParsedBinding& chord : bindings_) {
@@ -129,15 +129,16 @@ void ActionWriter::markChords() noexcept {
   }
 }
 
-// Returns whether the state changed. What lasts already goes on when its input becomes part of a
-// chord.
+// Begins, repeats or ends the action of a binding. Returns whether the state has changed. An action
+// that is already held continues when its input becomes part of a chord.
 bool ActionWriter::step(ParsedBinding& binding, std::int64_t now_ns) noexcept {
   const bool held = binding.pressed && now_ns - binding.since_ns >= binding.after_ns &&
                     (binding.was_held || !binding.chorded);
   if (held == binding.was_held) {
     if (!held || binding.repeat_ns == 0 || now_ns < binding.again_ns || binding.chorded)
       return false;
-    // Counted from the time before, so that delays do not add up; after a pause from now.
+    // The next repetition is counted from the planned time of this one, so that delays do not add
+    // up; but from now if that would already be over.
     binding.again_ns += binding.repeat_ns;
     if (binding.again_ns <= now_ns) binding.again_ns = now_ns + binding.repeat_ns;
     return begin(binding);
@@ -150,7 +151,7 @@ bool ActionWriter::step(ParsedBinding& binding, std::int64_t now_ns) noexcept {
   return begin(binding);
 }
 
-// When step() has something to do though nothing was pressed or released.
+// Returns the time at which step() has something to do although no input changes; nothing: never.
 std::optional<std::int64_t> ActionWriter::dueOf(const ParsedBinding& binding) noexcept {
   if (!binding.pressed || binding.chorded) return std::nullopt;
   if (!binding.was_held) return binding.since_ns + binding.after_ns;
@@ -166,7 +167,8 @@ Timestamp ActionWriter::due() const noexcept {
   return first;
 }
 
-// Bindings that act when their input ends come first: they see whether a longer one is still held.
+// Bindings that act when their input ends come first, so that longerOneHeld() still sees whether a
+// longer press was held.
 void ActionWriter::stepAll(std::int64_t now_ns) noexcept {
   bool changed = false;
   for (const bool on_leave : {true, false}) {
@@ -220,7 +222,7 @@ void ActionWriter::update(const TouchSample& touch) noexcept {
   const std::uint32_t pinched = pinch_.update(touch);
   apply(touch.received_ns, [&](const Input& input) {
     if (input.kind == Input::Kind::kPinch) return (pinched & input.button) != 0;
-    const std::uint32_t bit = input.button - kFirstMouseButton;  // other keys: large
+    const std::uint32_t bit = input.button - kFirstMouseButton;  // other keys: wraps, large
     return bit < 16 && (touch.buttons >> bit & 1) != 0;
   });
 }
@@ -233,7 +235,7 @@ void ActionWriter::update(const GloveSample& glove, const PostureState* posture)
   });
 }
 
-// Before a momentary input begins, it was released.
+// A momentary input is reported as released, pressed and released again.
 template <typename Happens>
 void ActionWriter::happen(std::int64_t now_ns, const Happens& happens) noexcept {
   apply(now_ns, [](const Input&) { return false; });
@@ -265,7 +267,7 @@ void ActionWriter::sayLackingKey(const DeviceKeys& keys, std::span<char> sentenc
     if (!lacking) continue;
     std::string_view name = lacking->name;
     const bool is_button = name.starts_with("btn_");
-    name.remove_prefix(4);  // this, or "key_"
+    name.remove_prefix(4);  // removes "btn_" or "key_"
     const std::string_view parts[] = {
         is_button ? "it has no button." : "it has no key.", name,
         ", which a binding names; `merlin devices` lists the keys that it has"};

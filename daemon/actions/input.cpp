@@ -24,8 +24,10 @@ std::optional<std::uint32_t> buttonBit(std::string_view number) {
   return 1U << (button - 1);
 }
 
-// Cuts off what stands before the last `part` that begins the name or follows a dot, such as
-// "left." of "left.posture.fist" for "posture."; nothing if the part is not there.
+// If `name` is PART... or DEVICE.PART..., where PART is `part`, removes everything up to the end of
+// PART from `name`, and returns DEVICE (a-z, 0-9 and _) or, if there is none, an empty text.
+// Otherwise returns nothing and does not change `name`. For "left.posture.fist" and "posture.",
+// returns "left" and leaves "fist".
 std::optional<std::string> takeDevice(std::string_view& name, std::string_view part) {
   if (name.starts_with(part)) {
     name.remove_prefix(part.size());
@@ -43,7 +45,7 @@ std::optional<std::string> takeDevice(std::string_view& name, std::string_view p
   return device;
 }
 
-// The bit of pushedAxes() for "x+", "rz-" ...
+// Returns the bit of pushedAxes() for a direction such as "x+" or "rz-"; nothing if there is none.
 std::optional<std::uint32_t> axisBit(std::string_view name) {
   if (name.empty() || (name.back() != '+' && name.back() != '-')) return std::nullopt;
   const std::string_view axis = name.substr(0, name.size() - 1);
@@ -53,7 +55,8 @@ std::optional<std::uint32_t> axisBit(std::string_view name) {
   return 1U << (kMostButtons + 2 * index + (name.back() == '-' ? 1 : 0));
 }
 
-// The index of the axis of a bit of pushedAxes(), which has two for each; nothing for a button's.
+// Returns the index (0 to 5) of the axis to which a bit of pushedAxes() belongs; each axis has two
+// bits. Nothing if it is the bit of a button.
 std::optional<unsigned> axisOf(std::uint32_t bit) {
   const auto place = static_cast<unsigned>(std::countr_zero(bit));
   if (place < kMostButtons) return std::nullopt;
@@ -74,8 +77,8 @@ std::optional<Input> button(std::string_view name) {
   return Input{Input::Kind::kButton, *device, *bit, {}};
 }
 
-// Whether the kernel may have a key of this name; that of a button begins with a letter, since
-// numbers are those of the device's own list of buttons.
+// Whether the text may be a kernel's name of a key or, if `is_button`, of a button. The name of a
+// button must begin with a letter, since numbers stand for the buttons of a device's own list.
 bool isKeyName(std::string_view name, bool is_button) {
   const auto allowed = [](char c) {
     return c == '_' || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
@@ -96,7 +99,7 @@ std::optional<Input> namedButton(std::string_view name) {
   return Input{Input::Kind::kKey, *device, 0, "btn_" + std::string(name)};
 }
 
-// Fingers that move together are a pinch, those that move apart spread.
+// Parses "pinch" (fingers move together) and "spread" (fingers move apart).
 std::optional<Input> pinch(std::string_view name) {
   for (const auto& [word, bit] :
        {std::pair{"pinch", Pinch::kTogether}, std::pair{"spread", Pinch::kApart}}) {
@@ -176,7 +179,7 @@ std::optional<Input> parseInput(std::string_view name) {
   if (auto input = axis(name)) return input;
   if (auto input = posture(name)) return input;
   if (auto input = gesture(name)) return input;
-  if (auto input = pinch(name)) return input;  // after posture.pinch, which is a posture
+  if (auto input = pinch(name)) return input;  // after the postures, since "posture.pinch" is one
   return wristSwitch(name);
 }
 

@@ -1,4 +1,4 @@
-// Input: a button, key, pinch, posture, gesture or switch that a binding names.
+// Input: a button, axis, key, pinch, posture, gesture or switch to which an action can be bound.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,11 @@ namespace merlin::actions {
 // A source of inputs that trigger actions: a device, a hand (which makes gestures), or the control
 // panel.
 struct Source {
-  std::string name;                // of the device or the hand
-  std::optional<SampleKind> kind;  // of the device; none: a hand, or the panel
+  std::string name;                // name of the device or the hand
+  std::optional<SampleKind> kind;  // kind of the device; nothing: a hand, or the panel
   bool hand = false;
-  // The kernel's number of a key by its name, "key_space" or "btn_south"; null: it has no keys.
+  // Returns the kernel's number of the key with this name, such as "key_space" or "btn_south"; null
+  // if the source has no keys.
   std::optional<std::uint16_t> (*key_code)(std::string_view) = nullptr;
 };
 
@@ -24,31 +25,35 @@ struct Input {
   enum class Kind { kButton, kPosture, kWristSwitch, kPanelButton, kGesture, kKey, kPinch };
 
   Kind kind = Kind::kButton;
-  // The device or the hand whose input it is; empty: any one that has such an input.
+  // Name of the device or the hand; empty: any one that has such an input.
   std::string device;
-  // kButton: its bit in BallSample::buttons; of an axis that is pushed: a bit of pushedAxes().
-  // kKey: the kernel's number, 0 until Source::key_code() gave it. kPinch: a bit of
-  // Pinch::update().
+  // kButton: a mask with one bit of BallSample::buttons, or, for the push of an axis, of
+  // pushedAxes(). kKey: the kernel's number of the key, 0 until it was set from Source::key_code().
+  // kPinch: Pinch::kTogether or Pinch::kApart. 0 for other kinds.
   std::uint32_t button = 0;
-  std::string name;  // kPosture, kGesture: its name; kKey: "key_space", "btn_south"
+  std::string name;  // name of the posture, gesture or key ("key_space"); else empty
 
   bool isOf(const Source& source) const;
-  // Whether it is over as soon as it begins, so that nothing can last or be timed with it.
+  // Whether the input ends as soon as it begins, so that it cannot be held or timed.
   bool isMomentary() const { return kind == Kind::kPanelButton || kind == Kind::kGesture; }
-  // Whether one event can be both inputs, i.e. they are the same part of the same device.
+  // Whether one event can be both inputs, i.e. whether both may be the same button, posture etc. of
+  // the same device. An input without a device may be one of any device.
   bool overlaps(const Input& other) const;
-  // Whether a device never has both at a time: an axis is pushed one way, a hand has one posture,
-  // fingers move together or apart, and a device has inputs of some kinds only.
+  // Whether both inputs can never be held at the same time on one device: an axis is pushed in one
+  // direction only, a hand has only one posture, fingers move either together or apart, and no kind
+  // of device has both kinds of inputs.
   bool rulesOut(const Input& other) const;
   bool operator==(const Input&) const = default;
 };
 
-// The axes of a ball that are pushed or twisted by more than half, as bits above those of the
-// buttons: x+ x- y+ y- z+ z- rx+ ... rz-. An axis that was among `before` stays until it falls
-// below a third, so that an axis that trembles around the threshold triggers nothing twice.
+// Returns a mask of the directions in which a ball is pushed or twisted by more than half of full
+// scale. The bits follow those of the 12 buttons: x+ x- y+ y- z+ z- rx+ ... rz-. A direction that
+// is set in `before`, the previous result, stays set until the push falls below a third, so that a
+// push that varies around the threshold triggers an action only once.
 std::uint32_t pushedAxes(const BallSample& ball, std::uint32_t before) noexcept;
 
-// Parses the name of an input (kInputForms); nothing if the name is not valid.
+// Parses the name of an input, which has one of the forms in kInputForms; nothing if the name is
+// not valid.
 std::optional<Input> parseInput(std::string_view name);
 
 }  // namespace merlin::actions

@@ -6,11 +6,12 @@
 namespace merlin::actions {
 namespace {
 
-// Closer than this, in heights of the surface, nobody can say how far apart fingers are.
+// Smallest distance that is distinguished, in heights of the surface; smaller ones count as this
+// one.
 constexpr float kTooClose = 0.01F;
 
-// The root of the mean square distance of the fingers from their middle, in heights. REQUIRES: at
-// least one finger.
+// Returns the root mean square distance of the fingers from their centre, in heights of the
+// surface. `fingers`: number of fingers. REQUIRES: fingers > 0.
 float distanceOf(const TouchSample& touch, std::uint32_t fingers) noexcept {
   const auto count = static_cast<float>(fingers);
   float x = 0, y = 0;

@@ -16,7 +16,7 @@ namespace {
 
 bool isLamp(std::string_view action) { return action.starts_with("lamp_"); }
 
-// What one of them does, the other one undoes.
+// Pairs of actions of which each undoes the other one.
 constexpr std::pair<std::string_view, std::string_view> kOpposites[] = {
     {"next_content", "previous_content"}, {"projector_on", "projector_off"}, {"video_a", "video_b"},
     {"align_left", "align_right"},        {"align_up", "align_down"},
@@ -28,35 +28,36 @@ bool areOpposites(std::string_view a, std::string_view b) {
   });
 }
 
-// Whether no single moment may trigger both: a hand does one thing at a time, and the lamp has one
-// state.
+// Whether two actions must not be triggered at the same moment: they are the same or opposites, or
+// both are held, since a hand does only one thing at a time, or both set the lamp.
 bool exclude(std::string_view a, std::string_view b) {
   return a == b || (isHeldAction(a) && isHeldAction(b)) || (isLamp(a) && isLamp(b)) ||
          areOpposites(a, b);
 }
 
-// The actions that happen once and change what is shown, or what the ball moves.
+// Actions that happen once and change what is shown or what the ball moves.
 constexpr std::string_view kOfView[] = {"reset_view",       "next_mode",    "next_content",
                                         "previous_content", "blank",        "freeze",
                                         "operator_panel",   "next_testcard"};
 
 bool isOfView(std::string_view action) { return std::ranges::count(kOfView, action) > 0; }
 
-// Whether one moment of an input cannot be meant to trigger both: they exclude each other, or one
-// hides what the other one changes.
+// Whether a person cannot want one moment of an input to trigger both actions, because they exclude
+// each other, or because one hides the effect of the other.
 bool clash(std::string_view a, std::string_view b) {
   return exclude(a, b) || (isOfView(a) && isOfView(b));
 }
 
 bool atLeave(const Binding& b) { return b.when == When::kLeave; }
 
-// Whether one event can be both inputs; texts that are no inputs are faults of their own.
+// Whether one event can be both inputs. Also true if a text is not the name of an input; that is
+// reported as a fault of its own.
 bool overlap(const std::string& a, const std::string& b) {
   const auto first = actions::parseInput(a), second = actions::parseInput(b);
   return !first || !second || first->overlaps(*second);
 }
 
-// Whether the bindings need the same two inputs, named in the other order.
+// Whether both bindings are to the same chord, but name its two inputs in opposite order.
 bool areSameChord(const Binding& a, const Binding& b) {
   return !a.with.empty() && !b.with.empty() && overlap(a.with, b.input) && overlap(a.input, b.with);
 }
@@ -79,7 +80,7 @@ std::string conflictText(const Binding& a, const Binding& b) {
       b.input, a.action, b.action, when);
 }
 
-// The second input of a chord, the time of a long press, and what repeats.
+// Checks the second input of a chord, and the period of repetition.
 void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) {
   const auto input = actions::parseInput(b.input);
   const auto with = actions::parseInput(b.with);
@@ -106,7 +107,8 @@ void checkTimes(const Binding& b, const std::string& at, SettingFaults& faults) 
     faults.push_back({at + "/repeat_s", "repeats only what happens once, as its input begins"});
 }
 
-// An input that is over as it begins triggers only what happens once.
+// Checks a binding to a momentary input: such an input can only trigger an action that happens
+// once, without `with`, after_s and repeat_s.
 void checkMomentary(const actions::Input& input, const Binding& b, const std::string& at,
                     SettingFaults& faults) {
   const bool panel = input.kind == actions::Input::Kind::kPanelButton;
@@ -143,17 +145,19 @@ void checkOne(const Binding& b, const std::string& at, SettingFaults& faults) {
   if (input && input->isMomentary()) checkMomentary(*input, b, at, faults);
 }
 
-// What all inputs have in common that one event can be, whatever device they name.
+// Returns a key that is equal for inputs of the same kind, button and name, whatever device they
+// name. Only inputs with equal keys can overlap.
 std::string partOf(const actions::Input& input) {
   return fmt::format("{} {} {}", static_cast<int>(input.kind), input.button, input.name);
 }
 
-// Whether one event can be the second input of both, or neither has one.
+// Whether one event can be the second input of both bindings, or neither binding has a second
+// input.
 bool needSameSecond(const Binding& a, const Binding& b) {
   return a.with.empty() == b.with.empty() && (a.with.empty() || overlap(a.with, b.with));
 }
 
-// The bindings before one, by what their inputs have in common with others.
+// The bindings that precede the one to be checked, ordered by the keys of their inputs (partOf()).
 class BindingsBefore {
  public:
   explicit BindingsBefore(const std::vector<Binding>& all) : all_(all) {}
@@ -164,9 +168,10 @@ class BindingsBefore {
     if (!b.with.empty()) by_with_[keyOf(b.with, b)].push_back(i);
   }
 
-  // One that cannot be meant to be triggered together with `b`, and would be.
+  // Returns the index of a binding that would be triggered together with `b` although a person
+  // cannot want that; nothing if there is none.
   std::optional<std::size_t> excluded(const Binding& b) {
-    // Whether `b` lasts and may not do so together with what the other one does.
+    // Whether the action of `b` is held and excluded by the action of binding `k`.
     const auto lastsBeside = [&](std::size_t k) {
       return isHeldAction(b.action) && exclude(all_[k].action, b.action);
     };
@@ -175,7 +180,7 @@ class BindingsBefore {
       const bool meet = (same_time && clash(all_[k].action, b.action)) || lastsBeside(k);
       if (meet && overlap(b.input, all_[k].input)) return k;
     }
-    // A chord before it has its input as the second one.
+    // Then the preceding chords whose second input is the input of `b`.
     for (const std::size_t k : by_with_[keyOf(b.input, b)]) {
       const bool same_chord = areSameChord(all_[k], b);
       const bool meet = (same_chord && all_[k].after_s == b.after_s) ||
@@ -202,9 +207,9 @@ class BindingsBefore {
 
 }  // namespace
 
-// Linear in the number of bindings: for each moment of an input at most one binding of each action
-// is kept, and each input has few moments. A binding to an input alone and a chord with that input
-// happen at different moments: as the chord begins, only the chord acts (ActionWriter).
+// The cost is linear in the number of bindings, because BindingsBefore stores few bindings for each
+// input. A binding to an input alone and a chord with this input do not conflict: when the chord
+// begins, only the chord acts (see ActionWriter).
 SettingFaults validate(const std::vector<Binding>& bindings) {
   SettingFaults faults;
   BindingsBefore before(bindings);

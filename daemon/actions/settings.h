@@ -1,4 +1,4 @@
-// Settings of bindings: which input triggers which action.
+// Settings of bindings, which say which input triggers which action.
 #pragma once
 
 #include <string>
@@ -8,25 +8,29 @@
 
 namespace merlin {
 
-// When an action happens. kByAction: as the action requires, kHold or kEnter.
+// When an action happens: when its input begins (kEnter), while it is held (kHold), or when it ends
+// (kLeave). kByAction: kHold for an action that is held, otherwise kEnter.
 enum class When { kByAction, kEnter, kHold, kLeave };
 
 struct Binding {
-  std::string input;        // in a form of kInputForms
-  std::string action = {};  // a name of kActions (daemon/base/commands.h); empty: none was given
+  std::string input;  // name of the input, in one of the forms of kInputForms
+  // A name of kActions (daemon/base/commands.h); empty: the file gives none, or an unknown one.
+  std::string action = {};
   When when = When::kByAction;
-  std::string with = {};  // another input of the same device that has to be held too; empty: none
-  double after_s = 0;     // how long the input has to be held before it counts
-  // Period at which an action that happens once is repeated while the input is held, from
-  // kShortestRepeat_s to kLongestRepeat_s; 0: not repeated.
+  std::string with = {};  // another input of the same device that must be held too; empty: none
+  double after_s = 0;     // time for which the input must be held before it counts
+  // Period with which the action is repeated while the input is held, from kShortestRepeat_s to
+  // kLongestRepeat_s; 0: it is not repeated. Only for an action that happens once, when its input
+  // begins.
   double repeat_s = 0;
 };
 
-// With a shorter period, hundreds of steps would happen before a person lets go.
+// Limits of Binding::repeat_s. With a shorter period, hundreds of repetitions would happen before a
+// person lets go.
 inline constexpr double kShortestRepeat_s = 0.05;
 inline constexpr double kLongestRepeat_s = 60;
 
-// All names of inputs, for descriptions and messages.
+// All forms of names of inputs, for descriptions and messages.
 inline constexpr const char* kInputForms =
     "DEVICE.button.1 to DEVICE.button.12, DEVICE.key.NAME and DEVICE.button.NAME (a key or button "
     "of "
@@ -47,12 +51,13 @@ inline std::vector<Binding> defaultBindings() {
           {"panel.button", "next_mode"}};
 }
 
-// Finds unknown inputs, chords that cannot happen, actions that cannot be combined with their
-// `when` or times, and pairs of actions that one input would trigger at the same moment although
-// they exclude each other, are the same, or both change what is shown or what the ball moves. Two
-// bindings to one chord that name its inputs in the two orders are a fault whatever they do. A
-// binding without an action is no fault here: only the caller knows whether the file gives no
-// action or an unknown one. Pointers: "/INDEX/input" ... Cost: linear.
+// Returns the faults of bindings: unknown inputs; chords that cannot happen; actions that cannot be
+// combined with their `when`, after_s or repeat_s; and pairs of bindings that one input would
+// trigger at the same moment although their actions are the same, exclude each other, or both
+// change what is shown or what the ball moves. Two bindings to the same chord with the same after_s
+// that name its two inputs in opposite order are always a fault. A binding without an action is no
+// fault here, since only the caller knows whether the file gives no action or an unknown one. JSON
+// pointers of the faults are relative to the list: "/INDEX/input" etc. Cost: linear.
 SettingFaults validate(const std::vector<Binding>& bindings);
 
 }  // namespace merlin

@@ -19,8 +19,9 @@ std::string alarmText(const std::string& instance, const AlarmEvent& event,
       jsonText(event.what), left_out);
 }
 
-// A full bucket would let twice as many start within an hour as are allowed, so half of them are a
-// reserve for bursts, and the other half come over time.
+// Half of the starts that an hour allows fill the bucket for bursts, and the other half are added
+// over the hour. With a bucket for all of them, twice as many starts would be possible within an
+// hour.
 AlarmQueue::AlarmQueue(const AlarmSettings& settings)
     : settings_(settings),
       at_once_(std::max(settings.most_per_hour / 2.0, 1.0)),

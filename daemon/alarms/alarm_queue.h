@@ -16,7 +16,7 @@ namespace merlin::alarms {
 
 struct AlarmEvent {
   std::string role;            // "wall", "devices", "alarms"
-  std::string time_utc, kind;  // ISO 8601; a word
+  std::string time_utc, kind;  // ISO 8601; EventKind::name
   std::string what;            // a sentence
   Severity severity = Severity::kFault;
 };
@@ -24,7 +24,8 @@ struct AlarmEvent {
 // The kind of the event with which a person tests alarms: it starts the program of every alarm.
 inline constexpr const char* kTestKind = "test";
 
-// The event as one line of JSON: {"instance", "role", "time_utc", "kind", "what", "left_out"}.
+// Returns the event as one line of JSON, which the program reads: {"instance", "role", "time_utc",
+// "kind", "what", "left_out"}.
 std::string alarmText(const std::string& instance, const AlarmEvent& event, std::uint64_t left_out);
 
 // Thread-bound.
@@ -42,11 +43,12 @@ class AlarmQueue {
     AlarmEvent event;
     std::uint64_t left_out = 0;  // number of events left out since the last one that was told
   };
-  // The event for which the program is to be started now, faults first; nothing if none waits, or
-  // while the program was started most_per_hour times within the last hour. Of the starts that are
-  // allowed at once after a quiet time, the last is reserved for a fault. A test is exempt from the
-  // limit. Events that wait longer than kLongestWait (faults: kLongestFaultWait) are left out,
-  // since an old alarm would mislead.
+  // Removes and returns the event for which the program is to be started now, faults first. Returns
+  // nothing if no event waits, or if the limit most_per_hour allows no start now. After a quiet
+  // time half of most_per_hour starts are allowed at once, the last of them only for a fault;
+  // further starts are allowed over time. A test is exempt from the limit. Events that have waited
+  // longer than kLongestWait (faults: kLongestFaultWait) are left out, since an old alarm would
+  // mislead.
   std::optional<Next> next(Timestamp now);
 
   static constexpr std::size_t kMost = 32;

@@ -23,7 +23,8 @@
 namespace merlin::alarms {
 namespace {
 
-// A file without a name, read from its beginning: unlike a pipe it never keeps the writer waiting.
+// Makes a file without a name that contains the text and is read from its beginning. Unlike a pipe
+// it never blocks the writer.
 Result<UniqueFd> fileOf(const std::string& text) {
   UniqueFd file(::memfd_create("event", MFD_CLOEXEC));
   const bool good =
@@ -36,8 +37,8 @@ Result<UniqueFd> fileOf(const std::string& text) {
 }
 
 // Runs the program in the child, which may only call functions that are safe in signal handlers.
-// Sets the signals back to their defaults. `failure`: takes the errno of execv(); a success closes
-// it.
+// Resets all signals to their defaults. `failure`: the pipe into which the errno of execv() is
+// written; if execv() succeeds, the pipe is closed.
 [[noreturn]] void become(const std::vector<char*>& arguments, int input, int output, int failure,
                          pid_t parent) {
   ::setpgid(0, 0);
@@ -65,7 +66,7 @@ int failureOf(const UniqueFd& end) {
   return got == static_cast<ssize_t>(sizeof why) ? why : 0;
 }
 
-// Why a file cannot be executed, whatever its content; empty if it can.
+// Returns why the file cannot be executed, without reading its content; empty if it can.
 std::string whyNoProgram(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), X_OK) != 0)
@@ -132,7 +133,7 @@ Result<ChildProgram> ChildProgram::start(const std::vector<std::string>& run,
   failures->to.reset();
   if (const int failure = failureOf(failures->from); failure != 0) {
     waitForChild(*child);
-    const auto usable = checkProgram(run.front());  // which says more than the number
+    const auto usable = checkProgram(run.front());  // its error says more than errno
     return usable ? cannotBeExecuted(run.front(), std::strerror(failure)) : usable.error();
   }
   return ChildProgram(*child, std::move(output->from), deadline);

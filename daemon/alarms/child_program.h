@@ -1,4 +1,4 @@
-// ChildProgram: a program that gets a text as its input and has a limited time.
+// ChildProgram: runs a program that gets a text as its input and has a time limit.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ namespace merlin::alarms {
 // regular file, it may not be executed, or it is a script whose interpreter is missing).
 Result<Ok> checkProgram(const std::string& path);
 
-// Thread-bound. Waits in start(), until the program is loaded, and in the destructor, which ends
-// it.
+// Thread-bound. start() waits until the program is loaded; the destructor kills the program and
+// waits for its end.
 class ChildProgram {
  public:
   // Starts the program `run[0]` with the arguments that follow it, in a process group of its own,
@@ -36,13 +36,15 @@ class ChildProgram {
   ChildProgram& operator=(const ChildProgram&) = delete;
   ~ChildProgram();
 
-  // Returns nothing while the program runs; then, once, a sentence about how it ended, empty if
-  // with status 0. After the deadline, kills it and all processes that it started, except one in a
-  // session of its own (setsid), which no signal to the group reaches.
+  // Returns nothing while the program runs. After its end returns once how it ended: the rest of a
+  // sentence that begins with the program's name, or an empty text for status 0. After the
+  // deadline, kills the program and all processes that it started, except a process that has left
+  // the process group (setsid), which the signal does not reach.
   std::optional<std::string> ended(Timestamp now);
 
-  // The program's output so far, to standard output or error: the lines of the first kMostKept
-  // bytes, each safe to print; then, if there was more, how many bytes were left out.
+  // Returns the program's output so far, to standard output and error, as lines that are safe to
+  // print: the first kMostKept bytes and, if there was more, a line with the number of bytes left
+  // out.
   std::vector<std::string> written() const;
   static constexpr std::size_t kMostKept = 2048;
 
@@ -56,8 +58,8 @@ class ChildProgram {
   UniqueFd output_;
   Timestamp deadline_{};
   bool too_long_ = false;
-  std::string kept_;          // of its output
-  std::size_t left_out_ = 0;  // bytes of it
+  std::string kept_;          // the first bytes of its output
+  std::size_t left_out_ = 0;  // number of its further bytes
 };
 
 }  // namespace merlin::alarms

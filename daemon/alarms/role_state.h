@@ -1,4 +1,4 @@
-// RoleState: decides whether a role of merlind is missing and somebody is to be told of it. Pure.
+// RoleState: decides whether a role of merlind is missing and this is to be reported. Pure.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,20 @@ namespace merlin::alarms {
 class RoleState {
  public:
   // `expected`: the configuration has work for the role on this machine, so it is reported as
-  // missing also if it never came. `now`: when the observation begins.
+  // missing even if it has never run. `now`: when the observation begins.
   RoleState(std::string role, bool expected, Timestamp now)
       : role_(std::move(role)), expected_(expected), started_(now) {}
 
-  // Returns a sentence to be told, each once: that the role ended, never came, is back, or restarts
-  // again and again. `generation`: that of its present run; 0: it does not run.
+  // Returns a sentence to be reported, once for each event: that the role has ended, has never run,
+  // runs again, or restarts repeatedly; otherwise nothing. To be called periodically. `generation`:
+  // that of its present run; 0: it does not run.
   std::optional<std::string> update(std::uint64_t generation, Timestamp now);
 
   // Time for the first start, since a role reads large models and compiles shaders before it runs.
   static constexpr Duration kFirstStart = std::chrono::minutes(3);
-  // A role that is back within this time was restarted, and nobody is told.
+  // A role that runs again within this time was restarted, which is not reported.
   static constexpr Duration kRestart = std::chrono::seconds(15);
-  // A role that starts kOftenStarts times within kOften restarts again and again.
+  // A role that starts kOftenStarts times within kOften is reported as restarting repeatedly.
   static constexpr Duration kOften = std::chrono::minutes(10);
   static constexpr std::size_t kOftenStarts = 5;
 
@@ -38,7 +39,7 @@ class RoleState {
   Timestamp started_;
   std::optional<Timestamp> last_ran_;
   std::uint64_t generation_ = 0;
-  std::deque<Timestamp> runs_;  // when each of the last kOften began
+  std::deque<Timestamp> runs_;  // start times of the runs that began within the last kOften
   bool missing_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Settings of alarms: programs that `merlind --role alarms` starts when something happens.
+// Settings of alarms: programs that `merlind --role alarms` starts when an event occurs.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// ToldEvents: decides which events are still to be told. One event may come twice: a role publishes
-// it, and includes it in its answer when it is asked for its last events. Pure.
+// ToldEvents: decides which events are still to be reported. An event may arrive twice: when a role
+// publishes it, and in the role's answer to the command `events`. Pure.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,17 @@
 
 namespace merlin::alarms {
 
-// The events in a role's answer to the command `events`, the oldest first; malformed ones are left
-// out.
+// Returns the events in a role's answer to the command `events`, the oldest first, without
+// malformed ones.
 std::vector<AlarmEvent> eventsOf(const std::string& role, const std::string& answer);
 
 // Thread-bound.
 class ToldEvents {
  public:
-  // Returns whether the event is to be told; if so, it counts as told. `works`: the event only says
-  // that a device works, whose name begins the sentence. It is told only if something else was told
-  // of the device before, since otherwise every start would report every device. O(kKept).
+  // Returns whether the event is to be reported; from then on it counts as reported. `works`: the
+  // event says only that a device works. Such an event is reported only if the last reported event
+  // of the device was a different one, since otherwise every start would report every device. The
+  // sentence of a device's event begins with the device's name. O(kKept).
   bool take(const AlarmEvent& event, bool works);
 
   // Number of events that are remembered; a role answers with at most 50.
@@ -29,7 +30,7 @@ class ToldEvents {
 
  private:
   std::deque<std::string> last_;
-  std::set<std::string> complained_;  // devices of which something else was told last
+  std::set<std::string> complained_;  // devices whose last reported event is not that they work
 };
 
 }  // namespace merlin::alarms

@@ -1,4 +1,4 @@
-// The name of a file that means the same in any working directory.
+// Makes the name of a file independent of the working directory.
 #pragma once
 
 #include <filesystem>

@@ -28,7 +28,7 @@ struct Threads {
 bool forBlocks(Threads threads, std::size_t blocks, const std::function<void(std::size_t)>& work,
                const std::function<bool(std::size_t)>& keepGoing = {});
 
-// Calls work(i) for each i of [0, count), in blocks of 16384, with forBlocks().
+// Calls work(i) for each i in [0, count), by forBlocks() with blocks of 16384 calls.
 template <typename Work>
 void forEach(Threads threads, std::size_t count, const Work& work) {
   constexpr std::size_t kBlock = 1 << 14;

@@ -1,4 +1,4 @@
-// What every child process needs: a pipe to it, its start, and the wait for its end.
+// Functions for child processes: make a pipe to one, start one, and wait for its end.
 #pragma once
 
 #include <sys/types.h>
@@ -9,11 +9,11 @@
 namespace merlin {
 
 struct Pipe {
-  UniqueFd from;  // what is written to `to` is read here
-  UniqueFd to;
+  UniqueFd from;  // the end that is read
+  UniqueFd to;    // the end that is written
 };
 
-// Neither end is passed on by exec(). Errors: kIo (the process has no descriptors left).
+// Makes a pipe; exec() closes both ends. Errors: kIo (the process has no descriptors left).
 Result<Pipe> makePipe();
 
 // Calls fork(): returns 0 in the child, and the child's process id in the parent. Errors: kIo (the
@@ -21,8 +21,8 @@ Result<Pipe> makePipe();
 // may call only what signal handlers may, until it becomes another program.
 Result<pid_t> startChild();
 
-// Waits until `child` has ended, whatever signals arrive meanwhile, and returns its status as
-// waitpid() gives it; 0 where somebody else has waited for it already.
+// Waits until `child` has ended, even if signals interrupt the wait, and returns its status as
+// waitpid() gives it; 0 if `child` was waited for already.
 int waitForChild(pid_t child);
 
 }  // namespace merlin

@@ -37,8 +37,8 @@ std::string readAll(int fd) {
   }
 }
 
-// Calls `work`; sends one byte (0: success; otherwise 1 + the error code), then the result or the
-// error's message.
+// Calls `work`, then writes to the pipe `to` one byte (0: success; otherwise 1 + the error code)
+// and the result or the error's message.
 [[noreturn]] void runChild(const std::function<Result<std::string>()>& work, int to,
                            std::chrono::seconds limit) {
   const auto seconds = static_cast<rlim_t>(limit.count());

@@ -164,22 +164,23 @@ inline constexpr CommandInfo kCommands[] = {
      "Move what is shown away, to twice its distance in a second.", Bindable::kHeld, false},
 };
 
-// The command of that name; null if there is none.
+// Returns the command of that name; null if there is none.
 constexpr const CommandInfo* findCommand(std::string_view name) {
   const auto* const found = std::find_if(std::begin(kCommands), std::end(kCommands),
                                          [&](const CommandInfo& c) { return c.name == name; });
   return found == std::end(kCommands) ? nullptr : found;
 }
 
-// Whether there is a command of that name without an argument, for example for a key. Also for
-// checks at compile time: g++ 12 with sanitizers cannot compare findCommand()'s pointer there.
+// Whether a command of that name exists and takes no argument, so that, for example, a key can send
+// it. Unlike findCommand(), whose pointer g++ 12 with sanitizers cannot compare at compile time, it
+// can be used in a static_assert.
 constexpr bool isPlainCommand(std::string_view name) {
   return std::any_of(std::begin(kCommands), std::end(kCommands),
                      [&](const CommandInfo& c) { return c.name == name && c.argument.empty(); });
 }
 
-// An action: a command that inputs may be bound to. Names of all actions, as C strings; an index
-// into this list identifies an action inside one build only.
+// Names of all actions, as C strings. An action is a command that inputs may be bound to. An index
+// into this list identifies an action only within one build.
 inline constexpr auto kActions = [] {
   constexpr auto kIs = [](const CommandInfo& c) { return c.bindable != Bindable::kNo; };
   constexpr auto kCount = std::count_if(std::begin(kCommands), std::end(kCommands), kIs);
@@ -191,8 +192,8 @@ inline constexpr auto kActions = [] {
   return names;
 }();
 
-// Index of an action in kActions. REQUIRES: `name` is an action; otherwise the call does not
-// compile.
+// Returns the index of an action in kActions. REQUIRES: `name` is an action; otherwise the call
+// does not compile.
 consteval std::size_t actionIndex(std::string_view name) {
   for (std::size_t i = 0; i < kActions.size(); ++i) {
     if (name == kActions[i]) return i;

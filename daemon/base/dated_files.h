@@ -9,19 +9,20 @@
 
 namespace merlin {
 
-// Names: NAME-20261123T045500Z.ENDING, in UTC; further files of the same second have -2, -3 ...
-// after the time. So neither a restart nor another daemon with another NAME replaces a file. Not
-// thread-safe: no two threads may make files of one NAME.
+// A file is named NAME, "-20261123T045500Z" (the time in UTC) and ENDING; further files of the same
+// second have -2, -3 ... after the time. So neither a restart nor another daemon with another NAME
+// replaces a file. Not thread-safe: no two threads may make files of one NAME.
 class DatedFiles {
  public:
-  // `most`: number of files kept, at least 1.
+  // `ending`: with its dot, such as ".png". `most`: number of files kept, at least 1.
   DatedFiles(std::string folder, std::string name, std::string ending, std::size_t most)
       : folder_(std::move(folder)),
         name_(std::move(name)),
         ending_(std::move(ending)),
         most_(most) {}
 
-  // The path of a file that does not exist yet. Creates the folder. Errors: kIo, kNotFound.
+  // Returns the path of a file that does not exist yet, named by the time `now`. Creates the
+  // folder. Errors: kIo (the folder cannot be created, or all names of this second are taken).
   Result<std::string> next(std::time_t now) const;
 
   // To be called once the new file is complete: removes the oldest regular files with names of

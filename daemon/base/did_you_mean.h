@@ -7,9 +7,10 @@
 
 namespace merlin {
 
-// The known word with the smallest optimal string alignment distance (edits of one letter, swaps of
-// two neighbours) from `word`, the first one if several are equally near; empty if the distance
-// exceeds half of the word's length.
+// Returns the word in `known` with the smallest optimal string alignment distance (edits of one
+// letter, swaps of two neighbours) from `word`; of several such words, the first. Returns an empty
+// text if that distance exceeds half of the length of `word` (at least 1), or if `word` has more
+// than 64 bytes.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace merlin

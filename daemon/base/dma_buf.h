@@ -11,9 +11,9 @@
 
 namespace merlin {
 
-// The kernel's dma-buf with one plane of pixels. Whoever imports it keeps the memory for as long as
-// it needs it, whether this object still exists or not. Read and written by turns: nobody uses the
-// memory before the other has finished with it.
+// A dma-buf of the kernel, with one plane of pixels. A component that imports it keeps the memory
+// for as long as it needs it, even if this object is destroyed. Reader and writer take turns:
+// neither uses the memory before the other has finished.
 struct DmaBuf {
   UniqueFd file{};
   int width = 0, height = 0;   // [px]
@@ -24,10 +24,10 @@ struct DmaBuf {
   std::string device{};        // deviceFolder() of the card to which the memory belongs
 };
 
-// Returns the folder in /sys of the device that this device node drives, the same for each node of
-// a GPU: /dev/dri/card0 and /dev/dri/renderD128. Empty if there is none.
+// Returns the folder in /sys of the device that belongs to this device node; empty if there is
+// none. All nodes of a GPU, such as /dev/dri/card0 and /dev/dri/renderD128, have the same folder.
 std::string deviceFolder(dev_t node);
-// Of the node with this path. Empty also if there is no such node.
+// Returns the folder of the device node with this path; empty also if there is no such node.
 std::string deviceFolder(const std::string& path);
 
 }  // namespace merlin

@@ -19,8 +19,8 @@ constexpr std::string_view nameOf(Severity severity) {
   return kSeverityNames[static_cast<std::size_t>(severity)];
 }
 
-// The severity of that name; kFault for an unknown name, so that nobody misses what a newer release
-// reports.
+// Returns the severity of that name; kFault for an unknown name, so that nobody misses what a newer
+// release reports.
 constexpr Severity severityOf(std::string_view name) {
   for (const Severity severity : {Severity::kNews, Severity::kRoutine}) {
     if (nameOf(severity) == name) return severity;
@@ -28,7 +28,7 @@ constexpr Severity severityOf(std::string_view name) {
   return Severity::kFault;
 }
 
-// What has happened.
+// Something that has happened.
 struct Event {
   std::string what;  // a sentence
   Severity severity;
@@ -41,7 +41,7 @@ inline Event routineEvent(std::string what) { return {std::move(what), Severity:
 
 struct EventKind {
   const char* name;
-  const char* help;  // what such an event tells of, and what to do
+  const char* help;  // what such an event reports, and what to do about it
 };
 
 inline constexpr EventKind kDeviceEvent{
@@ -83,7 +83,7 @@ inline constexpr EventKind kRoleEvent{
     "role",
     "merlind, or one of its two processes, has not run for 15 s, or runs again; it cannot report "
     "this itself, so only alarms do: look at `systemctl status 'merlin-*'` and the journal"};
-// Routine: it happens whenever somebody moves a hand in that way.
+// Its events are routine: one occurs whenever a hand makes a gesture.
 inline constexpr EventKind kGestureEvent{"gesture", "a hand has made a gesture"};
 
 // The kinds for which alarms can be set.

@@ -28,14 +28,15 @@ class EventLogger {
       : role_(role), write_(std::move(write)) {}
 
   void log(const EventKind& kind, const Event& event, Timestamp now);
-  // To be called from time to time: writes how many lines were left out.
+  // Logs how many events were left out, as soon as the limits allow that line. To be called
+  // periodically.
   void tellLeftOut(Timestamp now);
 
   static constexpr int kSentences = 30, kEvents = 240;
-  static constexpr std::size_t kMostSubjects = 256;  // sentences that are counted at one time
+  static constexpr std::size_t kMostSubjects = 256;  // most sentences that are tracked at a time
 
  private:
-  // What is limited: a sentence of a kind, or a kind.
+  // What a limit applies to: one sentence of a kind, or all events of a kind.
   struct Subject {
     EventKind kind;
     std::string sentence;  // the last one; empty if this is a kind

@@ -41,10 +41,10 @@ struct Field {
 };
 static_assert(sizeof(Field) == 112 && offsetof(Field, count) == 80);
 
-// Offset of a slot's value from the slot's start: it follows the sequence number.
+// Offset of a slot's value from the slot's start [bytes]: the value follows the sequence number.
 inline constexpr std::size_t kSlotPayload = 8;
 
-// The type letter of a C++ type; '?' if it has none.
+// Returns the letter of a C++ type in Field::type; '?' if it has none.
 template <typename T>
 constexpr char fieldType() {
   if constexpr (std::is_enum_v<T>) {

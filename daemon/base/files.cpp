@@ -82,7 +82,8 @@ bool fitsIntoMemory(std::size_t size) {
   return !available || size < *available / 10 * 9;
 }
 
-// Number of bytes read before the end of the file; -1 on an error.
+// Reads from the beginning of the file until `to` is full or the file ends. Returns the number of
+// bytes read; -1 on an error.
 ssize_t readAll(int fd, std::span<std::byte> to) {
   std::size_t done = 0;
   while (done < to.size()) {
@@ -180,14 +181,14 @@ Result<Ok> writeFile(const std::string& path, const std::function<bool(const Wri
 
 namespace {
 
-constexpr mode_t kUsualMode = 0666;  // without the process' umask
+constexpr mode_t kUsualMode = 0666;  // before the process's umask is applied
 
 std::string folderOf(const std::string& path) {
   const auto slash = path.rfind('/');
   return slash == std::string::npos ? "." : path.substr(0, slash + 1);
 }
 
-// A new file that becomes `path` once it is complete. If the file system supports O_TMPFILE, the
+// A new file that replaces `path` once it is complete. If the file system supports O_TMPFILE, the
 // file has no name until then, so that a killed process leaves nothing behind.
 class FreshFile {
  public:

@@ -26,9 +26,11 @@ struct FileStamp {
   std::int64_t modified_ns = 0, changed_ns = 0;  // by the file system's clock
   auto operator<=>(const FileStamp&) const = default;
 };
-// The stamp of the file at `path` (links are followed); nothing if it is not a regular file.
+// Returns the stamp of the file at `path` (links are followed); nothing if it is not a regular
+// file.
 std::optional<FileStamp> fileStamp(const std::string& path);
-// The same, also for a folder, whose stamp changes when a file in it is added or removed.
+// Returns the stamp of the regular file or folder at `path`; nothing if it is neither. The stamp of
+// a folder changes when a file in it is added or removed.
 std::optional<FileStamp> fileOrFolderStamp(const std::string& path);
 
 // A whole file, copied into our own memory. Reentrant.
@@ -39,14 +41,14 @@ class FileCopy {
   // larger than this machine's memory, or changed while it was read); kMalformed (not a regular
   // file).
   static Result<FileCopy> read(const std::string& path, std::size_t most = kAll);
-  // The same for an open file. `path`: its name, for messages.
+  // Reads the open file `fd` from its beginning, like read(path). `path`: its name, for messages.
   static Result<FileCopy> read(int fd, const std::string& path, std::size_t most = kAll);
 
   std::span<const std::byte> bytes() const noexcept { return {bytes_.data(), size_}; }
   std::string_view text() const noexcept {
     return {reinterpret_cast<const char*>(bytes_.data()), size_};
   }
-  // The file's stamp when it was read.
+  // Returns the stamp that the file had when it was read.
   const FileStamp& stamp() const noexcept { return stamp_; }
 
  private:
@@ -72,8 +74,8 @@ class MappedFile {
   ~MappedFile();
 
   std::span<const std::byte> bytes() const noexcept { return {data_, size_}; }
-  // The same bytes, without a UTF-8 byte order mark at their beginning, since no format includes
-  // it.
+  // Returns the same bytes as text, without a UTF-8 byte order mark at the beginning, because no
+  // text format that MERLIN reads includes it.
   std::string_view text() const noexcept {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     const std::string_view all(reinterpret_cast<const char*>(data_), size_);
@@ -93,8 +95,8 @@ using WriteBytes = std::function<bool(std::span<const std::byte>)>;
 // Checks that files can be created in this folder. Errors: kNotFound, kIo (not a folder, or no
 // permission).
 Result<Ok> checkWritableFolder(const std::string& path);
-// Checks the same for a folder that may be missing: then it must be possible to create it, and its
-// parents.
+// Checks that files can be created in this folder or, if it is missing, that it and its missing
+// parents can be created. Errors: those of checkWritableFolder().
 Result<Ok> checkFolder(const std::string& path);
 
 // Calls `fill` to write a temporary file in the same folder, then syncs it and renames it to
@@ -113,7 +115,7 @@ Result<Ok> writeFileHeadLast(const std::string& path, std::size_t head_size,
 // Checks, before long work and as far as possible, that writeFile() could write this file.
 // Errors: kNotFound (no such folder), kIo (not writable, a folder, a device).
 Result<Ok> checkWritable(const std::string& path);
-// Checks each path that is not empty.
+// Calls checkWritable() for each path that is not empty, up to the first error.
 Result<Ok> checkWritable(std::initializer_list<std::string> paths);
 
 }  // namespace merlin

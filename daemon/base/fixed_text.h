@@ -7,7 +7,7 @@
 
 namespace merlin {
 
-// The text in a field, which ends at its first zero byte, or with the field if it has none.
+// Returns the text in a field. It ends at the first zero byte, or with the field if there is none.
 template <std::size_t N>
 constexpr std::string_view textIn(const char (&field)[N]) noexcept {
   return std::string_view(field, N).substr(0, std::string_view(field, N).find('\0'));

@@ -1,5 +1,5 @@
-// Handover: gives a value to another thread, which swaps it in when it likes, without a lock and
-// without allocating or freeing anything.
+// Handover: passes a value to another thread, which takes it at a time of its choice, without
+// locking, allocating or freeing anything.
 #pragma once
 
 #include <atomic>
@@ -8,8 +8,8 @@
 
 namespace merlin {
 
-// One thread offers, one takes. What the taker had before is freed by the offering thread, with the
-// next offer().
+// One thread calls offer(), another one calls take(). The previous value of the taking thread is
+// freed by the next offer(), on the offering thread.
 template <typename T>
 class Handover {
  public:
@@ -28,7 +28,8 @@ class Handover {
     free(given_back_.exchange(nullptr, std::memory_order_acquire));
   }
 
-  // Swaps the offered value with `mine`, after merge(mine, offered); false if there is none.
+  // If a value was offered, calls merge(mine, offered), swaps the two and returns true; otherwise
+  // returns false.
   template <typename Merge>
   bool take(T& mine, const Merge& merge) noexcept {
     if (!offered_.load(std::memory_order_relaxed)) return false;

@@ -22,7 +22,7 @@ class HugeArray {
 
  public:
   HugeArray() = default;
-  // Throws std::bad_alloc.
+  // Makes an array of `size` zeros. Throws std::bad_alloc.
   explicit HugeArray(std::size_t size) : size_(size), bytes_(roundUp(size * sizeof(T)) + kPage) {
     if (size > (SIZE_MAX - 2 * kPage) / sizeof(T)) throw std::bad_alloc();
     base_ = ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE,

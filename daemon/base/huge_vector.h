@@ -10,7 +10,7 @@
 
 namespace merlin {
 
-// v.resize(size), on huge pages if the vector gets new memory that is large enough. Throws
+// Calls v.resize(size), and asks the kernel for huge pages where the memory is large enough. Throws
 // std::bad_alloc.
 template <typename T>
 void resizeHuge(std::vector<T>& v, std::size_t size) {

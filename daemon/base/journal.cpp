@@ -11,7 +11,8 @@
 namespace merlin {
 namespace {
 
-// A value with a line feed: its length as eight bytes, the lowest first, instead of "=".
+// Appends a value that contains a line feed. Instead of "=" it begins with a line feed and its
+// length in eight bytes, the lowest first.
 void addLongValue(std::string& datagram, std::string_view value) {
   datagram += '\n';
   for (int byte = 0; byte < 8; ++byte)

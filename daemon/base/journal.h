@@ -12,14 +12,15 @@
 
 namespace merlin {
 
-// Name (of the characters A-Z and _) and value.
+// Name of a field, of the characters A-Z and _, and its value.
 using JournalField = std::pair<std::string_view, std::string_view>;
 
-// Whether the descriptor is the stream to the journal whose "DEVICE:INODE" systemd puts into the
-// environment variable JOURNAL_STREAM (systemd.exec(5)); null: it is not set.
+// Whether descriptor `fd` is the stream to the journal. `journal_stream`: the environment variable
+// JOURNAL_STREAM, in which systemd puts "DEVICE:INODE" of this stream (systemd.exec(5)); null if it
+// is not set.
 bool isJournalStream(int fd, const char* journal_stream);
 
-// A datagram of the protocol. Fields with an empty value are left out.
+// Returns the fields as a datagram of the protocol, without fields whose value is empty.
 std::string journalDatagram(std::span<const JournalField> fields);
 
 // Thread-safe.

@@ -1,5 +1,5 @@
-// Port: open files that outlive this process, so that the next one of this service goes on with
-// them: a graphics card keeps showing its displays' last picture for as long as somebody has it
+// Port: open files that outlive this process and that the next process of the service takes over.
+// For example, a graphics card keeps showing the last picture for as long as some process has it
 // open. Implemented by KeptBySystemd.
 #pragma once
 

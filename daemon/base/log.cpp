@@ -75,7 +75,7 @@ class PatientSink final : public spdlog::sinks::base_sink<std::mutex> {
 
 // Set by initLog(), before any thread starts.
 struct Target {
-  bool has_priority = std::getenv("JOURNAL_STREAM") != nullptr;  // at the beginning of a line
+  bool has_priority = std::getenv("JOURNAL_STREAM") != nullptr;  // whether lines begin with it
   std::optional<Journal> journal;
 };
 Target& target() {

@@ -19,7 +19,8 @@ namespace merlin {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-// What the journal can be searched for, as in `journalctl MERLIN_KIND=device`; empty: unknown.
+// Fields by which the journal can be searched, as in `journalctl MERLIN_KIND=device`; an empty
+// field is left out.
 struct LogFields {
   std::string_view kind;  // MERLIN_KIND: EventKind::name
   std::string_view role;  // MERLIN_ROLE: "devices", "wall"
@@ -29,7 +30,8 @@ struct LogFields {
 // the journal's socket.
 void initLog(LogLevel lowest, const char* journal = Journal::kSocket);
 
-// Thread-safe. Never waits for whoever reads the log.
+// Writes one line to the log. Thread-safe. Never blocks: if the reader of the log hangs, lines are
+// dropped and their number is logged later.
 void logLine(LogLevel level, std::string_view text, const LogFields& fields = {});
 
 template <typename... Args>

@@ -1,4 +1,4 @@
-// Opens a file in a folder that other users may write to, whatever they have put there.
+// Safely opens a file in a folder that other users may write to.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace merlin {
 
-// Whether a file may have this name in such a folder: 1 to 200 bytes of text, no '/', no dot at the
-// beginning.
+// Whether `name` is plain, that is, allowed in such a folder: 1 to 200 bytes of text, no '/', no
+// dot at the beginning.
 bool isPlainName(std::string_view name) noexcept;
 
 // Opens `name`, a plain name or several with '/' between them, below `folder` for reading. No link
@@ -18,7 +18,8 @@ bool isPlainName(std::string_view name) noexcept;
 // (a name that is not plain), kNotFound, kIo, kMalformed (a link, or not a regular file).
 Result<UniqueFd> openBelow(const std::string& folder, std::string_view name);
 
-// The same for a folder: checks that it is one, and no link.
+// Opens a folder like openBelow(). Errors: those of openBelow(), where kMalformed means a link, or
+// not a folder.
 Result<UniqueFd> openFolderBelow(const std::string& folder, std::string_view name);
 
 }  // namespace merlin

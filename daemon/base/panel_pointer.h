@@ -21,19 +21,21 @@ class PanelPointer {
 
     bool operator==(const Place&) const = default;
   };
-  // Sets where the picture shows the panel; nothing: it does not, and a held button is released.
+  // Sets where the picture shows the panel; nothing: the picture does not show it. If the place
+  // changes, a held button is released.
   void place(const std::optional<Place>& place);
 
-  // The pointer is at a pixel of the picture. `pressed`: whether its (left) button is pressed.
-  // Returns true if the panel takes the event, which must then have no other effect. A drag belongs
-  // to the panel only if it began there.
+  // Reports that the pointer is at a pixel of the picture. `pressed`: whether its (left) button is
+  // pressed. Returns true if the panel takes the event, which must then have no other effect. A
+  // drag belongs to the panel only if it began there.
   bool point(int x, int y, bool pressed);
-  // The pointer has left the picture, or the finger the screen.
+  // Reports that the pointer has left the picture, or the finger the screen.
   void leave();
 
-  // The argument of the next command operator_pointer; nothing if there is none. While the button
-  // is held, the command is repeated every kRepeat, so that merlind can release the button if the
-  // commands cease. Motions since the last call are merged into one; presses and releases are not.
+  // Returns the argument of the next command operator_pointer; nothing if none is due. While the
+  // button is held, the command is repeated every kRepeat, so that merlind can release the button
+  // if the commands cease. Motions since the last call are merged into one; presses and releases
+  // are not.
   std::optional<std::string> take(Timestamp now);
 
   static constexpr Duration kRepeat = std::chrono::milliseconds(500);
@@ -47,12 +49,12 @@ class PanelPointer {
   void tell(const Told& told);
 
   std::optional<Place> place_;
-  bool pressed_ = false;  // the button
-  bool held_ = false;     // since it was pressed on the panel
+  bool pressed_ = false;  // whether the button is pressed
+  bool held_ = false;     // whether it was pressed on the panel and is still pressed
   Told last_{0, 0, false, true};
   struct Waiting {
     Told told;
-    bool moves = false;  // a motion: not the first with its button, or within the panel
+    bool moves = false;  // a mere motion: button and `out` are as in the event before
   };
   std::deque<Waiting> waiting_;  // bounded
   Timestamp taken_{};

@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-// Size in bytes of the first character; 0 if it is invalid or a control character.
+// Returns the size of the first character [bytes]; 0 if it is invalid or a control character.
 // REQUIRES: `bytes` is not empty.
 std::size_t characterAt(std::string_view bytes) noexcept {
   std::string_view rest = bytes;
@@ -17,6 +17,14 @@ std::size_t characterAt(std::string_view bytes) noexcept {
   const std::size_t size = bytes.size() - rest.size();
   const bool control = code < 0x20 || (code >= 0x7F && code < 0xA0);
   return control || (code == kNoCharacter && size == 1) ? 0 : size;
+}
+
+// Returns the size of the character that begins with this byte [bytes]; 0 if none can.
+std::size_t sizeByFirst(char first) noexcept {
+  const auto byte = static_cast<std::uint8_t>(first);
+  if (byte < 0x80) return 1;
+  if (byte < 0xC2 || byte > 0xF4) return 0;
+  return byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : 4;
 }
 
 }  // namespace
@@ -31,9 +39,10 @@ bool isText(std::string_view bytes) noexcept {
 }
 
 std::string_view wholeCharacters(std::string_view bytes) noexcept {
-  for (std::size_t cut = 0; cut < 4 && cut <= bytes.size(); ++cut) {
-    const std::string_view kept = bytes.substr(0, bytes.size() - cut);
-    if (isText(kept)) return kept;
+  for (std::size_t cut = 1; cut < 4 && cut <= bytes.size(); ++cut) {
+    const std::size_t size = sizeByFirst(bytes[bytes.size() - cut]);
+    if (size == 0) continue;
+    return size > cut ? bytes.substr(0, bytes.size() - cut) : bytes;
   }
   return bytes;
 }

@@ -11,9 +11,9 @@
 namespace merlin {
 namespace {
 
-// The bytes of address space that the limit (ulimit -v) still allows, less an eighth for addresses
-// that the allocator and threads reserve but do not use. Returns a very large number if there is no
-// limit.
+// Returns the address space that the limit (ulimit -v) still allows [bytes], less an eighth for
+// addresses that the allocator and threads reserve but do not use. Returns a very large number if
+// there is no limit.
 std::size_t freeAddresses() {
   rlimit limit{};
   std::size_t pages = 0;

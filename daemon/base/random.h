@@ -22,14 +22,16 @@ class Random {
     return z ^ z >> 31;
   }
 
-  // In [0, 1).
+  // Returns a uniformly distributed number in [0, 1).
   double uniform() noexcept { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double uniform(double low, double high) noexcept { return low + (high - low) * uniform(); }
 
-  // In [0, bound), bound > 0. The bias, bound / 2^64, is negligible for every use here.
+  // Returns a uniformly distributed number in [0, bound). Its bias, bound / 2^64, is negligible for
+  // every use here. REQUIRES: bound > 0.
   std::uint64_t below(std::uint64_t bound) noexcept { return next() % bound; }
 
-  // Mean 0, standard deviation 1 (Box-Muller, one of the pair).
+  // Returns a normally distributed number with mean 0 and standard deviation 1 (Box-Muller; the
+  // second number of the pair is not used).
   double normal() noexcept {
     const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return r * std::cos(2.0 * std::numbers::pi * uniform());

@@ -10,8 +10,9 @@
 
 namespace merlin {
 
-// Like writeFile() (daemon/base/files.h), with the permissions `mode` less the process' umask; also
-// while it is being written, nobody else can read the file.
+// Writes a file like writeFile() (daemon/base/files.h), with the permissions `mode` less the
+// process's umask. The file has these permissions from its creation, so nobody else can read it
+// while it is written. Errors: those of writeFile().
 Result<Ok> writeRestrictedFile(const std::string& path, std::string_view content, mode_t mode);
 
 }  // namespace merlin

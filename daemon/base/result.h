@@ -31,7 +31,7 @@ struct [[nodiscard]] Error {
   std::string what;  // for a person: names the thing and the figures, never "failed"
 };
 
-// The value of a call that only succeeds or fails.
+// The value type of a call that has no value: Result<Ok> only says whether the call succeeded.
 struct Ok {};
 
 template <typename T>

@@ -1,6 +1,6 @@
-// Whether this is a sanitizer's build: it reserves terabytes of address space, counts its own
-// memory as the program's, and is slow. g++ and clang say it differently; this is the only place
-// that asks.
+// Defines MERLIN_..._SANITIZER macros in a build with a sanitizer. Such a build reserves terabytes
+// of address space, counts the sanitizer's memory as the program's, and is slow. g++ and clang
+// announce a sanitizer differently; no other file checks for it.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -1,6 +1,6 @@
-// SettingsVisitor: a description of settings calls one of its functions for every setting. What
-// reads a file, writes the schema and the manual page, and prints or compares the settings in
-// effect are visitors of the same description, so that they always agree.
+// SettingsVisitor: an interface. A description of settings calls one of its functions for every
+// setting. The classes that read a file, write the schema and the manual page, and print or compare
+// the settings in effect are visitors of the same description, so that they always agree.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@ namespace merlin {
 
 struct Range {
   double low, high;
-  // If set: of number(), a value beyond the range is refused, with this end of the sentence (what
-  // is usual), and not replaced by the nearest one, because that has another meaning.
+  // For number() only. If set, a value outside the range is refused instead of being replaced by
+  // the nearest allowed one, because that would have another meaning. The text ends the message; it
+  // says what is usual.
   const char* refused = nullptr;
 };
 
@@ -30,39 +31,41 @@ class SettingsVisitor {
   virtual void integer(const char* key, int& value, Range range, const char* help) = 0;
   virtual void flag(const char* key, bool& value, const char* help) = 0;
   virtual void text(const char* key, std::string& value, const char* help) = 0;
-  // A list of any number of texts.
+  // Describes a list of any number of texts.
   virtual void texts(const char* key, std::vector<std::string>& values, const char* help) = 0;
-  // A file name, relative to the folder of the configuration.
+  // Describes a file name, relative to the folder of the configuration.
   virtual void path(const char* key, std::string& value, const char* help) = 0;
-  // The name of a file that holds a secret: a password, a secret key. Output that is meant for
-  // strangers omits the name as well, since some people enter the secret itself there.
+  // Describes the name of a file that holds a secret: a password, a secret key. Output that is
+  // meant for strangers omits the name as well, since some people enter the secret itself there.
   virtual void secretFile(const char* key, std::string& value, const char* help) {
     path(key, value, help);
   }
-  // One of `names`; `value` is its index, or negative if there is no default.
+  // Describes a choice: the setting is one of `names`; `value` is its index, or negative if there
+  // is no default.
   virtual void choice(const char* key, int& value, std::span<const char* const> names,
                       const char* help) = 0;
-  // A list of exactly values.size() numbers.
+  // Describes a list of exactly values.size() numbers.
   virtual void numbers(const char* key, std::span<double> values, Range range,
                        const char* help) = 0;
-  // The same, but each of them is a whole number.
+  // Describes a list of exactly values.size() whole numbers.
   virtual void wholeNumbers(const char* key, std::span<double> values, Range range,
                             const char* help) {
     numbers(key, values, range, help);
   }
   virtual void group(const char* key, const char* help, const std::function<void()>& members) = 0;
-  // A list of any number of objects: resize(n) sets their number, member(i) describes one.
+  // Describes a list of any number of objects: resize(n) sets their number, member(i) describes
+  // object i. `count`: their present number.
   virtual void list(const char* key, std::size_t count, const char* help,
                     const std::function<void(std::size_t)>& resize,
                     const std::function<void(std::size_t)>& member) = 0;
 
-  // A key that a file must not have, since another setting determines its value. `what`: the rest
-  // of the sentence that begins with the key.
+  // Describes a key that a file must not have, since another setting determines its value. `what`:
+  // the message about it, without the key, with which the sentence begins.
   virtual void excluded(const char* key, const char* what) = 0;
 
-  // A group that only counts while `active`; another setting decides that. `what`: as in
-  // excluded(), why a file must not have the group while it is not active. Visitors that describe
-  // what a file may have, rather than what one has, describe the group in any case.
+  // Describes a group that is valid only if `active`, which depends on another setting. `what`: why
+  // a file must not have the group otherwise, as in excluded(). Visitors that describe all possible
+  // files (schema, manual page) override this to describe the group in any case.
   virtual void groupIf(bool active, const char* key, const char* help,
                        const std::function<void()>& members, const char* what) {
     if (active)
@@ -98,7 +101,7 @@ class SettingsVisitor {
     choice(key, index, names, help);
     value = static_cast<Enum>(index);
   }
-  // A text that is one of `names`, or empty if there is no default.
+  // Describes a choice whose value is a text: one of `names`, or empty if there is no default.
   void choiceOf(const char* key, std::string& value, std::span<const char* const> names,
                 const char* help) {
     int index = -1;

@@ -23,7 +23,8 @@ Error shmError(const std::string& name, const char* step, int error) {
 
 std::string lockName(const std::string& name) { return name + ".lock"; }
 
-// An open-file-description write lock on the whole file; needs a descriptor open for writing.
+// Describes an open-file-description write lock on the whole file, which needs a descriptor that is
+// open for writing.
 struct flock wholeFile() {
   struct flock lock {};
   lock.l_type = F_WRLCK;
@@ -52,7 +53,7 @@ std::string userName(uid_t user) {
   return found ? found->pw_name : fmt::format("number {}", user);
 }
 
-// Removes an object that has our name. Only root can remove that of another user.
+// Removes the object of this name if there is one. Only root can remove an object of another user.
 Result<Ok> removeObject(const std::string& name) {
   if (::shm_unlink(name.c_str()) == 0 || errno == ENOENT) return Ok{};
   const int error = errno;
@@ -67,7 +68,8 @@ Result<Ok> removeObject(const std::string& name) {
   return shmError(name, "remove", error);
 }
 
-// Creates the lock of the name and takes it.
+// Creates the lock object of the name if it is missing, and locks it. Replaces a lock object of
+// another user if permitted. Errors: kBusy (another process holds the lock), kIo.
 Result<UniqueFd> claim(const std::string& name) {
   const std::string lock = lockName(name);
   for (int attempt = 0; attempt < 100; ++attempt) {

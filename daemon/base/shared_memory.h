@@ -19,10 +19,10 @@ class SharedMemory {
   // (a running process owns it), kIo (also if another user's object has the name).
   static Result<SharedMemory> create(const std::string& name, std::size_t size);
 
-  // Whose objects a reader accepts. A daemon that acts on what it reads must only accept those of
-  // its own user or root, because anybody may create an object under a free name.
-  // kOwnGroup: also those that belong to a group of this process, since only a member of the group
-  // can have created such an object; for a daemon that runs as a user of its own.
+  // The owners whose objects a reader accepts. A daemon that acts on what it reads must accept only
+  // objects of its own user or root, because anybody may create an object under a free name.
+  // kOwnGroup, for a daemon that runs as another user: also objects that belong to a group of this
+  // process, since only a member of the group can have created them.
   enum class From { kAnyone, kOwnUserOrRoot, kOwnGroup };
 
   // Maps another process' object read-only. Errors: kNotFound, kIo (no permission: the message
@@ -33,8 +33,9 @@ class SharedMemory {
   // To be called by the owner once a second, from one thread: if the object or its lock was removed
   // or replaced, creates it again, with the same bytes at the same address. A value that a thread
   // writes at that moment may be lost or torn until it is written again. Returns a sentence about
-  // what had happened; empty if nothing. Errors: it cannot be created again (another process took
-  // the name, no memory); the mapping then continues without a name. Cost: three system calls.
+  // what was created again; empty if nothing was. Errors: it cannot be created again (another
+  // process took the name, no memory); the mapping then continues without a name. Cost: three
+  // system calls.
   Result<std::string> mend();
 
   // Whether a running process of this user owns the object of that name.

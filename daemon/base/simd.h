@@ -1,8 +1,8 @@
 // Vectors of numbers that one instruction processes (SIMD), and the choice between a function that
-// is compiled for any processor and one for the wide registers of newer ones. The only place that
-// asks which processor this is.
+// is compiled for any processor and one for the wide registers of newer ones. No other file checks
+// which processor this is.
 //
-// Code that uses these vectors is one source, compiled twice:
+// Code that uses these vectors is written once and compiled twice:
 //
 //   MERLIN_INLINE float work(const float* p) { ... }        // with simd::Floats
 //   float workPlain(const float* p) { return work(p); }
@@ -12,7 +12,7 @@
 // Both do the same operations in the same order, and no multiplication is fused with an addition
 // (-ffp-contract=off), so the results have the same bits. All functions here are inlined into the
 // one that is compiled for a processor, so the calling convention that GCC warns about (-Wpsabi) is
-// never used. Pure; but for pick(), nothing depends on the processor.
+// never used. Pure. Only the result of pick() depends on the processor.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@
 #include <cstring>
 
 #if defined(__x86_64__)
-#include <immintrin.h>  // the few instructions that vectors of GCC do not give
+#include <immintrin.h>  // for instructions that GCC's vectors do not provide
 #endif
 
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -42,8 +42,8 @@ Function pick(Function wide, Function plain) noexcept {
   return plain;
 }
 
-// Arithmetic works lane by lane. A comparison gives, lane by lane, all bits set or none, as an
-// Ints.
+// A vector of `bytes` bytes. Arithmetic works lane by lane. A comparison of Floats or Ints returns
+// an Ints whose lanes have all bits set (true) or none (false).
 template <typename Number, std::size_t bytes>
 using Vector [[gnu::vector_size(bytes)]] = Number;
 
@@ -72,9 +72,9 @@ MERLIN_INLINE Ints load(const std::uint16_t* p) {
 MERLIN_INLINE void store(float* p, const Floats& v) { std::memcpy(p, &v, sizeof v); }
 MERLIN_INLINE void store(std::uint32_t* p, const Ints& v) { std::memcpy(p, &v, sizeof v); }
 
-// sum + a * b, for products that a double holds exactly, as those of two floats: one rounding then
-// gives the same bits as two. The overload for four lanes may only be used in a function with
-// MERLIN_WIDE.
+// Returns sum + a * b. REQUIRES: a double holds each product exactly, as it does for two floats;
+// then a fused operation, with one rounding, gives the same bits as two operations. The overload
+// for four lanes may be used only in a function with MERLIN_WIDE.
 MERLIN_INLINE Vector<double, 16> addExact(const Vector<double, 16>& sum,
                                           const Vector<double, 16>& a, double b) {
   return sum + a * b;
@@ -88,8 +88,8 @@ MERLIN_INLINE Vector<double, 32> addExact(const Vector<double, 32>& sum,
 #endif
 }
 
-// Lane by lane: from[index] where all bits of `mask` are set; elsewhere reads nothing and returns
-// the lane of `otherwise`. Only for functions with MERLIN_WIDE.
+// Returns, lane by lane, from[index] where all bits of `mask` are set; elsewhere it reads nothing
+// and returns the lane of `otherwise`. To be used only in functions with MERLIN_WIDE.
 MERLIN_WIDE MERLIN_INLINE Ints gather(const std::uint32_t* from, const Ints& index,
                                       const Ints& mask, const Ints& otherwise) {
 #if defined(__x86_64__)
@@ -106,11 +106,12 @@ MERLIN_WIDE MERLIN_INLINE Ints gather(const std::uint32_t* from, const Ints& ind
 #endif
 }
 
-// The same numbers in the other type; toInts() rounds towards zero.
+// Convert the number in each lane to the other type; toInts() rounds towards zero.
 MERLIN_INLINE Floats toFloats(const Ints& v) { return __builtin_convertvector(v, Floats); }
 MERLIN_INLINE Ints toInts(const Floats& v) { return __builtin_convertvector(v, Ints); }
 
-// Lane by lane, the lesser or the greater value; that of b if they cannot be compared.
+// Return, lane by lane, the lesser or the greater value; the value of b if one of them is not a
+// number (NaN).
 template <typename V>
 MERLIN_INLINE V least(const V& a, const V& b) {
   return a < b ? a : b;
@@ -120,7 +121,7 @@ MERLIN_INLINE V greatest(const V& a, const V& b) {
   return a > b ? a : b;
 }
 
-// The sum of the lanes.
+// Returns the sum of the lanes.
 MERLIN_INLINE float sum(const Floats& v) {
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
@@ -128,7 +129,7 @@ MERLIN_INLINE std::int32_t sum(const Ints& v) {
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
-// The sums of eight vectors, each added in the order of sum().
+// Returns the sums of eight vectors: lane k is sum(v[k]), with the same bits.
 MERLIN_INLINE Floats sums(const Floats (&v)[8]) {
   Floats half[4];  // {v0 + v4, v1 + v5, v2 + v6, v3 + v7} of two
   for (int k = 0; k < 4; ++k) {
@@ -144,7 +145,7 @@ MERLIN_INLINE Floats sums(const Floats (&v)[8]) {
          __builtin_shufflevector(quarter[0], quarter[1], 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-// The minimum of all lanes, in every lane.
+// Returns a vector whose lanes all hold the minimum of the lanes.
 template <typename V>
 MERLIN_INLINE V leastLane(const V& of) {
   V v = of;
@@ -156,7 +157,8 @@ MERLIN_INLINE V leastLane(const V& of) {
   return c < v ? c : v;
 }
 
-// True if a bit of any lane is set. anyWide() is faster, and only for functions with MERLIN_WIDE.
+// Return true if a bit of any lane is set. anyWide() is faster, but may be used only in functions
+// with MERLIN_WIDE.
 MERLIN_INLINE bool any(const Ints& mask) {
   const Vector<std::int32_t, 16> half = __builtin_shufflevector(mask, mask, 0, 1, 2, 3) |
                                         __builtin_shufflevector(mask, mask, 4, 5, 6, 7);

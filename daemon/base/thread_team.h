@@ -43,7 +43,7 @@ class ThreadTeam {
   void finish() noexcept;
   void work(std::size_t member, int turn) noexcept;
 
-  const std::function<void()>* job_ = nullptr;  // null when a turn begins: threads end
+  const std::function<void()>* job_ = nullptr;  // null: no job, or the threads must end
   std::size_t wanted_ = 0;
   std::atomic<int> turn_{0}, busy_{0};
   std::vector<std::jthread> members_;

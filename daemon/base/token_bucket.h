@@ -14,7 +14,7 @@ class TokenBucket {
   // REQUIRES: both are above 0.
   TokenBucket(double rate, double burst) noexcept : rate_(rate), burst_(burst), tokens_(burst) {}
 
-  // Number of tokens in the bucket at `now`; negative after charge().
+  // Returns the number of tokens in the bucket at `now`; it may be negative after charge().
   double available(Timestamp now) noexcept {
     refill(now);
     return tokens_;
@@ -28,14 +28,15 @@ class TokenBucket {
     return true;
   }
 
-  // Takes `amount` even if the bucket holds less, for work that is already done; the next caller
-  // waits for the debt.
+  // Takes `amount` even if the bucket holds less, for work that is already done. The number of
+  // tokens may become negative; later calls must wait until it has recovered.
   void charge(double amount, Timestamp now) noexcept {
     refill(now);
     tokens_ -= amount;
   }
 
-  // Time from `now` until the bucket holds `amount` (at most `burst`); zero if it does.
+  // Returns the time from `now` until the bucket holds `amount`, or `burst` if that is less; zero
+  // if it does already.
   Duration waitFor(double amount, Timestamp now) noexcept {
     refill(now);
     const double missing = std::min(amount, burst_) - tokens_;

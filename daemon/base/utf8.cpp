@@ -6,7 +6,8 @@
 namespace merlin {
 namespace {
 
-// Number of bytes of the character whose first byte is `first`; 0 if no character begins so.
+// Returns the number of bytes of the character whose first byte is `first`; 0 if no character
+// begins with this byte.
 std::size_t lengthOf(char32_t first) {
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first < 0xE0) return 2;

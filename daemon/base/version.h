@@ -3,7 +3,7 @@
 
 namespace merlin {
 
-// "0.1.0". Any thread.
+// Returns the version, such as "0.1.0". Thread-safe.
 const char* programVersion();
 
 }  // namespace merlin

@@ -73,7 +73,8 @@ struct ThreadState {
 // The threads of one process. Thread-safe. Must outlive its threads.
 class ThreadWatch {
  public:
-  // The threads that run, or ended without having been asked to, in the order of their start.
+  // Returns the threads that run, or that ended without having been asked to stop, in the order of
+  // their start.
   std::vector<ThreadState> threads() const;
 
  private:

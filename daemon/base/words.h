@@ -8,7 +8,7 @@
 
 namespace merlin {
 
-inline constexpr std::string_view kBlanks = " \t\r";  // within a line
+inline constexpr std::string_view kBlanks = " \t\r";  // between words of a line
 
 // Removes the first line from `text`; returns it without its line feed.
 inline std::string_view takeLine(std::string_view& text) {

@@ -1,5 +1,5 @@
 // ContinuedCounts: continues a device's counters when a changed configuration recreates the device.
-// It is the first of the sinks that the device's samples and health pass through.
+// It is the first sink that the device's samples and health pass through.
 #pragma once
 
 #include <array>
@@ -33,8 +33,10 @@ class ContinuedCounts final : public SampleSink, public HealthSink {
     health_.publish(sum);
   }
 
-  // To be called before samples of a new device follow, whose counters begin at 0. REQUIRES: no
-  // thread of the device runs.
+  // Makes the counters continue from their last values, although those of the next device begin at
+  // 0; this counts as a reconnection if the old device has sent samples. To be called after the old
+  // device was closed and before the new one publishes anything. REQUIRES: the device's thread does
+  // not run.
   void restart() noexcept {
     before_ = last_;
     if (last_.samples > 0) ++before_.reconnects;

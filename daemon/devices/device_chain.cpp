@@ -7,7 +7,7 @@
 namespace merlin::devices {
 namespace {
 
-// Returns the gestures to recognise for a hand; nothing if its gestures are switched off.
+// Returns the model of gestures for a hand; nothing if its gestures are switched off.
 std::optional<nn::GestureModel> gesturesOf(const HandSettings& hand, const Trained& trained) {
   return hand.gestures ? trained.gestures : std::nullopt;
 }
@@ -30,7 +30,8 @@ Result<Trained> loadTrained(const Settings& settings) {
   return trained;
 }
 
-// A glove sends about 100 samples a second; fifteen samples in a row are a posture that is held.
+// A glove sends about 100 samples a second, so fifteen samples in a row mean that a posture is
+// held.
 PostureSink::Settings postureSettings(const DevicesSettings& settings) {
   nn::DriftSettings drift;
   drift.least_hands = 15;
@@ -76,7 +77,8 @@ DeviceChain::DeviceChain(const DevicesSettings& settings, std::size_t device, De
   counts_ = std::make_unique<ContinuedCounts>(*next, *health);
 }
 
-// Returns the link that passes the tracker's samples on to `next`.
+// Adds the sink of the hand `index`, and returns it. The sink passes the tracker's samples on to
+// `next`.
 SampleSink* DeviceChain::addHand(const DevicesSettings& settings, std::size_t index,
                                  const Trained& trained, std::uint64_t generation,
                                  SampleSink& next) {

@@ -1,5 +1,5 @@
-// DeviceChain: the sinks that one device's samples and health pass through on their way to shared
-// memory.
+// DeviceChain: the chain of sinks through which one device's samples and health pass on their way
+// to shared memory.
 #pragma once
 
 #include <cstdint>
@@ -21,43 +21,47 @@
 
 namespace merlin::devices {
 
-// The models that recognise postures and gestures, read from the files that the settings name;
-// nothing where they name no file.
+// The models that recognise postures and gestures, read from the files that the settings name. A
+// model is nothing if the settings name no file for it.
 struct Trained {
   std::optional<nn::TrainedPostures> postures;
   std::optional<nn::GestureModel> gestures;
-  nn::WallAxes axes;  // of the trackers
+  nn::WallAxes axes;  // axes of the trackers relative to the wall
 };
 
-// Errors: those of nn::loadNetwork() and nn::loadGestures().
+// Reads the files of postures and gestures that the settings name. Errors: those of
+// nn::loadNetwork() and nn::loadGestures().
 Result<Trained> loadTrained(const Settings& settings);
 
-// The part of these settings that concerns the recognition of postures.
+// Returns the part of the settings that the recognition of postures uses.
 PostureSink::Settings postureSettings(const DevicesSettings& settings);
 
-// A glove's sample first passes the recognition of postures; samples of gloves and balls begin and
-// end actions. These results are written before the sample itself. A tracker's sample is written
-// first and only then used for hands and gestures, so that these delay no sample. The chain is made
-// once, while the device itself may be recreated. Thread-bound to the device's thread, except for
-// what says otherwise.
+// The posture is recognised from a glove's sample first; then samples of gloves, balls and touch
+// surfaces begin and end actions. Both results are published before the sample itself. A tracker's
+// sample is published first and used for hands and gestures afterwards, so that these do not delay
+// it. The chain exists as long as the role; the device at its beginning may be recreated.
+// Thread-bound to the device's thread, except where a comment says otherwise.
 class DeviceChain {
  public:
-  // `device`: index in the list of devices. `generation`: of the daemon.
+  // `device`: index of the device in settings.list. `generation`: number of the daemon's run
+  // (shm::newGeneration()). `segment` must outlive this object.
   DeviceChain(const DevicesSettings& settings, std::size_t device, const Trained& trained,
               std::uint64_t generation, shm::DevicesSegment& segment);
 
-  // Where the driver and its loop publish.
+  // Return the first sinks of the chain, to which the driver publishes samples and its loop health.
   SampleSink& samples() { return *counts_; }
   HealthSink& health() { return *counts_; }
 
-  // For one other thread: applies these settings from the device's next sample on.
+  // Each applies these settings from the device's next sample on. May be called by one other thread
+  // while the device's thread runs.
   void rebind(const DevicesSettings& settings);
   void reloadHands(const DevicesSettings& settings);
   void reloadPostures(const Trained& trained, const DevicesSettings& settings);
   void reloadGestures(const Trained& trained, const DevicesSettings& settings);
 
-  // To be called when the device was closed: ends the actions that its inputs hold; its counters
-  // will continue from their values. REQUIRES: no thread of the device runs.
+  // Ends the actions that the device's inputs hold, and makes its counters continue from their
+  // values when the device is recreated. To be called after the device was closed. REQUIRES: the
+  // device's thread does not run.
   void close(std::int64_t now_ns) noexcept;
 
  private:
@@ -65,7 +69,7 @@ class DeviceChain {
               const Trained& trained, std::uint64_t generation, shm::DevicesSegment& segment);
 
   struct Hand {
-    std::size_t index = 0;  // in the list of hands
+    std::size_t index = 0;  // index in DevicesSettings::hands
     std::unique_ptr<HandGestures> gestures;
     std::unique_ptr<HandSink> sink;
   };
@@ -75,13 +79,12 @@ class DeviceChain {
                                          std::size_t hand) const;
 
   shm::DevicesSegment& segment_;
-  // Each sink passes samples on to the one declared before it; counts_ is the first that a sample
-  // reaches.
+  // Each sink passes samples on to one that is declared before it; a sample reaches counts_ first.
   shm::ShmSink memory_;
   shm::ShmHealthSink health_;
-  std::unique_ptr<actions::ActionSink> actions_;  // null for devices without inputs
-  std::unique_ptr<PostureSink> postures_;         // null except for a glove
-  std::vector<Hand> hands_;                       // that follow a tracker
+  std::unique_ptr<actions::ActionSink> actions_;  // null for a tracker, which has no inputs
+  std::unique_ptr<PostureSink> postures_;         // null if the device is not a glove
+  std::vector<Hand> hands_;                       // the hands that follow the tracker
   std::unique_ptr<ContinuedCounts> counts_;
 };
 

@@ -29,15 +29,16 @@ std::vector<std::string> namesOf(const nn::PostureTable& postures) {
   return names;
 }
 
-// What inputs of one kind may name.
+// The names that inputs of one kind may use.
 struct KnownNames {
   const char* what;  // "posture"
   std::string file;
   std::vector<std::string> names;
 };
 
-// Calls each(place, input, name in it) for the inputs of this kind in the file's bindings,
-// including those that must be held together with another input.
+// Calls each(pointer, input, name) for each input of this kind in the bindings of the configuration
+// file, also for second inputs of chords. `pointer`: JSON pointer of the input; `input`: its text;
+// `name`: the name of the posture, gesture or key in it.
 template <typename Each>
 void forBindings(const LoadedSettings& loaded, actions::Input::Kind kind, const Each& each) {
   if (!loaded.lines.contains("/bindings")) return;
@@ -76,12 +77,12 @@ void checkNoGestures(LoadedSettings& loaded) {
               });
 }
 
-constexpr std::string_view kButtonPrefix = "btn_";  // as long as the other prefix, "key_"
+constexpr std::string_view kButtonPrefix = "btn_";  // has the same length as "key_"
 
 bool isButton(std::string_view key) { return key.starts_with(kButtonPrefix); }
 
-// Returns the input that most resembles this key, "button.south" for "btn_sout"; empty if none
-// does.
+// Returns the input that is most similar to the unknown key `name`, e.g. "button.south" for
+// "btn_sout"; empty if none is similar.
 std::string nearestKey(const std::string& name) {
   std::vector<std::string> names;
   for (std::uint16_t code = 0; code < io::kKeyCodes; ++code) {
@@ -94,8 +95,8 @@ std::string nearestKey(const std::string& name) {
   return (isButton(name) ? "button." : "key.") + near;
 }
 
-// Returns the kernel's name of a key in lower case without KEY_ or BTN_, as an opened input device
-// reports it.
+// Returns the kernel's name of a key in lower case without KEY_ or BTN_, which is the form that an
+// opened input device reports.
 std::string shortKeyName(std::uint16_t code) {
   std::string name = io::keyRecord(code).text.data();
   std::ranges::transform(name, name.begin(),
@@ -103,8 +104,8 @@ std::string shortKeyName(std::uint16_t code) {
   return name;
 }
 
-// Returns the name in the list "buttons" for a key's other names ("btn_south", or "a" for BTN_A),
-// otherwise the most similar name; empty if there is none.
+// Returns the name that the list "buttons" expects for another name of the same key ("btn_south",
+// or "a" for BTN_A); for an unknown name, the most similar name; empty if there is none.
 std::string nearestButton(const std::string& name, const std::vector<std::string>& names) {
   for (const char* const prefix : {"", "btn_", "key_"}) {
     if (const auto code = io::keyCode(prefix + name)) return shortKeyName(*code);
@@ -130,8 +131,8 @@ void checkButtons(LoadedSettings& loaded) {
   }
 }
 
-// Returns the address with links resolved. The path of a device that is not present is unchanged;
-// it is compared when the device is opened.
+// Returns the address with symbolic links resolved. The path of a device that is not present does
+// not change; such a device is compared when it is opened.
 PortAddress withoutLinks(PortAddress address) {
   if (!address.service.empty()) return address;
   std::error_code unreadable;
@@ -140,11 +141,11 @@ PortAddress withoutLinks(PortAddress address) {
   return address;
 }
 
-// Finds two names of one device, such as its link in by-id and its number; the loader already finds
-// ports with equal text.
+// Adds a finding for each port that names the same device as an earlier one in another way, e.g. by
+// a link in by-id and by its number. The loader has already reported ports with equal text.
 void checkLinks(LoadedSettings& loaded) {
   const auto& list = loaded.settings.devices.list;
-  if (list.size() > kMostDevices) return;  // the loader refuses them
+  if (list.size() > kMostDevices) return;  // the loader has reported this
   for (std::size_t i = 0; i < list.size(); ++i) {
     const auto port = parsePort(list[i].line.port);
     for (std::size_t j = 0; port && j < i; ++j) {

@@ -1,4 +1,4 @@
-// Where the configured devices and hands have their slots in shared memory.
+// Determines which slots in shared memory belong to the configured devices and hands.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,24 @@
 
 namespace merlin::devices {
 
-// A device's place: its index in the list of devices is that of its health and its actions.
+// Place of a device's samples in shared memory. Its health and its actions have the index that the
+// device has in the list of devices.
 struct DevicePlace {
   SampleKind kind;
-  std::size_t of_kind;  // how many devices of its kind are before it: the index of its samples
+  std::size_t of_kind;  // index of its samples: the number of earlier devices of its kind
 };
 
-// The places of all devices, in the order of the list. REQUIRES: every driver exists.
+// Returns the places of all devices, in the order of settings.list. REQUIRES: the driver of every
+// device exists.
 std::vector<DevicePlace> devicePlaces(const DevicesSettings& settings);
 
-// The names from which the slots' names are formed. REQUIRES: as above.
+// Returns the names of devices and hands, from which the names of the slots are formed. REQUIRES:
+// the driver of every device exists.
 shm::SlotNames slotNames(const DevicesSettings& settings);
 
-// How many devices of this kind are before the one named `name`, or 0 for the first one if `name`
-// is empty; nothing if there is none. REQUIRES: as above.
+// Returns DevicePlace::of_kind of the device of this kind with this name, or 0, the first one of
+// this kind, if `name` is empty; nothing if there is no such device. REQUIRES: the driver of every
+// device exists.
 std::optional<std::size_t> placeOf(const DevicesSettings& settings, SampleKind kind,
                                    std::string_view name);
 

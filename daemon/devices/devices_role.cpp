@@ -25,16 +25,16 @@ namespace {
 
 constexpr int kRealTimePriority = 50;
 
-constexpr double kStreamBytes_s = 1e6;  // byte-rate limit of a line without a baud rate
-constexpr int kSpare = 4;               // byte-rate limit of a line, relative to its baud rate
+constexpr double kStreamBytes_s = 1e6;  // limit for a port without a baud rate [bytes/s]
+constexpr int kSpare = 4;  // limit for a serial line, as a multiple of what its baud rate allows
 
 double paceOf(const LineSettings& line, const PortAddress& address) {
   if (line.max_bytes_s > 0) return line.max_bytes_s;
   return address.hasSpeed() ? kSpare * line.baud / 10.0 : kStreamBytes_s;
 }
 
-// Gives the calling thread real-time priority if the systemd unit allows it, so that samples reach
-// shared memory within microseconds even while the wall draws.
+// Gives the calling thread real-time priority if the system allows it, so that samples reach shared
+// memory within microseconds even while the wall draws. If it does not, this is logged once.
 void askForRealTime() {
   const sched_param priority{kRealTimePriority};
   if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority) != 0) {
@@ -44,14 +44,15 @@ void askForRealTime() {
   }
 }
 
-// Takes real-time priority from the calling thread, whose line sends more than a device can; with
-// SCHED_BATCH it does not preempt others when it wakes.
+// Takes real-time priority from the calling thread, because its line sends more bytes than a device
+// can. With SCHED_BATCH the thread does not preempt others when it wakes.
 void giveUpRealTime() {
   const sched_param none{};
   (void)::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &none);
 }
 
-// The health of a device whose thread has not written it yet.
+// Returns the health of a device whose thread has not published any yet. `configured`: whether it
+// has a port.
 DeviceHealth absent(bool configured, Timestamp now) {
   DeviceHealth health{};
   health.since_ns = health.updated_ns = toNanoseconds(now);
@@ -60,8 +61,8 @@ DeviceHealth absent(bool configured, Timestamp now) {
   return health;
 }
 
-// Only a Fastrak is aligned by its settings; the samples of other trackers are in their server's
-// frame.
+// Returns the frames of a tracker's stations. Only a Fastrak has settings for them; the samples of
+// other trackers are in the frame of their server, so the default values are returned.
 TrackerFrames framesOf(const DeviceSettings& device) {
   const FastrakSettings settings =
       device.line.driver == "fastrak" ? device.own.fastrak : FastrakSettings{};
@@ -75,7 +76,8 @@ TrackerFrames framesOf(const DeviceSettings& device) {
   return frames;
 }
 
-// A stream that counts each read and write as progress of the thread, also during long dialogues.
+// A stream that counts each read and write as progress of the thread, so that a thread does not
+// count as hung during a long dialogue with the device.
 class WatchedStream final : public ByteStream {
  public:
   WatchedStream(std::unique_ptr<ByteStream> inner, Progress& progress)
@@ -96,11 +98,11 @@ class WatchedStream final : public ByteStream {
   Progress& progress_;
 };
 
-// Opens a line whose bytes also go to the flight recorder; logs a warning about a slow adapter
-// once.
+// Opens a port, and passes a copy of all its bytes to the flight recorder. Logs a warning about a
+// slow adapter once, until the warning changes.
 class Opener {
  public:
-  // `progress`: refers to a pointer that is set when the opening thread starts.
+  // `progress`: refers to a pointer that must be set before operator() is called.
   Opener(PortAddress address, int baud, ByteTap& tap, Progress* const& progress, const Clock& clock)
       : address_(std::move(address)), baud_(baud), tap_(tap), progress_(progress), clock_(clock) {}
 
@@ -118,7 +120,7 @@ class Opener {
 
  private:
   Result<std::unique_ptr<ByteStream>> open() {
-    const Progress::Pause pause(*progress_);  // a host name look-up may take long
+    const Progress::Pause pause(*progress_);  // looking up a host name may take long
     return io::openPort(address_, baud_);
   }
 
@@ -187,7 +189,7 @@ void DevicesRole::publishFrames(const DevicesSettings& settings, std::size_t dev
     segment_->tracker[place.of_kind].frames.publish(framesOf(settings.list[device]));
 }
 
-// Makes the loop of a device that has a port.
+// Makes the loop of a device; starts no thread. REQUIRES: the device has a port.
 Result<Ok> DevicesRole::open(std::size_t device, const DevicesSettings& settings) {
   const LineSettings& line = settings.list[device].line;
   const DriverEntry* driver = findDriver(line.driver);

@@ -16,7 +16,7 @@
 namespace merlin::devices {
 namespace {
 
-constexpr std::size_t kMostDumps = 8;  // files kept per device
+constexpr std::size_t kMostDumps = 8;  // maximum number of files kept for each device
 
 }  // namespace
 
@@ -73,7 +73,7 @@ std::vector<Event> FlightRecorder::check() {
   return events;
 }
 
-// REQUIRES: mutex_ is held.
+// Writes the bytes that a crashed process left. REQUIRES: mutex_ is held.
 void FlightRecorder::writeLeft(std::vector<Event>& events) {
   const LeftFlight left = std::exchange(left_, {});
   const std::vector<FlightDevice> devices = left.devices();

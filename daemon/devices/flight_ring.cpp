@@ -8,10 +8,12 @@ namespace {
 
 using Cell = FlightMemory::Cell;
 
-constexpr std::int64_t kTogether_ns = 1'000'000;  // bytes that arrive within this time share a cell
+// Bytes are added to a cell only within this time after its first byte.
+constexpr std::int64_t kTogether_ns = 1'000'000;
 
-// `last`: the writer's own copy of the track's last cell. `wraps`: whether a full track overwrites
-// its oldest cells; otherwise it ignores further bytes.
+// Adds bytes to a track: to its last cell if possible, otherwise to new ones. `last`: the writer's
+// own copy of the track's last cell. `what`: time and direction of the bytes. `wraps`: whether a
+// full track overwrites its oldest cells; otherwise further bytes are dropped.
 template <std::size_t kSize>
 void addTo(FlightMemory::Track<kSize>& track, Cell& last, const Cell& what,
            std::span<const std::byte> bytes, bool wraps) noexcept {
@@ -33,8 +35,8 @@ void addTo(FlightMemory::Track<kSize>& track, Cell& last, const Cell& what,
   }
 }
 
-// Returns nothing if the length is invalid, because the memory may have been written by another
-// process.
+// Returns cell i of the track. Returns nothing if it cannot be read, or if its length is invalid,
+// which is possible because another process may have written the memory.
 template <std::size_t kSize>
 std::optional<Cell> cellOf(const FlightMemory::Track<kSize>& track, std::uint64_t i) {
   auto cell = track.cells[i % kSize].read();
@@ -72,7 +74,7 @@ std::vector<io::TranscriptChunk> chunksOf(const FlightMemory& memory, Duration* 
   const std::uint64_t begun =
       std::min(memory.beginning.count.load(std::memory_order_acquire), kBeginning);
   const std::uint64_t count = memory.newest.count.load(std::memory_order_acquire);
-  // The oldest cell is skipped: it may be overwritten while we read.
+  // The oldest cell is skipped, since the writer may overwrite it now.
   const std::uint64_t oldest = count >= kNewest ? count - kNewest + 1 : 0;
   for (std::uint64_t i = 0; i < begun && oldest > opened; ++i) {
     if (const auto cell = cellOf(memory.beginning, i)) cells.push_back(*cell);

@@ -14,15 +14,15 @@ struct Described {
   char name[32], driver[32];
   std::int32_t baud;
 };
-// Header in front of the memory of the devices.
+// Header at the start of the shared memory; the rings of the devices follow it.
 struct Front {
   std::uint64_t form;     // kForm
-  std::uint32_t devices;  // number of FlightMemory that follow
+  std::uint32_t devices;  // number of rings (FlightMemory) that follow
   Described device[kMostDevices];
 };
 
-// A layout of another size has another number. Must be raised when FlightMemory changes its meaning
-// but not its size.
+// Number of the memory's layout. It depends on the size of FlightMemory; the constant in it must be
+// increased if the meaning of FlightMemory changes but not its size.
 constexpr std::uint64_t kForm = (std::uint64_t{0x4D464C31} << 32) + sizeof(FlightMemory);
 constexpr std::size_t kFront = (sizeof(Front) + 4095) / 4096 * 4096;
 
@@ -36,7 +36,7 @@ const Front& frontOf(const SharedMemory& memory) {
   return *reinterpret_cast<const Front*>(memory.data());
 }
 
-// Whether the text may become part of a file's name.
+// Whether the text may become a part of a file name.
 bool isName(std::string_view text) {
   return std::ranges::all_of(text, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||

@@ -42,8 +42,9 @@ void HandGestures::update(const HandSample& sample) noexcept {
   if (gesture) publish(*gesture, sample);
 }
 
-// The follower gets every pose, also while the model is held, since it learns from ordinary motion
-// how fast this person usually moves.
+// The follower receives every pose, even while the model is held, since it learns from ordinary
+// motion how fast this person usually moves. A gesture that began before the model was last held is
+// therefore discarded here.
 void HandGestures::publish(const nn::Gesture& gesture, const HandSample& sample) noexcept {
   if (gesture.began_ns <= recognition_->held_ns) {
     ++state_.passed_over;

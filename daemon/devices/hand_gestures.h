@@ -1,5 +1,5 @@
-// HandGestures: recognises the gestures of one hand, publishes them, and begins the actions that
-// they are bound to. Runs on the thread of the hand's tracker.
+// HandGestures: recognises the gestures of one hand, publishes them, and begins the actions to
+// which they are bound. Runs on the thread of the hand's tracker.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,33 @@
 
 namespace merlin::devices {
 
-// Takes no lock and allocates nothing, except in reload() and rebind().
+// Takes no lock and allocates nothing, except in the constructor, reload() and rebind().
 //
-// A motion during which the person holds the model, by grab, fly or point_at, is no gesture: it is
-// counted in GestureState::passed_over, and does nothing.
+// A motion during which the person holds one of the actions grab, fly and point_at is no gesture:
+// it triggers no action, and is only counted in GestureState::passed_over.
 class HandGestures {
  public:
   struct Settings {
-    nn::WallAxes axes;  // of the tracker
-    // The actions of the devices that belong to the hand's person.
+    nn::WallAxes axes;  // axes of the tracker relative to the wall
+    // Slots with the actions of the devices that belong to the same person as the hand.
     std::vector<const shm::SeqSlot<shm::ActionState>*> actions;
   };
-  // `writer`: for the actions that the hand's gestures are bound to. Without a model no gesture is
-  // recognised or published.
+  // `writer`: begins the actions to which the hand's gestures are bound. `slot`: where gestures are
+  // published; must outlive this object. If there is no model, no gesture is recognised or
+  // published.
   HandGestures(const std::optional<nn::GestureModel>& model, const Settings& settings,
                actions::ActionWriter writer, shm::SeqSlot<GestureState>& slot);
 
-  // For one other thread: uses this model and these settings from the next sample on. A gesture in
-  // progress and the pace that was learnt are forgotten.
+  // Uses this model and these settings from the next sample on. A gesture in progress, and what was
+  // learnt about the person's usual speed, are lost. May be called by one other thread.
   void reload(const std::optional<nn::GestureModel>& model, const Settings& settings) {
     fresh_.offer(made(model, settings));  // NOLINT(*NewDeleteLeaks): the handover owns it
   }
-  // For one other thread: see ActionWriter::rebind().
+  // Replaces the bindings: see ActionWriter::rebind(). May be called by one other thread.
   void rebind(const std::vector<Binding>& bindings) { writer_.rebind(bindings); }
 
-  // Takes the next sample of the hand. If the sample completes a gesture, the gesture is published
-  // and then its action begun, before this returns.
+  // Processes the next sample of the hand. If the sample completes a gesture, publishes the gesture
+  // and then begins its actions.
   void update(const HandSample& sample) noexcept;
 
  private:

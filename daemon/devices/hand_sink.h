@@ -1,6 +1,6 @@
-// HandSink: for each tracker record of the hand's station, combines it with the newest glove sample
-// into a HandSample, from which the hand's gestures are recognised; passes all samples on. Runs on
-// the tracker's thread.
+// HandSink: combines each tracker sample of the hand's station with the newest glove sample to a
+// HandSample, publishes this, and passes it to the recognition of gestures. Passes all samples on
+// to the next sink first. Runs on the tracker's thread.
 #pragma once
 
 #include "daemon/base/handover.h"
@@ -11,12 +11,12 @@
 
 namespace merlin::devices {
 
-// Takes no lock and allocates nothing, except in reload(): the newest glove sample is read from
-// shared memory, as any client does.
+// Takes no lock and allocates nothing, except in reload(). The newest glove sample is read from
+// shared memory, as other processes do.
 class HandSink final : public SampleSink {
  public:
-  // `glove`: where the samples of the hand's glove are; null: it wears none. `hand`: where the hand
-  // is published.
+  // `glove`: samples of the glove that the hand wears; null: it wears none. `hand`: where the
+  // HandSample is published. `next`: the next sink. All references must outlive this object.
   HandSink(const HandSettings& settings, const shm::Channel<GloveSample>* glove,
            shm::Channel<HandSample>& hand, HandGestures& gestures, SampleSink& next)
       : station_(static_cast<std::uint32_t>(settings.station)),
@@ -26,7 +26,8 @@ class HandSink final : public SampleSink {
         gestures_(gestures),
         next_(next) {}
 
-  // For one other thread: replaces station and filter from the tracker's next record on.
+  // Replaces the station and the smoothing filter from the tracker's next sample on. May be called
+  // by one other thread.
   void reload(const HandSettings& settings) { fresh_.offer(settings); }
 
   void publish(const GloveSample& sample) noexcept override { next_.publish(sample); }

@@ -8,7 +8,7 @@ namespace merlin::devices {
 namespace {
 
 // After this time without a sample, for example because the plug was pulled, another person may
-// wear the glove.
+// wear the glove, so tracking of the sensors' drift begins anew.
 constexpr std::int64_t kSilence_ns = 1'000'000'000;
 
 }  // namespace
@@ -19,7 +19,7 @@ void PostureSink::publish(const GloveSample& sample) noexcept {
   next_.publish(sample);
 }
 
-// Publishes a sample without a posture between two recognitions, so that the actions held by the
+// Publishes, after a reload, one sample without a posture, so that the actions held by the old
 // posture end.
 void PostureSink::endPosture(const GloveSample& sample) noexcept {
   entered_before_ = entered_;

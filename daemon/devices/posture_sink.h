@@ -1,5 +1,5 @@
-// PostureSink: recognises the posture of each glove sample and publishes it; passes all samples on.
-// Runs on the glove's thread.
+// PostureSink: recognises the posture in each glove sample and publishes it; passes all samples on
+// to the next sink. Runs on the glove's thread.
 #pragma once
 
 #include <memory>
@@ -13,28 +13,30 @@
 
 namespace merlin::devices {
 
-// Takes no lock and allocates nothing, except in reload(). The posture is published before its
-// glove sample, so that a reader that waits for the sample finds the posture.
+// Takes no lock and allocates nothing, except in the constructor and reload(). The posture is
+// published before its glove sample, so that a reader that waits for the sample finds the posture.
 class PostureSink final : public SampleSink {
  public:
   struct Settings {
     nn::HoldSettings hold;
     nn::DriftSettings drift;
   };
-  // `shown`: the posture of each record; `held`: the current posture, after the minimum hold time.
+  // `shown`: receives the posture of each sample. `held`: receives the current posture, which was
+  // held for the minimum time.
   struct Outputs {
     shm::Channel<PostureSample>& shown;
     shm::SeqSlot<PostureState>& held;
   };
-  // Without `postures` no posture is recognised or published.
+  // If there are no `postures`, no posture is recognised or published.
   PostureSink(const std::optional<nn::TrainedPostures>& postures, const Settings& settings,
               Outputs outputs, SampleSink& next)
       : recognition_(made(postures, settings)),  // NOLINT(*NewDeleteLeaks): the member owns it
         outputs_(outputs),
         next_(next) {}
 
-  // For one other thread: uses these postures and settings from the next sample on. The posture
-  // that is held ends and is recognised anew; the sensor drift tracked so far is forgotten.
+  // Uses these postures and settings from the next sample on. The current posture ends and is
+  // recognised anew; the sensor drift that was tracked so far is lost. May be called by one other
+  // thread.
   void reload(const std::optional<nn::TrainedPostures>& postures, const Settings& settings) {
     fresh_.offer(made(postures, settings));  // NOLINT(*NewDeleteLeaks): the handover owns it
   }
@@ -69,8 +71,8 @@ class PostureSink final : public SampleSink {
   Outputs outputs_;
   SampleSink& next_;
   Handover<std::unique_ptr<Recognition>> fresh_;
-  std::uint32_t entered_ = 0;         // number of postures that have begun so far
-  std::uint32_t entered_before_ = 0;  // those of earlier recognitions
+  std::uint32_t entered_ = 0;         // number of postures that have begun since the start
+  std::uint32_t entered_before_ = 0;  // the part of entered_ from before the last reload()
 };
 
 }  // namespace merlin::devices

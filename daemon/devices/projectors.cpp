@@ -23,7 +23,7 @@ Projectors::Projectors(const DevicesSettings& settings, Parts parts)
     : parts_(std::move(parts)),
       schedule_(settings.projector_schedule),
       panel_due_(parts_.clock.now()) {
-  ::tzset();  // localtime_r() need not read TZ
+  ::tzset();  // needed because localtime_r() may ignore TZ
   for (const PjlinkSettings& projector : settings.projectors) add(projector);
 }
 
@@ -36,7 +36,7 @@ Projectors::Entry& Projectors::add(const PjlinkSettings& settings) {
        address = projectorAddress(settings.address)]() -> Result<std::unique_ptr<ByteStream>> {
     if (!address) return Error{Errc::kInvalidArgument, "the address is not valid"};
     if (!entry.progress) return parts_.connect(*address);
-    const Progress::Pause pause(*entry.progress);  // a host name look-up may take long
+    const Progress::Pause pause(*entry.progress);  // looking up a host name may take long
     return parts_.connect(*address);
   };
   entry.loop = std::make_unique<pjlink::ProjectorLoop>(settings, connect, parts_.clock);
@@ -93,8 +93,9 @@ Result<Ok> Projectors::switchAll(bool on) {
   return Error{code, refused};
 }
 
-// Returns the state that is wanted from now on. A restart is not a switching point: if a person has
-// switched after the last point, that stays in effect.
+// Returns the state to which the projectors are to be switched now; nothing: no change. A restart
+// of merlind is not a switching point: if a person has switched the projectors after the last
+// switching point, that state stays in effect. REQUIRES: mutex_ is held.
 std::optional<bool> Projectors::due() {
   const pjlink::LocalMinute now = parts_.local_minute();
   std::optional<bool> wanted = schedule_.step(now);
@@ -150,7 +151,7 @@ std::vector<Event> Projectors::takeEvents() {
     entry->last = sentence;
     const bool is_fault = state.health != pjlink::Health::kOk;
     const bool was_fault = std::exchange(entry->was_fault, is_fault);
-    // Daily switching of a projector without a fault is routine.
+    // An event is routine if neither it nor the one before it is a fault, e.g. daily switching.
     const Severity severity = was_fault ? Severity::kNews : Severity::kRoutine;
     events.push_back({std::move(sentence), is_fault ? Severity::kFault : severity});
   }

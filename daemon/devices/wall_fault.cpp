@@ -10,7 +10,7 @@
 namespace merlin::devices {
 namespace {
 
-constexpr std::uint32_t kAsMeant = 1;  // value of OutputStats::picture; 0: not read back
+constexpr std::uint32_t kAsMeant = 1;  // OutputStats::picture: it shows what it was sent
 
 }  // namespace
 

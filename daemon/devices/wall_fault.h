@@ -1,5 +1,5 @@
 // WallFault: determines whether the wall needs attention, for the lamp of the control panel. Reads
-// the shared memory of the role wall, which may be another process.
+// the shared memory of the role `wall`, which may be another process.
 #pragma once
 
 #include <optional>
@@ -15,18 +15,19 @@ class WallFault {
  public:
   explicit WallFault(const std::string& instance) : wall_(shm::segmentName(instance, "wall")) {}
 
-  // A sentence: why the wall needs attention (an output fails, or shows something else than it was
-  // sent, or the wall has not run for kGone). Empty if it does not, or if no wall has run here yet.
+  // Returns a sentence about why the wall needs attention: an output fails, or shows something else
+  // than it was sent, or the wall has not run for kGone. Empty if it needs none, or if no wall has
+  // run since this object was made.
   std::string look(Timestamp now);
 
-  static constexpr Duration kGone = std::chrono::seconds(15);  // restarts take less
+  static constexpr Duration kGone = std::chrono::seconds(15);  // longer than a restart takes
 
  private:
   shm::SegmentFollower<shm::SegmentReader<shm::WallSegment>> wall_;
-  std::optional<Timestamp> seen_;  // when it last ran
+  std::optional<Timestamp> seen_;  // when the wall last ran
 };
 
-// A sentence about a fault among a wall's outputs; empty if there is none. Pure.
+// Returns a sentence about the first output of a wall that has a fault; empty if none has. Pure.
 std::string faultAmong(const shm::WallOutputs& outputs);
 
 }  // namespace merlin::devices

@@ -61,7 +61,8 @@ Result<Imported> importGrid(const Request& request, const Reports& reports) {
   return Imported{name, fmt::format("\"width\": {}, \"height\": {}", made->width, made->height)};
 }
 
-// A file may be larger than what the libraries leave of the allowed memory.
+// Reads a point cloud. If the file does not fit into the memory that the libraries leave, returns
+// the error that asks for more memory.
 Result<render::points::PointCloud> readPoints(const std::string& path) {
   auto cloud = render::points::readCloud(path);
   if (!cloud && cloud.error().code == Errc::kNoMemory) return render::import::needsMoreMemory(path);
@@ -72,7 +73,7 @@ Result<render::points::PointCloud> readPoints(const std::string& path) {
 
 Result<Ok> preparePoints(const char* program) { return render::import::preparePoints(program); }
 
-// A text as a JSON string; control characters are escaped by oneLine() before.
+// Returns a text as a JSON string, after oneLine() has escaped its control characters.
 std::string jsonString(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : oneLine(text)) {
@@ -117,7 +118,7 @@ Result<Imported> importPoints(const Request& request, const Reports& reports) {
 
 Result<Ok> preparePoints(const char* /*program*/) { return Ok{}; }
 
-// Reads the file all the same, so that a fault of the file is reported first.
+// Reads the file even though no surface can be made, so that a fault of the file is reported first.
 Result<Imported> importPoints(const Request& request, const Reports& /*reports*/) {
   const auto cloud = readPoints(request.input);
   if (!cloud) return cloud.error();

@@ -1,8 +1,8 @@
 // merlin-import: reads one file of another program's format, in a sandbox, and writes what MERLIN
 // shows. Started by `merlin image import` and `merlin mesh import`, which read its output.
 //
-// stdout, a line each: "lacks WHAT", "pixels N", "progress SHARE ITEMS", "note WHAT", then "done
-// FILE {JSON}" or "failed CODE WHY".
+// It writes to stdout, a line each: "lacks WHAT", "pixels N", "progress SHARE ITEMS", "note WHAT",
+// then "done FILE {JSON}" or "failed CODE WHY".
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -67,8 +67,8 @@ bool parse(std::string_view text, T& value) {
   return error == std::errc() && rest == text.data() + text.size();
 }
 
-// The ending of a file's name. Only a few plain characters are allowed, because it becomes part of
-// names that a library sees.
+// Parses the ending of a file's name, without the dot: 1 to 8 lower-case letters and digits,
+// because it becomes part of names that a library sees.
 bool parse(std::string_view text, std::string& ending) {
   const bool plain = std::ranges::all_of(
       text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
@@ -76,7 +76,7 @@ bool parse(std::string_view text, std::string& ending) {
   return plain && !text.empty() && text.size() <= 8;
 }
 
-// "LOW:HIGH", both finite.
+// Parses "LOW:HIGH"; both must be finite, and LOW less than HIGH.
 bool parse(std::string_view text, std::optional<std::array<double, 2>>& range) {
   const std::size_t colon = text.find(':');
   std::array<double, 2> ends{};
@@ -88,7 +88,7 @@ bool parse(std::string_view text, std::optional<std::array<double, 2>>& range) {
   return true;
 }
 
-// Any name is allowed, because it is only compared.
+// Accepts any name, because it is only compared.
 bool parseName(std::string_view text, std::string& name) {
   name = text;
   return true;
@@ -122,8 +122,8 @@ std::optional<Options> parseOptions(int argc, char** argv) {
   return o;
 }
 
-// The coarser levels make a result a third larger than its raw data; the limit of 1.5 times and
-// 64 MiB leaves some room.
+// Limits the size of the result to 1.5 times its raw data and 64 MiB. The coarser levels of a
+// pyramid make it a third larger than its raw data.
 Result<Ok> limitResult(std::uint64_t raw_bytes) {
   return limitFileSize(raw_bytes / 2 * 3 + (std::uint64_t{64} << 20));
 }

@@ -78,7 +78,8 @@ constexpr std::uint32_t kMachine = AUDIT_ARCH_AARCH64;
 constexpr std::uint32_t kMachine = 0;
 #endif
 
-// System calls that fail from now on: the network, other programs and processes, the kernel.
+// System calls that fail in the sandbox: those that concern the network, other programs and
+// processes, or the kernel.
 constexpr int kForbidden[] = {SYS_socket,
                               SYS_socketpair,
                               SYS_connect,
@@ -153,9 +154,9 @@ void addFiles(const fs::path& folder, std::vector<std::string>& files) {
 
 constexpr const char* kUsualFolders[] = {"textures", "Textures", "images", "maps", "materials"};
 
-// The visible folders in a folder, the usual ones first, in case there are too many files. A link
-// to a folder counts only under a usual name, because an unpacked model may contain links to
-// anywhere.
+// Returns the visible folders in a folder. The usual ones come first, in case there are too many
+// files. A link to a folder counts only under a usual name, because an unpacked model may contain
+// links to anywhere.
 std::vector<fs::path> foldersIn(const fs::path& folder) {
   constexpr std::size_t kMostLooked = 65536;
   std::vector<fs::path> folders, others;

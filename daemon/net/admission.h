@@ -23,16 +23,17 @@ namespace merlin::net {
 struct Places {
   std::size_t all = 32;       // maximum number of connections of the server
   std::size_t per_peer = 16;  // maximum number for one process or one address
-  // Time for which a connection is protected: after it was accepted, and after it was last active.
+  // Times for which a connection cannot be replaced: `opening` after it was accepted, if it has not
+  // completed the handshake; otherwise `idle` after it was last active.
   Duration opening = std::chrono::milliseconds(250);
   Duration idle = std::chrono::seconds(1);
 };
 
 struct Occupant {
   Peer peer;
-  Timestamp since{};         // accepted
-  Timestamp active{};        // last read or write
-  bool established = false;  // has completed the protocol's handshake
+  Timestamp since{};         // when it was accepted
+  Timestamp active{};        // when it was last read or written
+  bool established = false;  // whether it has completed the handshake
 };
 
 struct Decision {
@@ -41,7 +42,8 @@ struct Decision {
   std::size_t victim = 0;  // for kReplace: index of the occupant to close
 };
 
-// Decides about a new connection, `newcomer`. O(n^2) in the number of occupants. Reentrant.
+// Decides whether a new connection, `newcomer`, gets a place, and whose. O(n^2) in the number of
+// occupants. Reentrant.
 Decision decide(std::span<const Occupant> occupants, const Peer& newcomer, const Places& places,
                 Timestamp now);
 

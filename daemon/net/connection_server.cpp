@@ -108,7 +108,8 @@ void ConnectionServer::accept(Listener& listener) {
   }
 }
 
-// In this order: listeners, wakers, then each client followed by its farFd() if it has one.
+// Returns the descriptors to poll, in this order: listeners, wakers, then each client followed by
+// its farFd() if it has one. Shortens `wait` to the next time at which something is due.
 std::vector<pollfd> ConnectionServer::pollSet(std::span<const int> wakers, Timestamp now,
                                               Duration& wait) const {
   std::vector<pollfd> set;

@@ -29,7 +29,7 @@ namespace merlin::net {
 
 struct ServerLimits {
   Places places;
-  Duration opening = std::chrono::seconds(2);  // then a client without a handshake is closed
+  Duration opening = std::chrono::seconds(2);  // maximum duration of a client's handshake
   std::size_t input_bytes = 8192;              // buffered input; a longer message closes the client
   std::size_t output_bytes = 65536;            // buffered output; more closes the client
   std::size_t messages_per_round = 16;         // from one client, before the next client's turn
@@ -64,7 +64,7 @@ class Session {
   // For a relay: the descriptor of the connection on its other side; -1: none. It is polled for
   // reading and, while farPending(), for writing.
   virtual int farFd() const noexcept { return -1; }
-  // Whether bytes wait to be written to farFd(); receive() is not called meanwhile.
+  // Whether bytes wait to be written to farFd(); while they do, receive() is not called.
   virtual bool farPending() const noexcept { return false; }
   // Called when farFd() is writable.
   virtual Result<Ok> writeFar() { return Ok{}; }
@@ -75,7 +75,7 @@ class Session {
 // Counters of a server, for the status.
 struct ServerReport {
   std::string name;
-  std::size_t connections = 0;  // now
+  std::size_t connections = 0;  // at present
   std::uint64_t accepted = 0;   // since the start, as all below
   std::uint64_t refused = 0;    // there was no place
   std::uint64_t replaced = 0;   // closed because a new connection needed the place
@@ -91,7 +91,7 @@ struct ServerReport {
 // Thread-bound except for report().
 class ConnectionServer {
  public:
-  // Makes the Session of a new client.
+  // Makes the Session of a new client; null: the client is not accepted.
   using MakeSession = std::function<std::unique_ptr<Session>(const Peer&)>;
 
   // `name`: for reports, "VRPN". `clock` must outlive the server.
@@ -105,8 +105,9 @@ class ConnectionServer {
   // Closes the listening sockets; connections stay.
   void stopListening() { listeners_.clear(); }
 
-  // Adds a connection that was not accepted here, but made by connect(). It needs a place too;
-  // false if there is none. REQUIRES: it is non-blocking; it may still be connecting.
+  // Adds a connection that was not accepted here, but made by connect(). It needs a place too.
+  // Returns false if there is none or `make` returns null; the connection is then closed. REQUIRES:
+  // it is non-blocking; it may still be connecting.
   bool add(UniqueFd fd, const Peer& peer, const MakeSession& make);
 
   // Waits at most `at_most`, or until a client is ready or one of `wakers` (descriptors) is
@@ -138,7 +139,7 @@ class ConnectionServer {
   void process(Client& client, Timestamp now);
   void write(Client& client, Timestamp now);
   void end(Client& client, End why, const std::string& reason);
-  // `peer`: nothing if it is not known who it was.
+  // `peer`: nothing if the client is unknown.
   void count(End why, const std::optional<Peer>& peer, const std::string& reason);
   void removeEnded();
   std::vector<Occupant> occupants() const;
@@ -161,10 +162,10 @@ class ConnectionServer {
 Result<UniqueFd> listenLocal(const std::string& path, unsigned mode);
 
 // Makes a TCP socket that listens at an IPv4 address ("127.0.0.1", "0.0.0.0"); port 0 takes a free
-// one. Errors: kBusy (the port is in use), kUnsupported (this process may not use network sockets),
-// kIo.
+// one. Errors: kInvalidArgument (not an IPv4 address), kBusy (the port is in use), kUnsupported
+// (this process may not use network sockets), kIo.
 Result<UniqueFd> listenTcp(const std::string& address, int port);
-// The port to which a socket is bound.
+// Returns the port to which an IPv4 socket is bound; 0 if it is not bound.
 int portOf(int fd);
 
 }  // namespace merlin::net

@@ -1,4 +1,4 @@
-// Listening sockets.
+// Makes listening sockets.
 #include <cerrno>
 #include <cstring>
 
@@ -21,7 +21,8 @@ UniqueFd newSocket(int family) {
   return UniqueFd(::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
 }
 
-// Removes what is at `path` if it is a socket of a dead program; errors for anything else.
+// Removes a socket at `path` that a dead program has left. Returns an error if anything else is
+// there; succeeds if nothing is.
 Result<Ok> makeRoom(const std::string& path, const sockaddr_un& address) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0) return Ok{};

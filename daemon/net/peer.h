@@ -7,7 +7,7 @@
 
 namespace merlin::net {
 
-// Over a local socket: user and process. Over TCP: the IPv4 address.
+// A local peer is identified by user and process, a TCP peer by its IPv4 address.
 struct Peer {
   std::int64_t user = -1;     // uid; -1 over TCP
   std::int64_t process = -1;  // pid; -1 over TCP
@@ -15,10 +15,10 @@ struct Peer {
   auto operator<=>(const Peer&) const = default;
 };
 
-// The peer of an accepted or connected socket. Unknown values keep their defaults.
+// Returns the peer of an accepted or connected socket. Values that are unknown have their defaults.
 Peer peerOf(int fd);
 
-// "user 1000, process 4321" or "192.168.1.7".
+// Returns the peer as text: "user 1000, process 4321" or "192.168.1.7".
 std::string peerName(const Peer& peer);
 
 }  // namespace merlin::net

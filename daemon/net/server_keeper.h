@@ -45,8 +45,8 @@ class ServerKeeper {
 
   ServerHealth health() const;
 
-  // Changes since the last call, as sentences: that the server failed and why, that it runs again,
-  // and, at most every five seconds, how many connections were refused or closed.
+  // Returns the changes since the last call as events: that the server failed and why, that it runs
+  // again, and, at most every five seconds, how many connections were refused or closed.
   std::vector<Event> takeEvents(Timestamp now);
 
  private:
@@ -60,9 +60,9 @@ class ServerKeeper {
   std::uint64_t told_sent_away_ = 0;
 };
 
-// A sentence about refused and closed connections, for any server: "VRPN: 154 connections were
-// refused or closed; the last: refused ...". `told`: their number at the last call, which is
-// updated. Returns an empty text if none were added since.
+// Returns a sentence about the connections that a server has refused or closed since the last call:
+// "VRPN: 154 connections were refused or closed; the last: refused ...". `told`: their total number
+// at the last call, which is updated. Returns an empty text if there are no new ones.
 std::string sentAwaySentence(const ServerReport& report, std::uint64_t& told);
 
 }  // namespace merlin::net

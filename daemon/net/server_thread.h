@@ -1,4 +1,4 @@
-// ServerThread: the loop of a server that merlind can run without.
+// ServerThread: a thread for the loop of a server that merlind does not depend on.
 #pragma once
 
 #include <functional>

@@ -16,7 +16,7 @@ struct RoleState {
   std::string role;
   bool running = false;
   std::string status;  // the role's own document, a JSON object; empty: nothing yet
-  Duration age{};      // since it arrived
+  Duration age{};      // time since `status` arrived
 };
 
 // A content of the configuration, for a person to choose.
@@ -30,7 +30,7 @@ struct ContentState {
 struct ShownState {
   std::string name;
   std::uint64_t thumbnail = 0;  // number of its small picture
-  std::uint64_t place = 0;      // by which the picture is asked for
+  std::uint64_t place = 0;      // by which its picture is requested: see Thumbnails::jpeg()
 };
 
 // The QR code for a phone's camera, and the address that it contains.
@@ -42,28 +42,29 @@ struct PhoneState {
 
 struct PageState {
   std::string instance, version;
-  std::string token_file;  // where the token is, for people
+  std::string token_file;  // path of the file with the token
   double picture_hz = 0;   // pictures per second at most
 };
 
-// {"page": {...}, "roles": {"wall": {"running", "age_s", "status": {...} or null}, ...}}.
+// Returns {"page": {...}, "roles": {"wall": {"running", "age_s", "status": {...} or null}, ...}}.
 std::string statusDocument(const PageState& page, const std::vector<RoleState>& roles);
 
-// {"contents": [{"name", "kind", "thumbnail": NUMBER or null, "fault"}, ...],
-//  "shown": [{"name", "thumbnail": NUMBER, "place": NUMBER}, ...]}.
+// Returns {"contents": [{"name", "kind", "thumbnail": NUMBER or null, "fault"}, ...],
+// "shown": [{"name", "thumbnail": NUMBER, "place": NUMBER}, ...]}.
 std::string contentsDocument(const std::vector<ContentState>& contents,
                              const std::vector<ShownState>& shown);
 
-// {"address": TEXT or null, "why": TEXT, "rows": ["1101...", ...]}: 1 is dark.
+// Returns {"address": TEXT or null, "why": TEXT, "rows": ["1101...", ...]}: 1 is dark.
 std::string phoneDocument(const PhoneState& phone);
 
-// {"commands": [{"name", "role", "argument", "help", "button", "choices"}]}: the commands that the
-// page may send; `button`: whether the command needs no argument; `choices`: the possible
-// arguments, if these are known (names of test cards). The same for every daemon of one release.
+// Returns {"commands": [{"name", "role", "argument", "help", "button", "choices"}]}: the commands
+// that the page may send; `button`: whether the command needs no argument; `choices`: the possible
+// arguments, if these are known (names of test cards). The list is the same for every daemon of one
+// release.
 std::string commandList();
 
-// The answer to a command: {"ok": true, "result": ...}, or {"ok": false, "error": ...} with a
-// status of 400 (refused), 503 (the role does not run) or 504 (no answer).
+// Returns the answer to a command: {"ok": true, "result": ...}, or {"ok": false, "error": ...} with
+// a status of 400 (refused), 503 (the role does not run) or 504 (no answer).
 Answer commandAnswer(const Result<std::string>& result);
 
 }  // namespace merlin::page

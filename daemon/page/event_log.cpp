@@ -57,7 +57,8 @@ void EventLog::add(const std::string& role, const std::string& kind, const std::
   keep({.role = role, .time_utc = utcNow(), .kind = kind, .what = cut(what)});
 }
 
-// The oldest event's memory becomes the newest's: strings are copied into what it has reserved.
+// Reuses the memory of the oldest event for the newest one, by copying the strings into the memory
+// that they have reserved.
 void EventLog::keep(const LoggedEvent& event) {
   const std::lock_guard lock(mutex_);
   LoggedEvent kept = std::move(events_.front());

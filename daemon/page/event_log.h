@@ -31,16 +31,16 @@ class EventLog {
   // Adds a document that a role published as `event`. A malformed document is ignored; long texts
   // are cut.
   void addDocument(const std::string& role, const std::string& document);
-  // Adds an event of the page itself, with the time of day.
+  // Adds an event of this process itself, with the present time.
   void add(const std::string& role, const std::string& kind, const std::string& what);
 
-  // The kept events with a number above `number`, the oldest first.
+  // Returns the kept events with a number above `number`, the oldest first.
   std::vector<LoggedEvent> after(std::uint64_t number) const;
 
-  // {"next": N, "events": [{"number", "role", "time_utc", "kind", "what"}]}: the events after
-  // number `since`, the oldest first, at most the last 200. A number that no event has had yet is
-  // of an earlier run, which ended before the clock was set back: all events are new to that
-  // client.
+  // Returns {"next": N, "events": [{"number", "role", "time_utc", "kind", "what"}]}: the events
+  // after number `since`, the oldest first, at most the last 200. N is the number of the next
+  // event. If `since` is N or more, the client has it from an earlier run, before the clock was set
+  // back; then all kept events count as new.
   std::string since(std::uint64_t since) const;
 
  private:

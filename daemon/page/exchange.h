@@ -1,4 +1,4 @@
-// A request and its answer, apart from the library that carries them. Plain data.
+// An HTTP request and its answer as plain data, independent of the HTTP library.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ struct Request {
   std::string method;                        // "GET"
   std::string path;                          // "/api/status", decoded, without the query
   std::map<std::string, std::string> query;  // decoded
-  // The headers in kKeptHeaders, by their name in lower case. A header that was sent twice is left
-  // out, and sets `repeated`.
+  // The headers in kKeptHeaders, by their name in lower case. If one of them was sent twice, the
+  // first value is kept and `repeated` is set.
   std::map<std::string, std::string> headers;
   bool repeated = false;
   std::string body;
   bool passed_on = false;  // the request has one of kProxyHeaders
 
-  // The value of a header; empty if the request lacks it.
+  // Returns the value of a kept header, by its name in lower case; empty if the request lacks it.
   const std::string& header(const std::string& name) const {
     static const std::string kNone;
     const auto found = headers.find(name);
@@ -38,8 +38,8 @@ inline constexpr const char* kKeptHeaders[] = {"host",           "origin",      
                                                "sec-fetch-mode", "authorization", "content-type",
                                                "if-none-match",  "accept"};
 
-// Headers by which a proxy says that it passes on the request of another machine. Their number and
-// values do not matter.
+// Headers by which a proxy says that it passes on the request of another machine. One of them is
+// enough, whatever its value.
 inline constexpr const char* kProxyHeaders[] = {
     "forwarded", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip", "via"};
 

@@ -10,8 +10,8 @@
 namespace merlin::page {
 
 struct FrameTime {
-  std::uint64_t number = 0;  // of the frame, or of the period while nothing moves
-  double work_ms = 0;        // from its begin to its end
+  std::uint64_t number = 0;  // number of the entry in this history, from 1
+  double work_ms = 0;        // from the begin of the frame to its end
   std::uint32_t cost = 0;
   bool moving = false, late = false;
 };
@@ -19,12 +19,13 @@ struct FrameTime {
 // Thread-bound. Keeps 2,400 frames: 40 s at 60 Hz.
 class FrameHistory {
  public:
-  // Takes the frames that are new in the wall's trace. `generation`: of the segment; if it differs
-  // from that of the last call, the numbers continue, but older frames are forgotten.
+  // Adds the frames that are new in the wall's trace. `generation`: that of the wall's segment; if
+  // it differs from that of the last call, older frames are forgotten, but the numbers continue.
   void follow(const shm::Channel<shm::FrameTrace>& trace, std::uint64_t generation);
 
-  // {"next": N, "frames": [[number, work_ms, cost, flags], ...]}: the frames after number `since`,
-  // at most the last 1,200; flags: 1 moving, 2 late.
+  // Returns {"next": N, "frames": [[number, work_ms, cost, flags], ...]}: the frames after number
+  // `since`, at most the last 1,200. N is the number of the next frame; flags is the sum of 1
+  // (moving) and 2 (late).
   std::string since(std::uint64_t since) const;
 
  private:
@@ -32,7 +33,7 @@ class FrameHistory {
 
   std::deque<FrameTime> frames_;
   std::uint64_t next_ = 1;        // number of the next frame
-  std::uint64_t read_ = 0;        // of the trace
+  std::uint64_t read_ = 0;        // number of frames read from the trace
   std::uint64_t generation_ = 0;  // 0: none yet
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kBearer = "Bearer ";
 
-// The part of an Origin that a Host has: "http://127.0.0.1:7480" without its scheme.
+// Returns the part of an Origin that a Host also has: "127.0.0.1:7480" of "http://127.0.0.1:7480".
 std::optional<std::string_view> authorityOf(std::string_view origin) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (origin.starts_with(scheme)) return origin.substr(scheme.size());
@@ -64,7 +64,7 @@ Answer errorAnswer(unsigned status, std::string_view text) {
 
 bool sameSecret(std::string_view given, std::string_view secret) noexcept {
   if (secret.empty()) return false;
-  // The length of a token is no secret.
+  // The length may be compared first, because the length of a token is no secret.
   if (given.size() != secret.size()) return false;
   volatile unsigned char difference = 0;
   for (std::size_t i = 0; i < secret.size(); ++i) {
@@ -79,8 +79,8 @@ std::optional<Answer> refuse(const Request& request, Needs needs, const GateSett
   const auto host = hostOf(request.header("host"));
   if (auto refused = refuseHost(request, host, settings)) return refused;
   if (auto refused = refuseSite(request)) return refused;
-  // A proxy on this machine has a loopback address, and may ask under a loopback name: what it
-  // passed on for others needs the token.
+  // A proxy on this machine has a loopback address and may use a loopback name as Host, so a
+  // request that it passes on for another machine needs the token.
   const bool free =
       needs == Needs::kReading && settings.loopback && isLoopbackHost(*host) && !request.passed_on;
   if (needs == Needs::kNothing || free) return std::nullopt;

@@ -19,19 +19,20 @@ struct GateSettings {
 // What a request needs.
 enum class Needs {
   kNothing,  // the page's own files, which hold nothing of the wall
-  kReading,  // free on loopback under a name of this machine, unless a proxy passes it on;
-             // elsewhere with the token
+  kReading,  // without the token if the server listens at a loopback address, the Host is a
+             // loopback name, and no proxy passes the request on; otherwise with the token
   kCommand   // always with the token
 };
 
-// Nothing if the request may pass; otherwise the answer that refuses it: 400 (a header that counts
-// was sent twice), 401 (no token or a wrong one), 403 (another host or site).
+// Returns nothing if the request may pass; otherwise the answer that refuses it: 400 (one of
+// kKeptHeaders was sent twice), 401 (no token or a wrong one), 403 (another host or site).
 std::optional<Answer> refuse(const Request& request, Needs needs, const GateSettings& settings);
 
-// Whether two texts are equal; takes the same time whichever characters differ.
+// Whether two texts are equal; false if `secret` is empty. For texts of the same length it takes
+// the same time, whichever characters differ.
 bool sameSecret(std::string_view given, std::string_view secret) noexcept;
 
-// {"error": TEXT} with this status.
+// Returns an answer with this status and the content {"error": TEXT}.
 Answer errorAnswer(unsigned status, std::string_view text);
 
 }  // namespace merlin::page

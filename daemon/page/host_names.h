@@ -1,8 +1,8 @@
 // Names of hosts in HTTP headers, and the check whether they are the page's own. Pure.
 //
-// A browser that was led to another site's name whose address is this machine's (DNS rebinding)
-// sends that name. So only addresses, which cannot be rebound, localhost and the configured names
-// are accepted.
+// In an attack by DNS rebinding, another site's name is given the address of this machine, and the
+// browser sends that name as Host. So only addresses, which cannot be rebound, localhost and the
+// configured names are accepted.
 #pragma once
 
 #include <optional>
@@ -16,11 +16,11 @@ namespace merlin::page {
 // Whether the text has only letters, digits, '-' and dots, and at most 253 of them.
 bool isHostName(std::string_view name);
 
-// The words of a text that spaces separate.
+// Returns the words of a text, which are separated by spaces.
 std::vector<std::string> wordsOf(std::string_view text);
 
-// The host of "HOST" or "HOST:PORT", in lower case; an IPv6 address without its brackets. Nothing
-// if it is malformed.
+// Returns the host of "HOST" or "HOST:PORT", in lower case, and an IPv6 address without its
+// brackets. Returns nothing if the text is malformed.
 std::optional<std::string> hostOf(std::string_view authority);
 
 // Whether this host, as hostOf() returns it, means the machine that the browser runs on.

@@ -19,11 +19,11 @@
 namespace merlin::page {
 namespace {
 
-constexpr std::size_t kMemory = 16 << 10;  // bytes a connection; the content is not in it
-// Connections that the library is allowed beyond our limit: it still counts one that was closed
-// here until it notices.
+constexpr std::size_t kMemory = 16 << 10;  // bytes for a connection's request, without its content
+// Number of connections that the library allows beyond our limit, because it still counts a
+// connection that was closed here until it notices.
 constexpr unsigned kClosing = 64;
-constexpr std::size_t kMostAccepted = 32;  // connections in a round
+constexpr std::size_t kMostAccepted = 32;  // maximum number of connections accepted in a round
 constexpr Duration kNoDescriptors = std::chrono::seconds(1);
 
 // Headers that every answer has.
@@ -84,10 +84,10 @@ void keepHeader(Request& request, std::string name, std::string_view value) {
 
 struct HttpServer::Client {
   net::Occupant occupant;
-  Timestamp until{};     // closed then, unless a request was completed
+  Timestamp until{};     // when it is closed unless it completes a request
   bool busy = false;     // a request is being answered
   bool closing = false;  // was closed here; the library will notice
-  TokenBucket own;       // requests that only this client can use up
+  TokenBucket own;       // requests that the client may send in any case
 };
 
 struct HttpServer::Exchange {
@@ -310,7 +310,7 @@ void HttpServer::accept() {
   }
 }
 
-// Whether there is a place for a newcomer; closes another connection for it if need be.
+// Returns whether a new connection gets a place; closes another connection for it if necessary.
 bool HttpServer::admit(const net::Peer& peer, Timestamp now) {
   std::vector<net::Occupant> occupants;
   std::vector<int> descriptors;
@@ -351,7 +351,8 @@ void HttpServer::closeSilent(Timestamp now) {
   }
 }
 
-// A client that asks for more than its own share takes from the requests that all clients share.
+// Whether the client may send this request. Beyond its own allowance it uses the allowance that all
+// clients share.
 bool HttpServer::mayAsk(MHD_Connection* connection) {
   const Timestamp now = clock_.now();
   Client* const client = Library::clientOf(*this, connection);

@@ -1,9 +1,9 @@
 // HttpServer: the adapter of libmicrohttpd. No other file uses the library.
 //
 // One thread serves all clients, and none of them can hold up another one: connections get places
-// by daemon/net/admission.h, and one that has not completed a request within kPatience is closed,
-// whether it sends nothing, sends slowly, or does not read. A request has at most kMostBodyBytes of
-// content and 16 KiB of everything else.
+// by daemon/net/admission.h, and one that has not completed a request within HttpLimits::patience
+// is closed, whether it sends nothing, sends slowly, or does not read. A request may have at most
+// kMostBodyBytes of content and 16 KiB of everything else.
 #pragma once
 
 #include <cstdint>
@@ -41,12 +41,12 @@ struct HttpLimits {
 // Thread-bound except for report().
 class HttpServer {
  public:
-  // Answers a request at once, or returns nothing and calls answer() with this `id` later. Must not
-  // throw.
+  // Handles a request: returns the answer, or nothing if answer() will be called with this `id`
+  // later. Must not throw.
   using Handle = std::function<std::optional<Answer>(const Request& request, std::uint64_t id)>;
 
-  // `listener`: non-blocking, listens. `clock` must outlive this. Errors: kIo (no memory, no
-  // descriptor).
+  // `listener`: a listening, non-blocking socket. `clock` must outlive this. Errors: kIo (no
+  // memory, no descriptor).
   static Result<std::unique_ptr<HttpServer>> make(UniqueFd listener, const HttpLimits& limits,
                                                   Handle handle, const Clock& clock);
   ~HttpServer();
@@ -83,9 +83,9 @@ class HttpServer {
   Handle handle_;
   const Clock& clock_;
   MHD_Daemon* library_ = nullptr;
-  int epoll_ = -1;                                    // the library's
+  int epoll_ = -1;                                    // the library's epoll descriptor
   std::map<int, Client> clients_;                     // by descriptor
-  std::map<std::uint64_t, MHD_Connection*> waiting_;  // for answer()
+  std::map<std::uint64_t, MHD_Connection*> waiting_;  // requests that wait for answer(), by id
   std::uint64_t requests_ = 0, next_id_ = 1;
   TokenBucket accepts_, request_tokens_;
   Timestamp accept_from_{};

@@ -16,8 +16,8 @@
 namespace merlin::page {
 namespace {
 
-// A metric of a role's document. `name`: its name there. `to`: its name in /metrics; empty: the
-// same. `scale`: factor that takes the value to the base unit.
+// Description of a metric in a role's document. `name`: its name in the document. `to`: its name in
+// /metrics; empty: the same. `scale`: factor that converts the value to the base unit.
 struct Described {
   std::string_view name, to, help;
   double scale = 1;
@@ -75,8 +75,8 @@ struct Family {
 };
 using Families = std::map<std::string, Family>;
 
-// The name with _ for each character that Prometheus does not allow. A first digit needs no change,
-// because merlin_ is put before the name.
+// Returns the name, at most 100 bytes of it, with _ for each character that Prometheus does not
+// allow. A first digit needs no change, because merlin_ is put before the name.
 std::string validName(std::string_view name) {
   std::string valid(name.substr(0, 100));
   for (char& c : valid) {
@@ -107,7 +107,7 @@ const Described* describedAs(std::span<const Described> table, std::string_view 
   return found == table.end() ? nullptr : &*found;
 }
 
-// The number N of "work_sixteenths_N_total".
+// Returns the number N of "work_sixteenths_N_total"; nothing for another name.
 std::optional<int> sixteenthOf(std::string_view name) {
   if (!name.starts_with(kWork)) return std::nullopt;
   int number = 0;
@@ -133,7 +133,8 @@ void addWork(Families& families, const std::map<int, double>& sixteenths) {
   }
 }
 
-// The device and the rest of "glove_samples_total".
+// Splits the name of a device's metric: "glove_samples_total" into "glove" and the entry
+// "samples_total" of kDevice. Nothing if no entry matches.
 std::optional<std::pair<std::string_view, const Described*>> deviceMetric(std::string_view name) {
   for (const Described& metric : kDevice) {
     if (name.size() <= metric.name.size() + 1 || !name.ends_with(metric.name)) continue;

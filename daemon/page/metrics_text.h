@@ -22,9 +22,10 @@ struct PageMetrics {
   std::uint64_t pictures = 0;                 // encoded
 };
 
-// A metric family with HELP and TYPE for each metric: merlin_wall_NAME, merlin_device_NAME with the
-// label `device`, merlin_page_NAME, and merlin_up with the label `role`. Times are in seconds. A
-// malformed document is left out. For a role that does not run, only merlin_up is written.
+// Returns a metric family with HELP and TYPE for each metric: merlin_wall_NAME, merlin_device_NAME
+// with the label `device`, merlin_page_NAME, and merlin_up with the label `role`. Times are in
+// seconds. A malformed document is left out. For a role that does not run, only merlin_up is
+// written.
 std::string metricsText(const std::vector<RoleMetrics>& roles, const PageMetrics& page);
 
 // Whether metricsText() has a description for a metric of that role's document. For the tests.

@@ -15,7 +15,7 @@ struct PageFile {
 
 std::span<const PageFile> pageFiles();
 
-// The file at this path; "/" is the page itself. Null if there is none.
+// Returns the file at this path, and the page itself for "/". Null if there is none.
 const PageFile* findPageFile(std::string_view path);
 
 }  // namespace merlin::page

@@ -19,8 +19,8 @@
 namespace merlin::page {
 namespace {
 
-// Documents and answers of the roles cannot be polled together with sockets, so they are looked at
-// this often.
+// Interval at which documents and answers of the roles are looked for, since they cannot be polled
+// together with sockets.
 constexpr Duration kLook = std::chrono::milliseconds(20);
 constexpr Duration kCommandPatience = std::chrono::seconds(5);
 constexpr Duration kPicturePatience = std::chrono::seconds(1);
@@ -32,8 +32,8 @@ RouteSettings routeSettings(const PageServerSettings& s) {
           s.page.metrics};
 }
 
-// The first number of this run: higher than the numbers of earlier runs, so that a number that a
-// browser has from an earlier run is not used again.
+// Returns the first number of this run's pictures. It is higher than all numbers of earlier runs,
+// so that a number that a browser has from an earlier run is not used again.
 std::uint64_t firstNumber() {
   timespec now{};
   ::clock_gettime(CLOCK_REALTIME, &now);
@@ -193,7 +193,7 @@ Answer PageServer::phone(const std::string& origin) const {
   return json(phoneDocument({*address, "", *std::move(code)}));
 }
 
-// The answer, or nothing if the client has to wait for a newer picture.
+// Returns the answer, or nothing if the client has to wait for a newer picture.
 std::optional<Answer> PageServer::pictureFor(const PictureRoute& route) {
   const auto picture = pictures_.newest({viewOf(route.view), route.width});
   if (!picture)
@@ -237,7 +237,7 @@ void PageServer::noteRefusal(const Request& request, const Answer& answer) {
                               oneLine(excerpt(request.path)), answer.status);
 }
 
-// An event for refused requests, at most every five seconds.
+// Adds an event about newly refused requests, at most every five seconds.
 void PageServer::tellRefusals(Timestamp now) {
   if (refused_ == told_refused_ || now - told_ < kTellAgain) return;
   const std::uint64_t fresh = refused_ - told_refused_;

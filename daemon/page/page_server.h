@@ -35,8 +35,8 @@ struct PageServerSettings {
   std::string thumbnail_folder;       // where models' pictures are kept
 };
 
-// A client of the roles' shared memory and sockets. Owns its threads: one for all clients, one for
-// pictures.
+// It is a client of the roles' shared memory and sockets. Owns its threads: one for all clients,
+// one for pictures, one for thumbnails.
 class PageServer final : public net::Server {
  public:
   // `events`, `watch` and `clock` must outlive the server. Errors: those of net::listenTcp() and
@@ -55,7 +55,7 @@ class PageServer final : public net::Server {
   // A request that waits for a picture.
   struct WaitingPicture {
     PictureRoute route;
-    Timestamp until{};  // then it is answered without a newer picture
+    Timestamp until{};  // then it is answered even without a newer picture
   };
 
   PageServer(PageServerSettings settings, EventLog& events, ThreadWatch& watch, Clock& clock);
@@ -84,7 +84,7 @@ class PageServer final : public net::Server {
   PictureMaker pictures_;
   Thumbnails thumbnails_;
   std::map<std::uint64_t, WaitingPicture> waiting_;
-  Timestamp looked_{};  // when the roles were looked at last
+  Timestamp looked_{};  // when the roles were last looked at
   std::uint64_t refused_ = 0, told_refused_ = 0;
   std::string last_refusal_;
   Timestamp told_{};

@@ -41,7 +41,7 @@ Result<std::string> phoneAddress(const std::string& origin, const PagePlace& pla
   return fmt::format("http://{}:{}/", address, place.port);
 }
 
-// By ioctl(): getifaddrs() needs sockets of a family that the page's unit forbids.
+// Uses ioctl(), because getifaddrs() needs sockets of a family that the page's unit forbids.
 std::vector<std::string> networkAddresses() {
   const UniqueFd socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   std::array<ifreq, 32> interfaces{};

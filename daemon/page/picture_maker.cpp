@@ -119,8 +119,8 @@ PictureMaker::View& PictureMaker::viewOf(const rfb::View& view) {
   return views_.back();
 }
 
-// Whether no new picture of this kind is needed: the last one shows the view after so many changes,
-// or nobody wants the kind any more.
+// Whether no new picture of this kind is needed: the last one was made after this number of changes
+// of the view, or nobody wants the kind any more.
 bool PictureMaker::isShownBy(const PictureKind& kind, std::uint64_t changes) const {
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find(kinds_, kind, &Kind::kind);

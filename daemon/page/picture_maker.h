@@ -46,11 +46,12 @@ class PictureMaker {
   PictureMaker(const PictureMaker&) = delete;
   PictureMaker& operator=(const PictureMaker&) = delete;
 
-  // The newest picture of this kind. Pictures of the kind are made from the first call until it has
-  // not been requested for 3 s. Nothing if kMostKinds other kinds are in use.
+  // Returns the newest picture of this kind. The first call starts making pictures of the kind;
+  // this ends when the kind has not been requested for 3 s. Nothing if kMostKinds other kinds are
+  // in use.
   std::optional<MadePicture> newest(const PictureKind& kind);
 
-  // Readable when a picture was made since the last clear().
+  // Returns a descriptor that is readable if a picture was made since the last clear().
   int fd() const noexcept { return event_.get(); }
   void clear() const noexcept;
   std::uint64_t made() const;  // number of pictures since the start
@@ -60,14 +61,14 @@ class PictureMaker {
  private:
   struct Kind {
     PictureKind kind;
-    Timestamp wanted{};  // asked for last
+    Timestamp wanted{};  // when it was last requested
     MadePicture made;
     std::uint64_t changes = 0;  // View::changes when `made` was encoded
   };
   struct View {
     rfb::View view;
     std::unique_ptr<rfb::ShownPicture> shown;
-    std::uint64_t changes = 0;  // times that its pixels have changed
+    std::uint64_t changes = 0;  // number of times that its pixels have changed
   };
   void loop(const std::stop_token& stop, Progress& progress);
   std::vector<PictureKind> wantedKinds(Timestamp now);

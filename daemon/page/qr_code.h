@@ -21,9 +21,9 @@ struct QrCode {
   }
 };
 
-// The smallest code that holds these bytes and can still be read if 15 % of it is damaged (level
-// M). The same text gives the same code. Errors: kInvalidArgument (empty, or more than about 2,300
-// bytes), kIo (no memory).
+// Returns the smallest code that holds these bytes and can still be read if 15 % of it is damaged
+// (level M). The same text gives the same code. Errors: kInvalidArgument (empty, or more than about
+// 2,300 bytes), kIo (no memory).
 Result<QrCode> qrCode(std::string_view text);
 
 }  // namespace merlin::page

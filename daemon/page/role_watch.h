@@ -1,4 +1,4 @@
-// RoleWatch: follows what one role of merlind publishes, over its restarts.
+// RoleWatch: follows what one role of merlind publishes, across restarts of the role.
 #pragma once
 
 #include <string>
@@ -25,16 +25,17 @@ class RoleWatch {
 
   const std::string& role() const noexcept { return follower_.role(); }
   bool isRunning() const noexcept { return segment() != nullptr; }
-  // Generation of the run that is followed; 0: none.
+  // Returns the generation of the run that is followed; 0: none.
   std::uint64_t generation() const noexcept { return follower_.generation(); }
-  // The role's segment; null while it does not run. Valid until the next update().
+  // Returns the role's segment; null while the role does not run. Valid until the next update().
   const typename Reader::View* segment() const noexcept { return follower_.segment(); }
-  // Newest documents of the topics, JSON objects; empty while there is none.
+  // Return the newest document of the topic "status" or "metrics", a JSON object; empty while there
+  // is none.
   const std::string& status() const noexcept { return status_; }
   const std::string& metrics() const noexcept { return metrics_; }
-  // Where the role takes commands; empty while it does not run here.
+  // Returns the address at which the role takes commands; empty while it does not run here.
   const std::string& commandEndpoint() const noexcept { return follower_.commandEndpoint(); }
-  // When status() arrived, if there is one.
+  // Returns when status() arrived; meaningless while status() is empty.
   Timestamp heard() const noexcept { return heard_; }
 
  private:

@@ -32,7 +32,7 @@ Answer wrongMethod(const char* allowed) {
   return answer;
 }
 
-// The number of a parameter, 0 if it is absent; nothing if it is not a number.
+// Returns the number of a parameter of the query; 0 if it is absent; nothing if it is not a number.
 std::optional<std::uint64_t> numberOf(const Request& request, const char* name) {
   const auto found = request.query.find(name);
   if (found == request.query.end()) return 0;
@@ -90,7 +90,8 @@ const JsonNode* memberOf(const JsonNode& object, std::string_view key) {
   return found == object.members.end() ? nullptr : &found->value;
 }
 
-// {"command": NAME, "argument": TEXT}; the argument only where the command needs one.
+// Reads the request's content: {"command": NAME, "argument": TEXT}, with the argument only if the
+// command needs one.
 Route commandRoute(const Request& request) {
   constexpr const char* kForm =
       "the content must be {\"command\": \"NAME\", \"argument\": \"TEXT\"}";
@@ -149,7 +150,7 @@ Route fileRoute(const Request& request, const PageFile& file) {
   return FileRoute{&file};
 }
 
-// The route of a path that exists, once the request's method and token were checked.
+// Checks the request's method and token, and returns the route of an existing path.
 Route checked(const Request& request, const RouteSettings& settings, const Path& path) {
   const bool reads = path.needs != Needs::kCommand;
   if (reads ? !isReading(request) : request.method != "POST")

@@ -1,4 +1,4 @@
-// Routes: what a request asks for, after its path, method and content were checked. Pure.
+// Routes: finds what a request asks for, and checks its path, method, token and content. Pure.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct PictureRoute {
 };
 struct ContentsRoute {};
 struct ThumbnailRoute {
-  std::uint64_t content = 0;  // its place in the list of contents
+  std::uint64_t content = 0;  // place of the content: see Thumbnails::jpeg()
 };
 // The QR code with which a phone opens the page.
 struct PhoneRoute {
@@ -46,7 +46,7 @@ struct CommandRoute {
   const CommandInfo* command;
   std::string argument;
 };
-// What a request asks for. An Answer: it is answered already, or refused.
+// What a request asks for. An Answer means that the request is answered already, or refused.
 using Route = std::variant<Answer, FileRoute, StatusRoute, CommandListRoute, EventsRoute,
                            FramesRoute, MetricsRoute, PictureRoute, ContentsRoute, ThumbnailRoute,
                            PhoneRoute, CommandRoute>;

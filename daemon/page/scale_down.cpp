@@ -7,7 +7,7 @@
 namespace merlin::page {
 namespace {
 
-// The first of the `from` columns (or rows) that the n-th of `to` covers.
+// Returns the first of `from` old columns (or rows) that new column n of `to` covers.
 int begin(int n, int from, int to) {
   return static_cast<int>(static_cast<std::int64_t>(n) * from / to);
 }

@@ -32,7 +32,7 @@ class ShowingWatch {
  private:
   std::string content_;
   bool kept_ = false;
-  std::optional<Timestamp> uncovered_, settled_;  // since when
+  std::optional<Timestamp> uncovered_, settled_;  // since when it has been so
 };
 
 }  // namespace merlin::page

@@ -1,5 +1,5 @@
-// ShownPictures: the small pictures of contents that are not in the configuration, kept as the wall
-// showed them. Pure.
+// ShownPictures: the thumbnails of contents that are not in the configuration, which were taken
+// while the wall showed them. Pure.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,12 @@ class ShownPictures {
     std::uint64_t number = 0;  // differs from that of every picture before it
   };
 
-  // Takes the picture as the newest of the content. Of more than kMost contents the one whose
-  // picture is the oldest is forgotten. Returns false if the picture is the same as before.
+  // Keeps the picture for the content `name`, in place of an earlier one. If kMost other contents
+  // have pictures, the one with the oldest picture loses its place. Returns false if the content
+  // has this picture already. `number`: the picture's number.
   bool keep(const std::string& name, std::string jpeg, std::uint64_t number);
 
-  // In the order of their places, which stay.
+  // Returns the pictures. A content keeps its index until it loses its place.
   const std::vector<Picture>& all() const noexcept { return pictures_; }
 
   static constexpr std::size_t kMost = 50;  // as many names as the wall lists

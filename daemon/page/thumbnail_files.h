@@ -1,5 +1,5 @@
-// ThumbnailFiles: models' small pictures as JPEG files in a folder, so that they outlive the page's
-// process.
+// ThumbnailFiles: keeps models' thumbnails as JPEG files in a folder, so that they outlive the
+// page's process.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,8 @@ class ThumbnailFiles {
   ThumbnailFiles(std::string folder, std::string prefix)
       : folder_(std::move(folder)), prefix_(std::move(prefix)) {}
 
-  // The picture of the content with this key; nothing if there is none, or if the file is not a
-  // JPEG picture of a thumbnail's size.
+  // Returns the picture of the content with this key; nothing if there is none, or if the file is
+  // not a JPEG picture of a thumbnail's size.
   std::optional<std::string> read(const std::string& key) const;
   // Writes the picture of the content with this key. Errors: writeFile()'s.
   Result<Ok> write(const std::string& key, const std::string& jpeg) const;

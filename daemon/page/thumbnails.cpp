@@ -14,7 +14,7 @@ namespace merlin::page {
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(250);
-constexpr Duration kAsked = std::chrono::seconds(10);  // somebody looks at the contents
+constexpr Duration kAsked = std::chrono::seconds(10);  // for which a request counts as interest
 constexpr Duration kReadAgain = std::chrono::minutes(1);
 constexpr int kThumbnailQuality = 82;
 constexpr std::size_t kLongestFault = 300;
@@ -29,7 +29,7 @@ std::vector<PageContent> firstOf(std::vector<PageContent> contents) {
 }  // namespace
 
 Result<std::string> thumbnailOf(const render::image::Image& image) {
-  // The greatest width with which the height, too, stays within its limit.
+  // The greatest width for which the height stays within its limit, too.
   const auto width =
       std::clamp<std::int64_t>(std::int64_t{Thumbnails::kMostHeight} * image.width / image.height,
                                1, Thumbnails::kMostWidth);
@@ -116,7 +116,7 @@ void Thumbnails::readOne(Timestamp now, Progress& progress) {
   }
 }
 
-// What the wall shows now; nothing while no wall of this release runs.
+// Returns what the wall shows now; nothing while no wall of this release runs.
 std::optional<Showing> Thumbnails::showing(Timestamp now) {
   const shm::WallSegment* const wall = wall_.get(now);
   if (!wall) return std::nullopt;
@@ -130,8 +130,8 @@ std::optional<Showing> Thumbnails::showing(Timestamp now) {
   return Showing{std::string(textIn(content->name)), covered, stats->full_detail != 0};
 }
 
-// Keeps the wall's picture of a model, or of what is not in the configuration, that has just come
-// up.
+// Takes the wall's picture as the thumbnail of the content that it shows, if that is a model or not
+// in the configuration and watch_ finds the picture suitable.
 void Thumbnails::followWall(Timestamp now) {
   const auto before = showing(now);
   if (!before || !watch_.update(*before, now)) return;
@@ -141,7 +141,8 @@ void Thumbnails::followWall(Timestamp now) {
   if (found != contents_.end() && found->read) return;
   (void)picture_.update(now);
   const auto after = showing(now);
-  // Not if another content came up, or something covered it, while the frame was copied.
+  // Drops the picture if another content came up, or something covered the content, while the frame
+  // was copied.
   if (!picture_.card().empty() || !after || after->content != before->content || after->covered)
     return;
   render::image::Image image{picture_.width(), picture_.height(), {}};
@@ -163,8 +164,8 @@ void Thumbnails::keepModel(std::size_t place, const render::image::Image& image)
   const std::string bytes = *jpeg;
   if (!keep(place, *std::move(jpeg))) return;
   const auto written = files_.write(keyOf(contents_[place]), bytes);
-  // Said once, not for each picture of a playlist: the folder is usually full or read-only for
-  // long.
+  // Logged once and not for each picture of a playlist, because the folder is usually full or
+  // read-only for a long time.
   if (!written && !unwritable_)
     logWarning("thumbnails are not kept over restarts: {}", written.error().what);
   unwritable_ = !written;
@@ -182,7 +183,8 @@ void Thumbnails::readFiles(Progress& progress) {
   files_.removeOthers(keys);
 }
 
-// Takes the picture as the newest of the content; false if it is the same as before.
+// Keeps the picture as the thumbnail of the content at `place`; returns false if it is the same as
+// before.
 bool Thumbnails::keep(std::size_t place, std::string jpeg) {
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_[place];

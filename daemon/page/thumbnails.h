@@ -1,9 +1,10 @@
 // Thumbnails: the wall's contents, with a small picture of each, made on a thread of its own.
 //
-// The small pictures of pictures, panoramas and slides are read from their files. That of a model
-// is the wall's last picture of it, taken from the wall's shared memory, because a model's file may
-// be larger than this machine's memory, and drawing it would cost the wall time. The same is done
-// for what `merlin show` brought to the wall.
+// Thumbnails of pictures, panoramas and slides are read from the files of these contents. The
+// thumbnail of a model is the wall's last picture of the model, taken from the wall's shared
+// memory, because a model's file may be larger than this machine's memory, and drawing it would
+// cost the wall time. Contents that `merlin show` has brought to the wall get their thumbnails in
+// the same way.
 #pragma once
 
 #include <condition_variable>
@@ -57,13 +58,13 @@ class Thumbnails {
   Thumbnails(const Thumbnails&) = delete;
   Thumbnails& operator=(const Thumbnails&) = delete;
 
-  // The contents in their order. Their files are read again once a minute as long as this is
-  // called.
+  // Returns the contents in the order of the configuration. While this is called at least every 10
+  // s, their files are read again once a minute.
   std::vector<ContentState> contents();
-  // The contents that are not in the configuration, and of which there is a picture.
+  // Returns the contents that are not in the configuration and have a picture.
   std::vector<ShownState> shown() const;
-  // The JPEG picture of the content at `place`: its place in contents(), or that of shown(). Null
-  // if there is none.
+  // Returns the JPEG picture of the content at `place`: its index in contents(), or
+  // ShownState::place. Null if there is none.
   std::shared_ptr<const std::string> jpeg(std::uint64_t place) const;
 
   static constexpr std::size_t kMost = 256;
@@ -102,8 +103,8 @@ class Thumbnails {
   WatchedThread thread_;
 };
 
-// The picture made small enough for a thumbnail, as JPEG. Errors: encodeJpeg()'s. REQUIRES: it has
-// pixels.
+// Returns the picture as JPEG, scaled down to kMostWidth and kMostHeight if it is larger. Errors:
+// encodeJpeg()'s. REQUIRES: `image` has pixels.
 Result<std::string> thumbnailOf(const render::image::Image& image);
 
 }  // namespace merlin::page

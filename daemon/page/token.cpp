@@ -23,7 +23,7 @@ Error failed(const std::string& path) {
   return {Errc::kIo, fmt::format("{}: {}", path, std::strerror(errno))};
 }
 
-// 32 characters, 6 bits each.
+// Makes a token of 32 random characters, 6 bits each.
 Result<std::string> newToken() {
   constexpr std::string_view kAlphabet =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
@@ -42,8 +42,8 @@ bool isToken(std::string_view text) {
          });
 }
 
-// The token in the file; nothing unless this user owns the file, only the user and the file's group
-// can read it, and only the user can write it.
+// Returns the token in the file; nothing unless it is valid, this user owns the file, only the user
+// and the file's group can read it, and only the user can write it.
 std::optional<std::string> tokenIn(const UniqueFd& file) {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) ||

@@ -27,7 +27,7 @@ Json valuesOf(const std::vector<SettingChange>& changes) {
   return list;
 }
 
-// The settings without their values, which may name files with secrets.
+// Returns the pointers of the settings without their values, which may name files with secrets.
 Json pointersOf(const std::vector<SettingChange>& changes) {
   Json list = Json::array();
   for (const SettingChange& change : changes) list.push_back(change.pointer);
@@ -40,7 +40,7 @@ Json asideOf(const std::vector<AsideAlignment>& alignments) {
   return list;
 }
 
-// The first text and the number of those after it.
+// Returns the first of `count` texts, followed by the number of the others.
 std::string firstOf(const std::string& first, std::size_t count) {
   return count > 1 ? fmt::format("{} (and {} more)", first, count - 1) : first;
 }

@@ -8,9 +8,10 @@
 
 namespace merlin::reload {
 
-// kInvalid: the file has faults, or a changed number that is out of range. kFailed: the outside
-// world, for example no memory. After these two nothing was changed. kRestarts: a changed setting
-// takes effect only at a start; the process starts again at once, with the whole new file.
+// kInvalid: the file has faults, or a changed number that is out of range. kFailed: the file could
+// not be processed for another reason, such as lack of memory. kInvalid and kFailed change nothing.
+// kRestarts: a changed setting takes effect only at a start; the process starts again at once, with
+// the whole new file.
 enum class Outcome { kDone, kInvalid, kRestarts, kFailed };
 inline constexpr const char* kOutcomeNames[] = {"done", "invalid", "restarts", "failed"};
 
@@ -26,24 +27,25 @@ struct Answer {
   std::vector<std::string> findings;  // a line each, as merlind --check-config prints them
   Plan plan;
   std::string failure;  // for kFailed: the reason
-  // What the new settings set aside, and the outputs whose alignments, which were set aside, they
-  // bring back.
+  // The alignments that the new settings set aside, and the names of the outputs whose earlier
+  // alignments fit the new settings again.
   std::vector<AsideAlignment> set_aside{};
   std::vector<std::string> brought_back{};
 };
 
-// {"outcome": "done", "only_checked": false, "file": "merlin.json", "findings": [...], "swapped":
-// [{"setting": "/bindings/0/action", "from": "\"grab\"", "to": "\"fly\""}], "restart":
-// ["/wall/render/gpu"], "elsewhere": [...], "set_aside": [{"output": "left", "why": "it was made
-// for 640 x 480 pixels ..."}], "brought_back": ["left"], "failure": ""}. `from` and `to` are values
-// as JSON text; empty: there is no such setting.
+// Returns the answer as JSON: {"outcome": "done", "only_checked": false, "file": "merlin.json",
+// "findings": [...], "swapped": [{"setting": "/bindings/0/action", "from": "\"grab\"", "to":
+// "\"fly\""}], "restart": ["/wall/render/gpu"], "elsewhere": [...], "set_aside": [{"output":
+// "left", "why": "it was made for 640 x 480 pixels ..."}], "brought_back": ["left"], "failure":
+// ""}. `from` and `to` are values as JSON text; empty: there is no such setting.
 std::string answerText(const Answer& answer);
 
-// What makes a restart necessary, by name: "/wall/outputs/0/path (and 2 more)". REQUIRES:
-// plan.restart is not empty.
+// Returns the first setting that makes a restart necessary, and the number of others:
+// "/wall/outputs/0/path (and 2 more)". REQUIRES: plan.restart is not empty.
 std::string restartReason(const Plan& plan);
 
-// Why nothing was changed, in one sentence for an event; empty after kDone and kRestarts.
+// Returns one sentence, for an event, that says why nothing was changed; empty after kDone and
+// kRestarts.
 std::string refusal(const Answer& answer);
 
 }  // namespace merlin::reload

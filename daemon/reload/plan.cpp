@@ -7,13 +7,14 @@
 namespace merlin::reload {
 namespace {
 
-// A group's row is for all its settings that have none of their own, new ones included.
+// The row of a group holds for all settings in it that have no row of their own, including settings
+// that are added later.
 constexpr Taker kTakers[] = {
     {"/instance", kAll, Part::kRestart},
     {"/run_directory", kAll, Part::kRestart},
     {"/state_file", kDevices | kWall, Part::kRestart},
-    // Names, kinds and the number of devices and hands are in the table of shared memory, which
-    // readers have read.
+    // The names, kinds and number of devices and hands are in the field table of the shared memory,
+    // which its readers read only once.
     {"/devices", kDevices | kWall | kMirror, Part::kRestart},
     {"/devices/*", kDevices, Part::kLine},
     {"/devices/*/name", kDevices | kWall | kMirror, Part::kRestart},
@@ -65,7 +66,7 @@ constexpr Taker kTakers[] = {
     {"/alarms", kAlarms, Part::kRestart},
 };
 
-// Takes the first part off, up to the next "/": "devices" of "/devices/2".
+// Removes the first part of the pointer and returns it: "devices" of "/devices/2".
 std::string_view takePart(std::string_view& pointer) {
   pointer.remove_prefix(1);
   const std::string_view part = pointer.substr(0, pointer.find('/'));
@@ -148,7 +149,8 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
     if (i < plan.lines.size() && plan.lines[i]) adoptDevice(from.list[i], keep_ports, to.list[i]);
     if (plan.has(Part::kHand)) to.list[i].person = from.list[i].person;
   }
-  // All settings of the hands: a change of the other ones would have needed a restart.
+  // Copies all settings of the hands, because a change of those that belong to other parts would
+  // have needed a restart.
   if (plan.has(Part::kHand) || plan.has(Part::kGestures)) to.hands = from.hands;
   if (plan.has(Part::kHand)) to.turn_s = from.turn_s;
   if (plan.has(Part::kPostures)) {
@@ -164,7 +166,7 @@ void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& r
     for (std::size_t i = 0; i < std::min(outputs.size(), fresh.wall.outputs.size()); ++i)
       outputs[i].correction = fresh.wall.outputs[i].correction;
   }
-  // The whole scene: a change of its other settings would have needed a restart.
+  // Copies the whole scene, because a change of its other settings would have needed a restart.
   if (plan.has(Part::kScene)) running.wall.scene = fresh.wall.scene;
 }
 

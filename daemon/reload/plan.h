@@ -1,4 +1,4 @@
-// The only table of which part of a running merlind each setting belongs to, and the plan of what a
+// The table of the part of a running merlind to which each setting belongs, and the plan of what a
 // reload does with a changed configuration.
 #pragma once
 
@@ -14,14 +14,14 @@ namespace merlin::reload {
 // The parts that can be swapped while merlind runs; kRestart: the process has to start again.
 enum class Part : std::size_t {
   kRestart,
-  kBindings,    // bindings, and the time after which a silent device counts as lost
+  kBindings,    // bindings, and the time after which a failed device's inputs count as released
   kLine,        // line of a device, which is closed and opened again
-  kHand,        // station and filter of a hand
-  kPostures,    // network, hold times and margin
-  kGestures,    // which gestures, of which hands
+  kHand,        // station and filter of hands; whose input moves the wall: persons, /people/turn_s
+  kPostures,    // network, hold times, margin and drift
+  kGestures,    // file of gestures, and for which hands they are recognised
   kRate,        // frame rate and limits of the triangles
-  kPlaylist,    // what the wall shows while nobody is there, and its light then
-  kScene,       // how a person's input moves the model
+  kPlaylist,    // what the wall shows while nobody uses it, and its light then
+  kScene,       // how input moves what is shown; when the initial view returns
   kCorrection,  // corrections of outputs: warp, blend, colours and black level
   kCount
 };
@@ -39,12 +39,12 @@ struct Taker {
   Part part;
 };
 
-// The row of the table with the longest pointer that is `pointer` or a group around it. A pointer
-// that no row covers, such as that of a new setting, needs a restart of every process, so that no
-// change is ignored.
+// Returns the row of the table with the longest pointer that is `pointer` or a group around it. A
+// pointer that no row covers, such as that of a new setting, needs a restart of every process, so
+// that no change is ignored.
 Taker takerOf(std::string_view pointer);
 
-// The rows of the table, for tests.
+// Returns all rows of the table, for tests.
 std::vector<Taker> takers();
 
 struct Plan {
@@ -58,11 +58,12 @@ struct Plan {
   bool has(Part part) const { return parts[static_cast<std::size_t>(part)]; }
 };
 
-// Sorts the changes for a process; `process`: which readers it is.
+// Sorts the changes by what a process must do about them. `process`: the readers that are part of
+// the process.
 Plan planFor(const std::vector<SettingChange>& changes, Readers process);
 
-// Gives `running` the settings of these parts from `fresh`, and leaves all others alone.
-// `keep_ports`: also the devices' ports (those of emulators).
+// Copies the settings of the parts in `plan` from `fresh` to `running`; all other settings stay.
+// `keep_ports`: the devices' ports, which are those of emulators, stay too.
 void adopt(const Plan& plan, const Settings& fresh, bool keep_ports, Settings& running);
 
 }  // namespace merlin::reload

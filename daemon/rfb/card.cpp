@@ -14,7 +14,8 @@ using render::testcard::Area;
 using render::testcard::grey;
 using render::testcard::kGlyphSize;
 
-// The longest start of `text` that fits, up to the end of a word if one does.
+// Returns the longest start of the first line of `text` that has at most `most` bytes; it ends at
+// the end of a word if possible.
 std::string_view firstLine(std::string_view text, std::size_t most) {
   const std::string_view line = text.substr(0, text.find('\n'));
   if (line.size() <= most) return line;

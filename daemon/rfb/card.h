@@ -7,8 +7,8 @@
 
 namespace merlin::rfb {
 
-// Fills `canvas` (RGBA, `width` x `height` pixels) with grey and writes `text`, one line for each
-// of its lines, in its middle; a line that is too long is broken between words.
+// Fills `canvas` (RGBA, `width` x `height` pixels) with grey and writes `text` in the middle. Each
+// line of `text` begins a new line; a line that is too long is broken between words.
 void drawCard(std::string_view text, std::span<std::uint8_t> canvas, int width, int height);
 
 }  // namespace merlin::rfb

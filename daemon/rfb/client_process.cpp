@@ -33,12 +33,12 @@ void limitProcess() {
   };
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_NOFILE, 64);
-#if !defined(MERLIN_ANY_SANITIZER)  // these reserve terabytes
+#if !defined(MERLIN_ANY_SANITIZER)  // sanitizers reserve terabytes
   limit(RLIMIT_DATA, rlim_t{1} << 30);
 #endif
 }
 
-// A viewer whose machine was switched off is noticed within a minute.
+// Makes the kernel notice within a minute that the client's machine was switched off.
 void keepAlive(int socket) {
   const int yes = 1, idle_s = 30, every_s = 10, probes = 3;
   ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
@@ -48,7 +48,7 @@ void keepAlive(int socket) {
   ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
 }
 
-// Passes what the client does on to the wall, one command at a time.
+// Sends the client's input to the wall, one command at a time.
 class InputLink {
  public:
   InputMap& map() noexcept { return map_; }

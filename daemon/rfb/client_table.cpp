@@ -116,7 +116,8 @@ void ClientTable::end(std::size_t index, const std::string& reason, Timestamp no
   clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-// The process has closed its end of the pipe: it ends, or has ended.
+// Removes a client whose process has closed its end of the pipe, which means that it ends or has
+// ended.
 void ClientTable::remove(std::size_t index, Timestamp now) {
   const Client& client = clients_[index];
   const std::string how = howItEnded(waitForChild(client.pid), client.occupant.established);

@@ -26,13 +26,16 @@ class ClientTable {
   ClientTable(const ClientTable&) = delete;
   ClientTable& operator=(const ClientTable&) = delete;
 
-  // Gives the client a place and a process, or closes the connection if there is none: see
-  // net::decide(). A place whose client has taken no picture for a minute can be given to another.
+  // Gives the client a place and a process; closes the connection if there is no place (see
+  // net::decide()). A client that has requested no picture for a minute may lose its place to
+  // another one.
   void add(UniqueFd client, Timestamp now);
 
-  // Descriptors that become readable when a process reports something or ends.
+  // Appends the descriptors to poll, which become readable when a process reports something or
+  // ends.
   void appendTo(std::vector<pollfd>& set) const;
-  // Reads the reports of one of them.
+  // Reads the reports of the process whose pipe is `fd`; removes its client if the process has
+  // ended.
   void read(int fd, Timestamp now);
 
  private:
@@ -49,8 +52,8 @@ class ClientTable {
   net::Places places_;
   Serve serve_;
   std::vector<Client> clients_;
-  // Connections that were refused or ended before their handshake was complete: of all since the
-  // last line of the log, only one is named.
+  // Number of connections, since the last log line about them, that were refused or ended before
+  // their handshake was complete. Each such line names only one of them.
   std::size_t sent_away_ = 0;
   Timestamp logged_{};
 };

@@ -49,18 +49,18 @@ constexpr KeyCommand kKeyCommands[] = {
 static_assert(std::all_of(std::begin(kKeyCommands), std::end(kKeyCommands),
                           [](const KeyCommand& k) { return isPlainCommand(k.command); }));
 
-constexpr double kDegreesPerHeight = 180;  // of a drag over the picture's height
+constexpr double kDegreesPerHeight = 180;  // turn by a drag over the picture's height
 constexpr double kRadiiPerHeight = 1.5;    // about as far as the pointer, at the default distance
 constexpr double kRadiiPerNotch = 0.1;     // of the wheel, and of + and -
 constexpr double kDegreesPerKey = 5, kRadiiPerKey = 0.05;
 constexpr std::size_t kMostWaiting = 8, kMostHeld = 32;
-// The limits of the command move.
+// The limits of the argument of the command move.
 constexpr double kMostRadii = 10, kMostDegrees = 360;
 
 }  // namespace
 
-// Whether the panel takes the event. It takes none of a drag with another button, which goes on
-// over the panel.
+// Whether the panel takes the event. It takes no event of a drag with another button, so that such
+// a drag can continue over the panel.
 bool InputMap::panelTakes(unsigned buttons, int x, int y) {
   const bool drags_otherwise = (buttons & ~kLeft) != 0 && (buttons & kLeft) == 0;
   return !drags_otherwise && panel_.point(x, y, (buttons & kLeft) != 0);
@@ -91,7 +91,8 @@ void InputMap::pointer(unsigned buttons, int x, int y, int height) {
   y_ = y;
 }
 
-// Held arrows repeat, as clients send their presses again.
+// Handles an arrow key, + or -; returns false for any other key. A held key repeats, because
+// clients send its press again.
 bool InputMap::pressesArrow(std::uint32_t keysym) {
   const bool shift = held_.count(kShiftLeft) + held_.count(kShiftRight) > 0;
   const auto act = [&](int right, int up) {
@@ -125,7 +126,7 @@ void InputMap::key(std::uint32_t keysym, bool pressed) {
   }
   if (pressesArrow(keysym)) return;
   if (held_.size() >= kMostHeld) held_.clear();  // a client that never releases any
-  if (!held_.insert(keysym).second) return;      // it repeats
+  if (!held_.insert(keysym).second) return;      // the client repeats a held key
   const auto* const found = std::find_if(std::begin(kKeyCommands), std::end(kKeyCommands),
                                          [&](const KeyCommand& k) { return k.keysym == keysym; });
   if (found == std::end(kKeyCommands) || commands_.size() >= kMostWaiting) return;

@@ -17,21 +17,22 @@ struct Request {
   bool operator==(const Request&) const = default;
 };
 
-// A drag turns what the ball moves, a drag with Shift or the middle button moves it, the wheel
-// moves it nearer or farther. README.md lists the keys. Thread-bound.
+// A drag turns the model or the viewer, whichever the ball moves; a drag with Shift or the middle
+// button moves it, and the wheel moves it nearer or farther. README.md lists the keys.
+// Thread-bound.
 class InputMap {
  public:
-  // The pointer in a picture of `height` pixels. `buttons`: as in RFB, bit 0 left, 1 middle, 2
-  // right, 3 wheel up, 4 wheel down.
-  // Events that belong to the operator's panel go to panel() and have no other effect.
+  // Handles a pointer event at pixel x, y of a picture that is `height` pixels high. `buttons`: as
+  // in RFB, bit 0 left, 1 middle, 2 right, 3 wheel up, 4 wheel down. Events that belong to the
+  // operator's panel go to panel() and have no other effect.
   void pointer(unsigned buttons, int x, int y, int height);
   PanelPointer& panel() noexcept { return panel_; }
-  // A key is pressed or released; `keysym`: an X11 keysym, as in RFB.
+  // Handles a key that is pressed or released. `keysym`: an X11 keysym, as in RFB.
   void key(std::uint32_t keysym, bool pressed);
 
-  // The next request for the wall; nothing if there is none. All motion since the last call becomes
-  // one request, so that nothing piles up while the wall is slow to answer. At most 8 other
-  // requests wait; more are dropped.
+  // Returns the next request for the wall; nothing if there is none. All motion since the last
+  // request for motion becomes one request, so that no queue builds up while the wall is slow to
+  // answer. At most 8 other requests wait; further ones are dropped.
   std::optional<Request> take();
 
  private:

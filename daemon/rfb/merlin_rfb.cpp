@@ -19,7 +19,7 @@
 namespace merlin {
 namespace {
 
-// The wall's own threads take precedence on a machine that is busy with both.
+// Nice value of this program, so that the wall's threads take precedence on a busy machine.
 constexpr int kNice = 10;
 
 struct Options {
@@ -80,8 +80,8 @@ int fail(const Error& error) {
   return exitStatus(error);
 }
 
-// Says at once what clients would otherwise be the first to see: no wall, no permission, no such
-// tile.
+// Logs at the start the message that clients would see instead of the wall: no wall, no permission,
+// no such tile.
 void warnOfCard(const rfb::RfbSettings& settings) {
   rfb::ShownPicture picture(settings.instance, settings.view, SharedMemory::From::kOwnGroup);
   picture.update(SystemClock().now());

@@ -5,14 +5,14 @@
 
 #include <rfb/rfb.h>
 #include <unistd.h>
-extern "C" {  // the header does not say so itself
+extern "C" {  // the header lacks this declaration
 #include <rfb/rfbregion.h>
 }
 
 namespace merlin::rfb {
 namespace {
 
-// With a delay for each wrong password, all places together allow a few attempts per second.
+// Delay after each wrong password. It limits guessing to a few attempts per second over all places.
 constexpr unsigned kWrongPassword_s = 2;
 
 void dropLine(const char* /*format*/, ...) {}
@@ -103,7 +103,7 @@ RfbScreen::RfbScreen(int socket, const ScreenSettings& settings, InputMap* input
 }
 
 RfbScreen::~RfbScreen() {
-  library_->screen->frameBuffer = nullptr;  // it is ours
+  library_->screen->frameBuffer = nullptr;  // the library must not free it
   rfbScreenCleanup(library_->screen);
 }
 

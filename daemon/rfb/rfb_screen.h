@@ -1,7 +1,7 @@
-// RfbScreen: libvncserver, with one connected client. No other file uses the library.
+// RfbScreen: the adapter of libvncserver, for one connected client. No other file uses the library.
 //
-// What the library offers besides pictures and input is switched off: file transfer, clipboard,
-// connections to clients, the HTTP server, listening.
+// Everything that the library offers besides pictures and input is switched off: file transfer,
+// clipboard, connections to clients, the HTTP server, listening.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ class RfbScreen {
   RfbScreen(const RfbScreen&) = delete;
   RfbScreen& operator=(const RfbScreen&) = delete;
 
-  // Replaces the picture by another one, which may have another size.
+  // Replaces the picture by another one, which may have another size; the same rules hold for its
+  // pixels.
   void setPixels(std::span<std::uint8_t> pixels, int width, int height);
   void markChanged(const Rectangle& rectangle);
 

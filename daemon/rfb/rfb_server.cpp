@@ -23,8 +23,8 @@ namespace {
 // system's queue.
 constexpr double kAccepts_per_s = 20, kAcceptsBurst = 20;
 
-// `set[0]` is the listener. Waits for anything in the set; while the bucket is empty, not for the
-// listener.
+// Waits until a descriptor of the set is ready; while `accepts` is empty, it ignores the listener,
+// set[0], at most until a token is available. Returns false if poll() fails.
 bool wait(std::vector<pollfd>& set, TokenBucket& accepts, Timestamp now) {
   const Duration pause = accepts.waitFor(1, now);
   int timeout_ms = -1;

@@ -18,7 +18,7 @@ class RfbServer {
   // Serves clients until `stop` is readable; then disconnects all.
   Result<Ok> run(const UniqueFd& stop);
 
-  int port() const;  // the port at which it listens, also if the settings have port 0
+  int port() const;  // the port at which it listens, even if the settings have 0
 
  private:
   RfbServer(RfbSettings settings, UniqueFd listener)

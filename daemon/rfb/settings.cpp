@@ -25,7 +25,7 @@ bool isLoopback(const std::string& address) {
 }
 
 Result<UniqueFd> openPrivate(const std::string& path) {
-  // A pipe must not make open() wait.
+  // O_NONBLOCK: open() must not wait if the path is a pipe.
   UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (!fd.valid() || ::fstat(fd.get(), &status) != 0) {

@@ -8,7 +8,7 @@
 
 namespace merlin::rfb {
 
-// Where VNC clients connect.
+// The address at which VNC clients connect.
 struct Listen {
   std::string address = "127.0.0.1";  // IPv4
   int port = 5900;                    // 0: any free port, which the log then names
@@ -26,7 +26,8 @@ struct RfbSettings {
   int rate_hz = 20;          // pictures per second at most
 };
 
-// Errors: kInvalidArgument (an address that other machines can reach, without a password).
+// Checks the settings. Errors: kInvalidArgument (an address that other machines can reach, without
+// a password).
 Result<Ok> validate(const RfbSettings& settings);
 
 // Reads the password, the first line of the file. Errors: kNotFound; kIo; kInvalidArgument (the

@@ -33,7 +33,8 @@ ShownPicture::Change ShownPicture::update(Timestamp now) {
   return *fresh ? showFrame() : Change{};
 }
 
-// Whether frame_ is a newer frame than the one shown. Errors: a sentence for the card.
+// Copies a newer frame than the one shown into frame_; returns false if there is none. Errors: a
+// text for the card.
 Result<bool> ShownPicture::readFrame(Timestamp now) {
   const shm::WallSegment* const wall = wall_.get(now);
   command_endpoint_.clear();
@@ -76,7 +77,8 @@ Result<Ok> ShownPicture::openReader(Timestamp now, std::uint64_t generation) {
                              stale ? "The frames that are there are from an earlier run."
                                    : opened.error().what)};
   }
-  // The first frames of a restarted merlind have the numbers of earlier ones.
+  // A restarted merlind numbers its frames from the beginning again, so its first frames have the
+  // numbers of earlier ones.
   if (!reader_ || reader_->generation() != generation) sequence_ = 0;
   reader_.emplace(*std::move(opened));
   opened_ = now;

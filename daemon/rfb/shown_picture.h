@@ -19,25 +19,26 @@ namespace merlin::rfb {
 // Thread-bound.
 class ShownPicture {
  public:
-  // `instance`: name of merlind's instance. `from`: whose shared memory is accepted.
+  // `instance`: name of merlind's instance. `from`: owners whose shared memory is accepted.
   ShownPicture(std::string instance, View view, SharedMemory::From from);
 
   struct Change {
     bool resized = false;  // pixels() has a new size and address, and all pixels have changed
     std::vector<Rectangle> changed;
   };
-  // Looks for a newer frame. Never waits. Costs a copy of the frame if there is one.
+  // Looks for a newer frame and updates the picture. Never waits. Cost: a copy of the frame if
+  // there is a newer one.
   Change update(Timestamp now);
 
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
-  // RGBA, rows from top to bottom.
+  // Returns the picture: RGBA, rows from top to bottom.
   std::span<std::uint8_t> pixels() noexcept { return pixels_; }
-  // The text of the card; empty while the wall is shown.
+  // Returns the text of the card; empty while the wall is shown.
   const std::string& card() const noexcept { return card_; }
-  // Where pixels() shows the operator's panel; nothing while the panel is not visible.
+  // Returns where pixels() shows the operator's panel; nothing while the panel is not visible.
   const std::optional<PanelPointer::Place>& panel() const noexcept { return panel_; }
-  // Where the wall takes commands; empty while no wall runs.
+  // Returns the address at which the wall takes commands; empty while no wall runs.
   const std::string& commandEndpoint() const noexcept { return command_endpoint_; }
 
  private:

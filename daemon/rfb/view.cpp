@@ -16,7 +16,7 @@ using render::out::framebuffer::TileRectangle;
 constexpr int kMostSide = 65535;  // the protocol's limit [px]
 constexpr int kBlock = 64;        // [px]: small enough that a moving pointer sends little
 
-// The header is another program's: the name may lack its NUL.
+// Returns the tile's name. It may lack its NUL, because another program has written the header.
 std::string nameOf(const TileRectangle& tile) {
   const char* const end = std::find(std::begin(tile.name), std::end(tile.name), '\0');
   return {std::begin(tile.name), end};

@@ -1,4 +1,4 @@
-// The part of a frame that a VNC client sees, and which areas of it have changed. Pure.
+// Determines the part of a frame that a VNC client sees, and which areas of it have changed. Pure.
 #pragma once
 
 #include <cstdint>
@@ -33,9 +33,9 @@ struct Layout {
   std::vector<Piece> pieces;
 };
 
-// The wall's tiles in rows and columns, the operator's view, or one tile. Errors: kNotFound (the
-// wall has no such tile; the text lists those that it has), kUnsupported (a wall too large to be
-// shown).
+// Returns the layout of a view: the wall's tiles in rows and columns, the operator's view, or one
+// tile. Errors: kNotFound (the wall has no such tile; the text lists those that it has),
+// kUnsupported (a wall too large to be shown).
 Result<Layout> layoutOf(const render::out::CapturedFrame& frame, const View& view);
 
 // Copies the view into `canvas` (RGBA, rows from top to bottom), and returns the blocks, of 64 x 64

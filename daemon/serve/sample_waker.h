@@ -1,5 +1,6 @@
-// SampleWaker: makes a descriptor readable when a sample arrives, so that a server can poll its
-// clients and the samples together; the futex words in shared memory cannot be polled with sockets.
+// SampleWaker: makes a descriptor readable when a sample arrives. So a server can poll its clients
+// and the samples together, although the futex words in shared memory cannot be polled with
+// sockets.
 #pragma once
 
 #include <atomic>
@@ -22,7 +23,7 @@ class SampleWaker {
   SampleWaker(const SampleWaker&) = delete;
   SampleWaker& operator=(const SampleWaker&) = delete;
 
-  // Readable if a sample has arrived since the last clear().
+  // Returns the descriptor, which is readable if a sample has arrived since the last clear().
   int fd() const noexcept { return event_.get(); }
   // To be called before the samples are read: a later sample then makes it readable again.
   void clear() const noexcept;

@@ -24,7 +24,7 @@ struct ServeSettings {
   std::string wall_topics_endpoint;
   std::string commands_keys;     // file with this machine's key pair, for these three
   std::string commands_clients;  // file with the public keys that may send commands, one per line
-  std::string commands_readers;  // file with those that may only read status and events
+  std::string commands_readers;  // file with the public keys that may only read status and events
 
   bool hasNetworkCommands() const noexcept {
     return !wall_endpoint.empty() || !devices_endpoint.empty();

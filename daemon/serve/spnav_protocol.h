@@ -39,7 +39,7 @@ class SpnavClient {
 
   struct Taken {
     std::size_t bytes = 0, messages = 0;
-    bool answered = false;  // one of the messages was answered; the client waits for that answer
+    bool answered = false;  // one of the messages was answered: the client now reads that answer
   };
   // Takes at most `most` complete messages off the front of `input` and appends the answers to
   // `out`.
@@ -47,7 +47,8 @@ class SpnavClient {
 
   // Appends the events of a new sample that the client's mask requests: buttons that have changed
   // since the client's last sample, then a motion if any axis is not 0, or all have just become 0.
-  // `motion` false omits the motion, for a client that is too slow; buttons are never omitted.
+  // If `motion` is false, as for a client that is too slow, the motion is omitted; buttons are
+  // never omitted.
   void sample(const BallSample& sample, bool motion, std::string& out);
 
   // Appends the event that the ball was connected or lost; `device` describes it from now on.

@@ -89,7 +89,7 @@ class SpnavSession final : public net::Session {
   std::optional<Timestamp> waiting_since_;
   std::string held_;     // button events held back
   bool missed_ = false;  // the client missed the motion of the newest sample
-  // The ball was connected or lost, and the client has not been told yet.
+  // missed_device_: the ball was connected or lost, and the client has not been told yet.
   bool missed_device_ = false, there_ = false;
   SpnavDevice device_;
 };

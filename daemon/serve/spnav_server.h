@@ -61,7 +61,7 @@ class SpnavServer final : public net::Server {
     std::uint64_t seen = 0;  // number of samples processed
   };
   std::vector<Ball> balls_;
-  const shm::Channel<BallSample>* last_ = nullptr;  // of the ball that sent the last sample
+  const shm::Channel<BallSample>* last_ = nullptr;  // samples of the ball that sent last
   bool there_ = false;
   SampleWaker waker_;
   net::ServerThread thread_;

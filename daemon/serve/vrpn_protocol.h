@@ -21,7 +21,8 @@ struct VrpnMessage {
   std::string_view payload;  // part of the input
 };
 
-// The message at the front of the input; nothing if it is not complete yet.
+// The message at the front of the input, as readVrpn() finds it. `message`: nothing if it is not
+// complete yet or invalid.
 struct VrpnFront {
   std::optional<VrpnMessage> message;
   std::size_t bytes = 0;  // length of the message in the input

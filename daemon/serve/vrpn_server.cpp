@@ -22,8 +22,8 @@ constexpr Duration kVrpnRound = std::chrono::milliseconds(50);
 constexpr double kDatagrams = 20;  // answered per second, and in a burst
 constexpr std::int32_t kButtons = 12;
 
-// The server's numbers for senders and types; each client first gets their names. Senders are the
-// control, then the hands, the trackers and the balls.
+// The numbers that the server gives to its senders, which VRPN identifies by number; each client is
+// first sent their names. The senders are the control, then the hands, the trackers and the balls.
 class Senders {
  public:
   explicit Senders(const shm::DeviceSlots& devices)
@@ -97,7 +97,8 @@ class PortClaim {
   int port_;
 };
 
-// One client: the numbers that it gave to senders and types, and the state of what was sent to it.
+// The connection to one client: the numbers that the client gave to senders and types, and the
+// state of the buttons that were sent to it.
 class VrpnSession final : public net::Session {
  public:
   VrpnSession(const shm::DeviceSlots& devices, const std::string& instance, const Clock& clock,
@@ -116,7 +117,7 @@ class VrpnSession final : public net::Session {
   // `at_ns`: CLOCK_MONOTONIC; clients expect the time of day.
   void send(std::int32_t sender, std::int32_t type, std::string_view payload, std::int64_t at_ns,
             std::string& output);
-  // `ball`: its index.
+  // Sends each button of a ball that has changed for this client. `ball`: index of the ball.
   void sendButtons(std::size_t ball, const BallSample& sample, std::string& output);
   const Senders& senders() const { return named_; }
 
@@ -130,7 +131,8 @@ class VrpnSession final : public net::Session {
   const Clock& clock_;
   std::unique_ptr<PortClaim> port_;  // if we connected to the client
   bool greeted_ = false;             // its cookie has arrived
-  // The client's numbers of our senders and of the ping message; other descriptions are ignored.
+  // The numbers by which the client identifies our senders and the ping message; its other
+  // descriptions are ignored.
   std::map<std::int32_t, std::int32_t> senders_;
   std::optional<std::int32_t> ping_;
   std::uint32_t sequence_ = 0;
@@ -167,7 +169,7 @@ void VrpnSession::open(std::string& output) {
   for (std::int32_t i = 0; i < std::ssize(kTypes); ++i)
     send(i, kVrpnDescribeType, vrpnName(kTypes[i]), now_ns, output);
   send(std::ssize(kTypes), kVrpnDescribeType, vrpnName(kVrpnInstance + instance_), now_ns, output);
-  // A button may already be pressed.
+  // Sends the state of all buttons, because one may already be pressed.
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     const auto ball = devices_.balls[i].samples->newest();
     buttons_[i] = ball ? ball->buttons : 0;
@@ -205,7 +207,7 @@ void VrpnSession::handle(const VrpnMessage& m, std::string& output) {
 
 void VrpnSession::describe(const VrpnMessage& m) {
   constexpr std::size_t kMostNumbers =
-      64;  // vrpnLimits memory: a client could give the same name many numbers
+      64;  // limits memory: a client could give the same name many numbers
   senders_.erase(m.header.sender);
   const auto name = readVrpnName(m.payload);
   const auto& names = named_.names();

@@ -1,5 +1,5 @@
-// Channel: one device's samples in shared memory: the newest sample, a ring of the last 256, and a
-// futex word to wait on.
+// Channel: a stream of samples in shared memory: the newest sample, a ring of the last 256 samples,
+// and a futex word on which readers wait.
 #pragma once
 
 #include <array>
@@ -18,13 +18,13 @@ namespace merlin::shm {
 
 inline constexpr std::size_t kHistory = 256;
 
-// One thread writes. Each channel has cache lines of its own, so that writes to one never slow down
-// readers of another.
+// One thread writes; any number of threads and processes read. Each channel has cache lines of its
+// own, so that writes to one channel never slow down readers of another.
 template <typename T>
 class alignas(64) Channel {
  public:
-  // Wait-free except for one futex call, which wakes waiting readers. REQUIRES: called from one
-  // thread only.
+  // Adds a sample. Wait-free except for one futex call, which wakes waiting readers. REQUIRES: only
+  // one thread calls this.
   void publish(const T& sample) noexcept {
     const auto n = count_.load(std::memory_order_relaxed);
     ring_[n % kHistory].publish(sample);
@@ -36,25 +36,29 @@ class alignas(64) Channel {
 
   std::optional<T> newest() const noexcept { return newest_.read(); }
 
-  // Number of samples published since the segment was created.
+  // Returns the number of samples published since the segment was created.
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
 
-  // Sample number n, counted from 0; nothing if it was not published yet or was overwritten.
+  // Returns sample number n, counted from 0; nothing if it was not published yet or is no longer in
+  // the ring. The oldest of the last kHistory samples is not returned, since the writer may be
+  // overwriting it.
   std::optional<T> at(std::uint64_t n) const noexcept {
     if (n >= count() || n + kHistory <= count()) return std::nullopt;
     const auto sample = ring_[n % kHistory].read();
-    return n + kHistory > count() ? sample : std::nullopt;  // overwritten while it was read
+    return n + kHistory > count() ? sample : std::nullopt;  // overwritten meanwhile: nothing
   }
 
-  // A futex word that grows with each sample, for a reader that waits for several channels at once.
+  // Returns the futex word, which is incremented with each sample, for a reader that waits for
+  // several channels at once.
   const std::atomic<std::uint32_t>& wakeWord() const noexcept { return wake_; }
 
-  // Offsets of its members, for the table of fields.
+  // Offsets of the members from the channel's start [bytes], for the table of fields.
   static constexpr std::size_t countOffset() { return offsetof(Channel, count_); }
   static constexpr std::size_t wakeOffset() { return offsetof(Channel, wake_); }
   static constexpr std::size_t ringOffset() { return offsetof(Channel, ring_); }
 
-  // Waits until count() differs from `seen`, or `timeout` has passed; may return early.
+  // Waits until count() differs from `seen` or `timeout` has passed. May also return earlier, so
+  // the caller has to check count().
   void wait(std::uint64_t seen, timespec timeout) const noexcept {
     const auto word = wake_.load(std::memory_order_acquire);
     if (count() != seen) return;
@@ -64,7 +68,7 @@ class alignas(64) Channel {
  private:
   SeqSlot<T> newest_;
   std::atomic<std::uint64_t> count_{0};
-  std::atomic<std::uint32_t> wake_{0};  // grows with each sample; wait on it with FUTEX_WAIT
+  std::atomic<std::uint32_t> wake_{0};  // incremented with each sample; for FUTEX_WAIT
   std::uint32_t reserved_ = 0;
   std::array<SeqSlot<T>, kHistory> ring_{};
 };

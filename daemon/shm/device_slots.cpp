@@ -8,7 +8,7 @@
 namespace merlin::shm {
 namespace {
 
-// Looks up one slot after the other and keeps the first error.
+// Looks up slots one after the other, and keeps the error of the first look-up that fails.
 class Finder {
  public:
   explicit Finder(const SlotTable& table) : table_(table) {}
@@ -46,7 +46,7 @@ Result<DeviceSlots> DeviceSlots::find(const SlotTable& table, const Header& head
     if (device != "gpio")
       finder.find(device + ".health", slots.health.emplace_back(Health{device, {}}).slot);
   }
-  // Each kind is told by a field that only its samples have.
+  // The kind of a device is recognised by a field that only the samples of this kind have.
   for (const std::string& name : table.namesBefore(".angle_rad")) {
     Glove& glove = slots.gloves.emplace_back(Glove{name, {}, {}, {}, {}});
     finder.find(name + ".health", glove.health);
@@ -81,7 +81,7 @@ Result<DeviceSlots> DeviceSlots::find(const SlotTable& table, const Header& head
     if (name.starts_with(kActions))
       finder.find(name, slots.actions.emplace_back(Actions{name.substr(kActions.size()), {}}).slot);
   }
-  if (slots.actions.empty())  // a table that lacks even the panel's is none
+  if (slots.actions.empty())  // every valid table has the panel's, so this look-up reports an error
     finder.find("actions.panel", slots.actions.emplace_back(Actions{"panel", {}}).slot);
   if (finder.error()) return *finder.error();
   if (const auto gpio = table.channel<GpioSample>("gpio")) slots.gpio = *gpio;

@@ -1,5 +1,5 @@
-// DeviceSlots: what a reader uses of the devices' segment. Each slot is found by its name in the
-// segment's table of fields, once, when the segment is opened.
+// DeviceSlots: pointers to the slots of the devices' segment that a reader uses. Each slot is found
+// by its name in the segment's table of fields, once, when the segment is opened.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace merlin::shm {
 
-// Pointers into a segment, which must outlive them. Reentrant.
+// Pointers to the slots of a devices' segment, which must stay mapped as long as they are used.
+// Reentrant.
 struct DeviceSlots {
   struct Health {
     std::string device;  // "glove"
@@ -50,16 +51,20 @@ struct DeviceSlots {
     const SeqSlot<GestureState>* gesture;
   };
   struct Actions {
-    std::string source;  // name of a device or a hand; of the last one "panel"
+    std::string source;  // name of a device or a hand, or "panel" for the last entry
     const SeqSlot<ActionState>* slot;
   };
 
-  // Finds all members. Errors: those of SlotTable::channel().
+  // Finds the slots of all devices and hands in `table`. `header`: the header of the same segment.
+  // Errors: those of SlotTable::channel(), for the first slot that is missing or unsuitable; but a
+  // missing `gpio` is no error.
   static Result<DeviceSlots> find(const SlotTable& table, const Header& header);
-  // The same for a segment of this process, whose table is filled in.
+  // Finds the slots in a segment that this process owns and whose table of fields is filled in.
+  // Errors: those of the other find(), and of SlotTable::read().
   static Result<DeviceSlots> find(const DevicesSegment& segment);
 
-  // The device with this name, or the first of its kind if `name` is empty; null if there is none.
+  // Each returns the device or hand with this name, or the first one of its kind if `name` is
+  // empty; null if there is none.
   const Glove* glove(std::string_view name = {}) const;
   const Tracker* tracker(std::string_view name = {}) const;
   const Ball* ball(std::string_view name = {}) const;
@@ -67,8 +72,8 @@ struct DeviceSlots {
   const Hand* hand(std::string_view name = {}) const;
 
   const Header* header = nullptr;
-  // Each list is in the table's order, which is that of the configuration. `health` has the devices
-  // only; the control panel's health is "gpio.health".
+  // Each list is in the order of the table of fields, which is the order of the configuration.
+  // `health` contains the devices only; the health of the control panel is the slot "gpio.health".
   std::vector<Health> health;
   std::vector<Glove> gloves;
   std::vector<Tracker> trackers;
@@ -76,15 +81,15 @@ struct DeviceSlots {
   std::vector<Touch> touches;
   std::vector<Hand> hands;
   std::vector<Actions> actions;
-  const Channel<GpioSample>* gpio = nullptr;  // null if the segment lacks it
+  const Channel<GpioSample>* gpio = nullptr;  // the control panel; null if not in the table
 };
 
-// State of a device for people and programs: "absent", "opening", "ok", "failed"; "stale" if an ok
-// health was not updated for a second.
+// Returns the name of a device's state: "absent", "opening", "ok" or "failed"; or "stale" if the
+// state is ok but was not updated in the last second before `now`.
 const char* healthName(const DeviceHealth& health, Timestamp now);
 
-// If a device works for less than this between two equal faults, messages and recordings treat them
-// as one fault.
+// If a device works for less than this time between two faults with the same reason, messages and
+// recordings treat both as one fault.
 inline constexpr Duration kBriefly = std::chrono::seconds(5);
 
 }  // namespace merlin::shm

@@ -20,9 +20,9 @@ void addHeader(FieldTable& t) {
   MERLIN_FIELD(t, Header, command_endpoint, "");
 }
 
-// Starts the fields of a channel: adds what a reader needs to wait for samples, which are their
-// count and the futex word. The fields added afterwards are those of a sample; each has the offset
-// of the ring of the last 256 samples.
+// Begins the fields of a channel. Adds `count` and `wake` (the futex word), with which a reader
+// waits for samples. The fields that are added to `t` afterwards are those of a sample; each refers
+// to the ring of the last 256 samples.
 template <typename T>
 void startChannel(FieldTable& t, const std::string& name, std::size_t offset) {
   t.bare(name, offset);
@@ -143,8 +143,9 @@ void addMembers(FieldTable& t, std::type_identity<GpioSample>) {
   MERLIN_FIELD(t, GpioSample, wait_s, "s");
 }
 
-// Adds the state of each action by its name: "actions.ball.reset_view.begun", and ".held" if it
-// lasts as long as its input; and whole arrays, in the order of the named fields.
+// Adds the arrays as whole fields, and the state of each action as a field with the action's name:
+// "actions.ball.reset_view.begun", and for an action that lasts as long as its input also one that
+// ends with ".held".
 void addMembers(FieldTable& t, std::type_identity<ActionState>) {
   MERLIN_FIELD(t, ActionState, changed_ns, "ns");
   MERLIN_FIELD(t, ActionState, generation, "");
@@ -172,7 +173,7 @@ void addChannel(FieldTable& t, const std::string& name, std::size_t offset) {
   addMembers(t, std::type_identity<T>());
 }
 
-// Adds the first part of WallStats.
+// Adds the first part of the members of WallStats; addPace() adds the rest.
 void addWall(FieldTable& t) {
   t.slot("wall", offsetof(WallSegment, stats));
   MERLIN_FIELD(t, WallStats, updated_ns, "ns");
@@ -196,7 +197,7 @@ void addWall(FieldTable& t) {
   MERLIN_FIELD(t, WallStats, head_room, "");
 }
 
-// Adds the rest of WallStats.
+// Adds the members of WallStats that addWall() leaves out, to the slot that addWall() began.
 void addPace(FieldTable& t) {
   MERLIN_FIELD(t, WallStats, cost_fixed_ms, "ms");
   MERLIN_FIELD(t, WallStats, cost_coefficient_us, "us");
@@ -234,7 +235,7 @@ void addTrace(FieldTable& t) {
   MERLIN_FIELD(t, FrameTrace, cost, "");
   MERLIN_FIELD(t, FrameTrace, moving, "");
   MERLIN_FIELD(t, FrameTrace, late, "");
-  t.add<std::uint32_t>("steps", offsetof(FrameTrace, count), "");  // NAME.count is the channel's
+  t.add<std::uint32_t>("steps", offsetof(FrameTrace, count), "");  // "count" is the channel's
   const auto step = [&t]<typename Member>(Member TraceStep::*, const char* name, std::size_t at,
                                           const char* unit) {
     t.addOfEach<Member>(name, offsetof(FrameTrace, steps) + at, unit,
@@ -345,7 +346,8 @@ template std::vector<Field> channelFields<GpioSample>(const std::string&, std::s
 
 namespace {
 
-// `alias`: whether its postures have the names of the first glove's as well.
+// `alias`: whether the slots of postures are also added as "posture" and "posture_state", without
+// the glove's name.
 void addGlove(FieldTable& t, const std::string& name, std::size_t offset, bool alias) {
   addChannel<GloveSample>(t, name, offset + offsetof(GloveSlots, samples));
   for (const std::string& prefix : {name + ".", std::string()}) {

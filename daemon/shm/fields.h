@@ -1,5 +1,6 @@
-// The tables that describe the segments to readers that do not include layout.h: name, type, offset
-// and unit of every field. They are stored in the segments and printed by `merlin shm dump`.
+// Builds the tables that describe the segments to readers that do not include layout.h: name, type,
+// offset and unit of every field. The tables are stored in the segments; `merlin shm dump` prints
+// them.
 #pragma once
 
 #include <string>
@@ -9,7 +10,8 @@
 
 namespace merlin::shm {
 
-// What the slots of the devices' segment are named after.
+// Names of the configured devices and hands, from which the names of the slots in the devices'
+// segment are formed.
 struct SlotNames {
   struct Device {
     std::string name;
@@ -19,17 +21,18 @@ struct SlotNames {
   std::vector<std::string> hands;
 };
 
-// The fields of these slots: for each device NAME.health and actions.NAME; for a glove NAME,
-// NAME.posture and NAME.posture_state, and for the first glove also posture and posture_state; for
-// a tracker NAME1 to NAME4, by station, and NAME for its frames; for a ball, a touch frame or a
-// hand NAME; and gpio, gpio.health and actions.panel. REQUIRES: DevicesSegment has room for all of
-// them.
+// Returns the table of the devices' segment. Its slots are: for each device NAME.health and
+// actions.NAME; for a glove also NAME, NAME.posture and NAME.posture_state, and for the first glove
+// also posture and posture_state; for a tracker NAME1 to NAME4, by station, and NAME for the frames
+// of its stations; for a ball or a touch surface NAME; for a hand NAME, NAME.gesture and
+// actions.NAME; and gpio, gpio.health and actions.panel. REQUIRES: DevicesSegment has room for all
+// of them.
 std::vector<Field> devicesFields(const SlotNames& names);
 std::vector<Field> wallFields();
 
-// The fields of one slot with the name `name` at `offset` in a segment, as in the tables above:
-// slotFields() for a SeqSlot<T>, channelFields() for a Channel<T>. T is a type that the devices'
-// segment contains.
+// Return the fields of one slot with the name `name` at `offset` [bytes] in a segment, as
+// devicesFields() lists them: slotFields() for a SeqSlot<T>, channelFields() for a Channel<T>. T is
+// the type of a slot of the devices' segment.
 template <typename T>
 std::vector<Field> slotFields(const std::string& name, std::size_t offset);
 template <typename T>

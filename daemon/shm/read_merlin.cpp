@@ -1,6 +1,6 @@
-// Follows MERLIN's space ball from a C++20 program that includes the layout, and prints each sample
-// with its time of day: read_merlin_cpp SEGMENT COUNT, SEGMENT as "merlin-devices". No library of
-// MERLIN's is needed. Build, at the top of the source tree:
+// Example of a C++20 client that includes layout.h: follows the space ball and prints COUNT samples
+// with their time. Usage: read_merlin_cpp SEGMENT COUNT, where SEGMENT is e.g. "merlin-devices". It
+// needs no library of MERLIN. To build it, run at the top of the source tree:
 //     g++ -std=c++20 -O2 -I. daemon/shm/read_merlin.cpp -o read_merlin_cpp
 #include <cstdio>
 #include <cstdlib>
@@ -18,7 +18,7 @@ using merlin::shm::Channel;
 using merlin::shm::Field;
 using merlin::shm::Header;
 
-// A mapped segment; null if there is none that this program knows.
+// A mapped segment. All members are null or 0 if it could not be mapped or has an unknown layout.
 struct Segment {
   const char* bytes = nullptr;
   std::uint64_t size = 0;
@@ -42,8 +42,9 @@ static Segment map(const std::string& name) {
   return known ? Segment{static_cast<const char*>(memory), size, header} : Segment{};
 }
 
-// The channel whose samples the table of fields has under this name; null if there is none of this
-// size. Its place may differ from one release to the next.
+// Returns the channel whose samples have this name in the table of fields; null if there is none,
+// or if its samples have another size than T. The offset of a channel may differ between releases,
+// so it is taken from the table.
 template <typename T>
 static const Channel<T>* find(const Segment& segment, const std::string& name) {
   for (std::uint32_t i = 0; segment.header && i < segment.header->field_count; ++i) {
@@ -70,14 +71,14 @@ int main(int argc, char** argv) {
   std::uint64_t next = ball.count();
   const std::uint64_t end = next + std::strtoull(argv[2], nullptr, 10);
   while (next < end) {
-    ball.wait(next, {.tv_sec = 2, .tv_nsec = 0});  // returns as soon as there is a sample `next`
+    ball.wait(next, {.tv_sec = 2, .tv_nsec = 0});  // returns as soon as sample `next` is there
     if (ball.count() == next) {
       std::fprintf(stderr, "read_merlin_cpp: no sample for 2 s\n");
       return 1;
     }
     for (; next < ball.count() && next < end; ++next) {
       const auto sample = ball.at(next);
-      if (!sample) continue;  // more than 256 samples behind: it was overwritten
+      if (!sample) continue;  // overwritten: this program is 256 samples behind
       const double utc_s =
           1e-9 * static_cast<double>(sample->received_ns + segment.header->realtime_offset_ns);
       std::printf("ball %llu at %.3f: %g %g %g\n", static_cast<unsigned long long>(next), utc_s,

@@ -46,7 +46,7 @@ void fillHeader(Header& h, std::size_t size, std::uint64_t generation, Timestamp
   h.version = kVersion;
   std::atomic_ref(h.magic).store(
       kMagic,
-      std::memory_order_release);  // last: a reader sees the complete header or none
+      std::memory_order_release);  // stored last, so that a reader sees the complete header or none
 }
 
 Result<Ok> checkHeader(const SharedMemory& memory, std::size_t least_size,

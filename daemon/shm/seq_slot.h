@@ -1,4 +1,5 @@
-// SeqSlot: passes the newest value of T from one writer to any number of readers in any process.
+// SeqSlot: passes the newest value of a type from one writer to any number of readers in any
+// process (a seqlock).
 #pragma once
 
 #include <array>
@@ -10,27 +11,28 @@
 
 namespace merlin::shm {
 
-// publish() is wait-free; read() never blocks the writer. A reader gets one complete published
-// value or nothing, never a mix of two. There is no queue: a value is lost when the next one is
-// published.
+// publish() is wait-free, and read() never blocks the writer. A reader gets one complete published
+// value or nothing, never a mix of two values. There is no queue: each value overwrites the one
+// before it.
 //
-// The payload is an array of atomics rather than plain memory, so that a read during a write is not
-// undefined behaviour but is detected and repeated (and ThreadSanitizer accepts it).
-// Source: H.-J. Boehm, "Can Seqlocks Get Along With Programming Language Memory Models?", 2012.
+// The payload is an array of atomics rather than plain memory, so that a read that overlaps a write
+// is no data race: it is detected and repeated, and ThreadSanitizer accepts it. Source: H.-J.
+// Boehm, "Can Seqlocks Get Along With Programming Language Memory Models?", 2012.
 //
-// In memory: sequence number (u64, odd while a value is being written), then T, padded to 8 bytes.
+// Memory layout: the sequence number (u64, odd while a value is being written, 0 before the first
+// one), then T, padded to a multiple of 8 bytes.
 template <typename T>
 class SeqSlot {
   static_assert(std::is_trivially_copyable_v<T>, "T crosses a process border");
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free, "a lock would not");
 
  public:
-  // REQUIRES: called from one thread only.
+  // Replaces the value. REQUIRES: only one thread calls this.
   void publish(const T& value) noexcept {
     Words words{};
     std::memcpy(words.data(), &value, sizeof value);
-    // Odd while a value is being written. It may already be odd here if the memory was restored
-    // from a copy made during a write (SharedMemory::mend()).
+    // The sequence number is odd while a value is being written. It may already be odd here if the
+    // memory was restored from a copy that was made during a write (SharedMemory::mend()).
     const auto odd = (sequence_.load(std::memory_order_relaxed) + 1) | 1;
     sequence_.store(odd, std::memory_order_relaxed);
     for (std::size_t i = 0; i < kWords; ++i) {
@@ -39,8 +41,8 @@ class SeqSlot {
     sequence_.store(odd + 1, std::memory_order_release);
   }
 
-  // The last published value; nothing before the first publish(), or if kTries reads in a row met a
-  // write (for example after the writer died while writing).
+  // Returns the last published value; nothing before the first publish(), or if kTries attempts in
+  // a row overlapped a write (for example because the writer died while writing).
   std::optional<T> read() const noexcept {
     for (int i = 0; i < kTries; ++i) {
       const auto before = sequence_.load(std::memory_order_acquire);
@@ -51,7 +53,7 @@ class SeqSlot {
         words[w] = payload_[w].load(std::memory_order_acquire);
       }
       if (sequence_.load(std::memory_order_relaxed) != before) continue;
-      T value;  // NOLINT(*-member-init): copied over
+      T value;  // NOLINT(*-member-init): memcpy fills it
       std::memcpy(&value, words.data(), sizeof value);
       return value;
     }

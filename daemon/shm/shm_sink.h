@@ -1,4 +1,5 @@
-// ShmSink: writes the samples and the health of one device into the devices' segment.
+// ShmSink and ShmHealthSink: write the samples and the health of one device into the devices'
+// segment.
 #pragma once
 
 #include "daemon/shm/layout.h"
@@ -6,11 +7,12 @@
 
 namespace merlin::shm {
 
-// Writes the samples of a device's kind into its slots; those of other kinds, which it has no slots
-// for, are dropped. Called from the device's thread only.
+// Writes the samples of one device into its slots. Samples of another kind than the device's are
+// dropped. Only the device's thread may call it.
 class ShmSink final : public SampleSink {
  public:
-  // `place`: which device of its kind it is, counted from 0. REQUIRES: the segment has room for it.
+  // `place`: index of the device among those of its kind, from 0. REQUIRES: the segment has slots
+  // for this index.
   ShmSink(DevicesSegment& segment, SampleKind kind, std::size_t place) {
     if (kind == SampleKind::kGlove) glove_ = &segment.glove[place];
     if (kind == SampleKind::kTracker) tracker_ = &segment.tracker[place];

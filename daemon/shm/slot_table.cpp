@@ -12,10 +12,12 @@
 namespace merlin::shm {
 namespace {
 
-// The name of a field; the table may be anybody's, so it may lack the NUL at its end.
+// Returns the name of a field. The name may lack its final NUL, because any program may have
+// written the table.
 std::string nameOf(const Field& f) { return std::string(textIn(f.name)); }
 
-// Whether both describe the same values at the same place. Units are for people.
+// Whether both entries describe the same values at the same place. The unit is not compared: it is
+// only informative.
 bool agree(const Field& a, const Field& b) {
   return std::memcmp(a.type, b.type, sizeof a.type) == 0 && a.count == b.count &&
          a.step == b.step && a.offset == b.offset && a.slot == b.slot && a.ring == b.ring &&
@@ -48,7 +50,7 @@ Result<SlotTable> SlotTable::read(std::span<const std::byte> segment, std::strin
   }
   SlotTable table(segment, std::move(name));
   for (std::uint32_t i = 0; i < place.count; ++i) {
-    Field f;  // NOLINT(*-member-init): copied over
+    Field f;  // NOLINT(*-member-init): memcpy fills it
     std::memcpy(&f, segment.data() + place.offset + std::size_t{i} * place.field_size, sizeof f);
     if (table.fields_.emplace(nameOf(f), f).second) table.names_.push_back(nameOf(f));
   }
@@ -75,8 +77,8 @@ Error SlotTable::malformed(const std::string& slot, const std::string& what) con
                       name_, slot, what)};
 }
 
-// The table says where the slot's first field is, and thereby where the slot is. All its fields are
-// then compared with those that a slot of this type has at that place.
+// The offset of the slot follows from the offset of its first field in the table. All fields in the
+// table are then compared with those that a slot of this type has at this offset.
 Result<std::size_t> SlotTable::locate(const std::string& slot, Describe describe, std::size_t size,
                                       std::size_t alignment) const {
   constexpr std::size_t kAnywhere = 1 << 16;

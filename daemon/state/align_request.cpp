@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Takes words off the front of a text; what is left is a name.
+// Splits words off the front of a text; the rest of it is the name of an output.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
@@ -30,7 +30,7 @@ class Words {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     const bool good = error == std::errc() && end == word.data() + word.size() &&
-                      std::abs(value) <= most;  // false for NaN
+                      std::abs(value) <= most;  // also rejects NaN
     return good ? std::optional(value) : std::nullopt;
   }
   std::optional<int> index() {

@@ -1,4 +1,4 @@
-// The argument of the command `align`, and the answer to it, which is JSON. Pure.
+// Parses the argument of the command `align`, and formats the answer to it as JSON. Pure.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct MoveRequest {
 struct ResetRequest {
   std::string output;
 };
-// Selects the place that actions of bound inputs move from then on.
+// Selects the corner that bound inputs (align_left ...) move from then on.
 struct SelectRequest {
   std::string output;
   Place place;
@@ -31,38 +31,41 @@ struct RedoRequest {};
 using AlignRequest =
     std::variant<ListRequest, MoveRequest, ResetRequest, SelectRequest, UndoRequest, RedoRequest>;
 
-// All forms, for messages. An output's name is last, since it may contain spaces.
+// All forms of the argument, for messages. The name of an output comes last, since it may contain
+// spaces.
 inline constexpr const char* kAlignForms =
     "list | move CORNER DX DY OUTPUT | point COLUMN ROW DX DY OUTPUT | select CORNER OUTPUT | "
     "reset OUTPUT | undo | redo";
 
-// Errors: kInvalidArgument, with what is allowed.
+// Parses the argument of the command `align`. Errors: kInvalidArgument; the message lists the
+// allowed forms.
 Result<AlignRequest> parseAlignRequest(std::string_view argument);
 
-// The request as the command's argument.
+// Returns the argument of the command that parseAlignRequest() parses to this request.
 std::string textOf(const AlignRequest& request);
 
-// The alignment of one output.
+// One output in the answer to `align`.
 struct ReportedOutput {
   OutputForm form;
-  std::vector<double> configured;  // its corners in the configuration, x and y each
-  bool pending = false;            // the last change is not shown yet
+  std::vector<double> configured;  // configured offsets of its 4 corners: x, y of each [px]
+  bool pending = false;            // whether its last change is not shown yet
   SeenAxes axes{};
 };
 
 struct AlignReport {
   std::vector<ReportedOutput> outputs;
-  std::string selected;  // name of an output; empty if none can be aligned
+  std::string selected;  // name of the selected output; empty if none can be aligned
   Place selected_place;
-  std::string done;       // what an undo or redo did; else empty
-  std::string test_card;  // that is shown; else empty
+  std::string done;       // description of an undo or redo that was just executed; else empty
+  std::string test_card;  // name of the test card that is shown; empty: none
 };
 
-// {"outputs": [{"name", "width", "height", "mesh": [COLUMNS, ROWS], "pending", "seen": {"right":
-// [X, Y], "down": [X, Y]} (steps on the wall, in pixels of the signal), "corners":
-// {"top_left": {"configured": [X, Y], "moved": [X, Y]}, ...}, "points": [{"column", "row", "moved":
-// [X, Y]}]}], "selected": {"output", "place"}, "undo": N, "redo": N, "done": "", "test_card": ""};
-// [px].
+// Returns the answer to the command `align`, a JSON object: {"outputs": [{"name", "width",
+// "height", "mesh": [COLUMNS, ROWS], "pending", "seen": {"right": [X, Y], "down": [X, Y]},
+// "corners": {"top_left": {"configured": [X, Y], "moved": [X, Y]}, ...}, "points": [{"column",
+// "row", "moved": [X, Y]}]}], "selected": {"output", "place"}, "undo": N, "redo": N, "done": "",
+// "test_card": ""}. "seen" has the directions of SeenAxes. All lengths are in pixels of the
+// output's signal. REQUIRES: `configured` of each output has 8 elements.
 std::string reportText(const AlignReport& report, const Alignment& alignment);
 
 }  // namespace merlin::state

@@ -11,7 +11,8 @@ namespace merlin::state {
 namespace {
 
 double thousandths(double px) {
-  return std::clamp(std::round(px * 1000) / 1000 + 0.0, -kMostSum, kMostSum);  // + 0.0: no -0
+  // Adding 0.0 turns -0 into 0.
+  return std::clamp(std::round(px * 1000) / 1000 + 0.0, -kMostSum, kMostSum);
 }
 
 Offset sum(const Offset& a, const Offset& b) {
@@ -69,7 +70,7 @@ OutputAlignment& Alignment::entry(const OutputForm& form) {
   return outputs.emplace_back(OutputAlignment{form, {}});
 }
 
-// Forgets outputs until there is room for another one.
+// Removes outputs, with their steps, until one more fits into kMostAligned.
 void Alignment::makeRoom() {
   while (outputs.size() >= kMostAligned) {
     const auto unmoved =
@@ -86,8 +87,8 @@ void Alignment::add(Step step) {
   forgetSteps(kMostSteps, kMostChanges);
 }
 
-// Where all steps are undone, the last one is forgotten: the others cannot be redone without the
-// first one.
+// If all steps are undone, the last one is removed, since the others can be redone without it but
+// not without the first one.
 void Alignment::forgetSteps(std::size_t most, std::size_t most_changes) {
   while (steps.size() > most || changes() > most_changes) {
     if (done == 0) {

@@ -3,7 +3,8 @@
 namespace merlin::state {
 
 Offset SeenAxes::onSignal(const Offset& o) const {
-  return {right.x * o.x + down.x * o.y + 0.0, right.y * o.x + down.y * o.y + 0.0};  // never -0
+  // Adding 0.0 turns -0 into 0.
+  return {right.x * o.x + down.x * o.y + 0.0, right.y * o.x + down.y * o.y + 0.0};
 }
 
 Offset SeenAxes::seen(const Offset& o) const {

@@ -1,6 +1,6 @@
-// SeenAxes: how an output's signal is turned or mirrored before people see it, as for a projector
-// that hangs upside down or projects from behind. People in front of the wall mean left and right
-// as they see them. Pure.
+// SeenAxes: how an output's signal is turned or mirrored before people see it, for example by a
+// projector that hangs upside down or projects from behind. It converts between the directions that
+// people in front of the wall see and those in the signal. Pure.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,17 @@
 namespace merlin::state {
 
 struct SeenAxes {
-  // The direction in the signal of a step to the right, and of a step down, on the wall: in each,
-  // one of x and y is 1 or -1, the other 0.
+  // `right`: direction in the signal of a step to the right on the wall; `down`: that of a step
+  // down. In each, one of x and y is 1 or -1 and the other one is 0.
   Offset right{1, 0}, down{0, 1};
 
   bool operator==(const SeenAxes&) const = default;
-  // Converts an offset on the wall to one in the signal, and back.
+  // onSignal() converts an offset as seen on the wall to an offset in the signal; seen() converts
+  // it back.
   Offset onSignal(const Offset& seen) const;
   Offset seen(const Offset& on_signal) const;
-  // The signal's corner that is seen in a corner of the wall; in the order of kCornerNames.
+  // Returns the index of the signal's corner that is seen as the corner `seen` of the wall. Both
+  // are indexes into kCornerNames.
   std::size_t cornerOnSignal(std::size_t seen) const;
 };
 

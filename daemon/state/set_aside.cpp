@@ -14,7 +14,7 @@ std::size_t entriesOf(const Alignment& alignment) {
   return alignment.moved() + alignment.changes() + alignment.steps.size();
 }
 
-// Erases the oldest alignment of those that `which` selects while there are more than `most`.
+// Erases the oldest of the alignments that `which` selects until at most `most` of these are left.
 template <typename Which>
 void keepNewest(std::vector<Alignment>& alignments, std::size_t most, const Which& which) {
   auto count = static_cast<std::size_t>(std::count_if(alignments.begin(), alignments.end(), which));

@@ -1,5 +1,4 @@
-// SetAside: alignments that do not fit their outputs at present, kept for when they fit again.
-// Pure.
+// SetAside: keeps alignments that do not fit their outputs at present until they fit again. Pure.
 #pragma once
 
 #include <cstddef>
@@ -11,27 +10,29 @@
 
 namespace merlin::state {
 
-// Limits, so that the state file stays far below what a file of JSON may have.
-inline constexpr std::size_t kMostAsideOfOutput = 4;  // alignments of one output
-inline constexpr std::size_t kMostAside = 64;         // alignments of all outputs
-// Moved places, steps and their changes, of all together. A single alignment may have this many
-// places and changes, and its steps besides.
+// Limits, so that the state file stays far below the maximum size of a JSON file.
+inline constexpr std::size_t kMostAsideOfOutput = 4;  // maximum number of alignments of one output
+inline constexpr std::size_t kMostAside = 64;         // maximum number of alignments of all outputs
+// Maximum number of moved places, steps and changes, summed over all alignments. A single alignment
+// may have as many places and changes together; its steps are then not counted.
 inline constexpr std::size_t kMostAsideEntries = 4000;
 
-// For messages: the end of the sentence which says that an alignment is set aside.
+// End of the message which says that an alignment is set aside.
 inline constexpr const char* kComesBack =
     "it comes back, with its undo steps, when the output is again as it was then";
 
 class SetAside {
  public:
-  // Adds the alignment of one output, as the newest one. Beyond the limits the oldest ones are
-  // forgotten, of a single one the oldest steps. An alignment that is nothing is not added.
+  // Adds the alignment of one output as the newest one, unless Alignment::isNothing(). The oldest
+  // alignments beyond the limits are removed. If `alignment` alone exceeds a limit, its oldest
+  // steps are removed. REQUIRES: it has one output.
   void add(Alignment alignment);
 
-  // Removes the newest alignment that `fits`, and returns it; nothing if there is none.
+  // Removes the newest alignment for which `fits` returns true, and returns this alignment; nothing
+  // if there is none.
   std::optional<Alignment> take(const std::function<bool(const Alignment&)>& fits);
 
-  // Each of one output; the oldest first.
+  // Returns the alignments, each of one output, oldest first.
   const std::vector<Alignment>& alignments() const { return alignments_; }
 
  private:

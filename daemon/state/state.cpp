@@ -16,14 +16,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestName = 64, kLongestPath = 4096;
-constexpr int kLargest = 1 << 20;  // the largest size, and number of points
+constexpr int kLargest = 1 << 20;  // largest size [px], and largest number of columns or rows
 constexpr double kLeastRate = 1, kMostRate = 240;
-constexpr std::int64_t kMostMinutes = 5'000'000'000;  // of local time since 1970
+constexpr std::int64_t kMostMinutes = 5'000'000'000;  // minutes since 1970, local time
 constexpr const char* kVersionKey = "merlin_state";
 
 Json textOf(const Offset& o) { return Json::array({o.x, o.y}); }
 
-// A corner by its name, a point of the mesh as its column and row.
+// Returns the name for a corner, [COLUMN, ROW] for a point of the mesh.
 Json textOf(const Place& place) {
   if (place.of == Place::Of::kPin) return nameOf(place);
   return Json::array({place.column, place.row});
@@ -55,7 +55,7 @@ std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// A pair of numbers within these limits.
+// Returns a pair of numbers. Adds a fault if one of them is outside `low` to `high`.
 std::pair<double, double> pairOf(JsonView view, double low, double high) {
   if (view.expectArray(2, 2) != 2) return {};
   const double first = view.at(std::size_t{0}).number(low, high);
@@ -125,7 +125,7 @@ Step stepOf(JsonView view, const Alignment& alignment) {
   return step;
 }
 
-// "on" or "off".
+// Returns true for "on" and false for "off"; anything else is a fault.
 bool switchOf(JsonView view) {
   const std::string word = view.text(kLongestName);
   if (word != "on" && word != "off") view.addFault("on or off");
@@ -192,7 +192,7 @@ State stateOf(JsonView root) {
   return state;
 }
 
-// Each output and each step has a line of its own.
+// Returns the alignment as JSON, with a line for each output and each step.
 std::string textOf(const Alignment& alignment) {
   std::vector<std::string> outputs, steps;
   for (const auto& output : alignment.outputs) outputs.push_back(lineOf(textOf(output)));
@@ -220,7 +220,7 @@ std::string stateText(const State& state) {
   if (!state.content.empty()) text += fmt::format("\"content\": {},\n", lineOf(state.content));
   if (state.playlist_off) text += "\"playlist\": \"off\",\n";
   if (const auto& p = state.projectors) {
-    // A clock whose battery is empty may be before 1970; what is written has to be readable.
+    // A clock with an empty battery may show a time before 1970, which parseState() would refuse.
     const auto minute = std::clamp<std::int64_t>(p->local_minute, 0, kMostMinutes);
     text += fmt::format("\"projectors\": {{\"switched\": \"{}\", \"local_minute\": {}}},\n",
                         p->on ? "on" : "off", minute);

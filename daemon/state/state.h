@@ -1,5 +1,5 @@
-// State: what people have changed while the daemon runs, which a restart restores. The
-// configuration is not changed; the daemon keeps the state in a file of its own. Pure.
+// State: the changes that people make while the daemon runs, and that a restart restores. They do
+// not change the configuration; the daemon stores them in a file of its own. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,35 +13,36 @@
 
 namespace merlin::state {
 
-// Version of the file's form. A program reads files of its own version and of older ones. Version 2
-// added `playlist` and `projectors`, version 3 `set_aside`.
+// Version of the format of the state file. A program reads files of its own version and of older
+// ones. Version 2 added `playlist` and `projectors`, version 3 `set_aside`.
 inline constexpr std::uint64_t kStateVersion = 3;
 
-// The last switching of all projectors by a person.
+// The last time that a person switched all projectors.
 struct ProjectorSwitch {
   bool on = false;
-  std::int64_t local_minute = 0;  // when: minutes of the local calendar since 1970-01-01 00:00
+  std::int64_t local_minute = 0;  // time in minutes since 1970-01-01 00:00, by the local calendar
 };
 
 struct State {
   Alignment alignment;
-  std::optional<double> rate_hz;  // set by hand; none: the configured one
-  std::string content;            // path of the content that is shown; empty: the first content
-  bool playlist_off = false;      // set by `merlin playlist off`, until `on`
+  std::optional<double> rate_hz;  // frame rate set by command; nothing: the configured one
+  std::string content;            // path of the content shown; empty: the first content
+  bool playlist_off = false;      // true from `merlin playlist off` until `on`
   std::optional<ProjectorSwitch> projectors;  // nothing: nobody has switched them
   SetAside set_aside{};
 };
 
-// The alignment that an output of the form `now` has at the next start: its own, or one that was
-// set aside; null if there is none that fits.
+// Returns the alignment that an output of the form `now` would have after a start: the current one
+// of this output, otherwise the newest one that was set aside; null if none fits.
 const OutputAlignment* alignmentFor(const State& state, const OutputForm& now);
 
-// The file's text: JSON, the version first.
+// Returns the text of the state file: JSON, with the version first.
 std::string stateText(const State& state);
 
-// Strict: unknown keys, numbers out of range, and alignment steps of an output that the file does
-// not list are errors, since they show that the file was not written completely. `file`: its name,
-// for messages. Errors: kUnsupported (a newer version), kMalformed (everything else).
+// Parses the text of a state file. Unknown keys, numbers out of range, and alignment steps of an
+// output that the file does not list are errors, since such a file was not written by merlind or is
+// damaged. `file`: the name of the file, for messages. Errors: kUnsupported (a newer version),
+// kMalformed (everything else).
 Result<State> parseState(std::string_view text, const std::string& file);
 
 }  // namespace merlin::state

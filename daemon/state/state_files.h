@@ -1,4 +1,5 @@
-// Port: where the state is kept. Implemented by StateFolder and by a fake in tests.
+// StateFiles: port (an interface) for the place where the state is stored. Implemented by
+// StateFolder and by a fake in tests.
 #pragma once
 
 #include <string>
@@ -7,26 +8,26 @@
 
 namespace merlin::state {
 
-// Thread-bound to one thread at a time.
+// Must not be used by two threads at the same time.
 class StateFiles {
  public:
   virtual ~StateFiles() = default;
 
-  // Return the text that was written last, and the one before it. Errors: kNotFound (there is
-  // none), kIo, kMalformed (not a regular file).
+  // read() returns the text that was written last, readPrevious() the text before it. Errors:
+  // kNotFound (there is none), kIo, kMalformed (not a regular file).
   virtual Result<std::string> read() = 0;
   virtual Result<std::string> readPrevious() = 0;
 
-  // Replaces the text that was written last, which becomes the previous one. Even after an error,
-  // or if the process or the machine stops at any moment, at least one of the two is complete.
-  // Waits for the disk. Errors: kNotFound, kIo.
+  // Writes `text`; the text that was written last becomes the previous one. At least one of the two
+  // is complete even after an error, or if the process or the machine stops at any moment. Waits
+  // for the disk. Errors: kNotFound, kIo.
   virtual Result<Ok> write(const std::string& text) = 0;
 
-  // Puts the text that was written last aside, because it is unusable and must not become the
-  // previous one. Errors: kIo.
+  // Moves the text that was written last to another name, because it is unusable and must not
+  // become the previous one. Errors: kIo.
   virtual Result<Ok> putAside() = 0;
 
-  // Name of the place, for messages.
+  // Returns the name of the place, such as the path of the file, for messages.
   virtual const std::string& name() const = 0;
 };
 

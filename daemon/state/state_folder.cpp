@@ -19,13 +19,13 @@
 namespace merlin::state {
 namespace {
 
-constexpr const char* kServiceFolder = "/var/lib/merlin";  // of the installed services
+constexpr const char* kServiceFolder = "/var/lib/merlin";  // state folder of the installed services
 
 Error failed(const std::string& path, int error) {
   return {Errc::kIo, fmt::format("{}: {}", path, std::strerror(error))};
 }
 
-// Reads at most one byte more than a state may have, so that the parser refuses a longer file.
+// Reads at most one byte more than a JSON file may have, so that the parser refuses a longer file.
 Result<std::string> textOf(const std::string& path) {
   const auto copy = FileCopy::read(path, kMostJsonBytes + 1);
   if (!copy) return copy.error();
@@ -37,7 +37,7 @@ std::string folderOf(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-// Writes the folder's entries to the disk, so that a rename outlives a power failure.
+// Writes the folder's entries to the disk, so that a rename survives a power failure.
 Result<Ok> syncFolder(const std::string& folder) {
   const UniqueFd fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd.valid() && ::fsync(fd.get()) == 0) return Ok{};
@@ -49,8 +49,9 @@ Result<Ok> rename(const std::string& from, const std::string& to) {
   return failed(to, errno);
 }
 
-// Gives the file `from` the second name `to`, in place of the file that had it. `meanwhile`: a name
-// that it has in between.
+// Gives the file `from` the second name `to`, which replaces a file of that name. `meanwhile`: a
+// temporary name, which is needed because link() replaces no file. Succeeds without any effect if
+// `from` does not exist.
 Result<Ok> linkAs(const std::string& from, const std::string& to, const std::string& meanwhile) {
   ::unlink(meanwhile.c_str());
   if (::link(from.c_str(), meanwhile.c_str()) != 0) {
@@ -60,13 +61,13 @@ Result<Ok> linkAs(const std::string& from, const std::string& to, const std::str
   return rename(meanwhile, to);
 }
 
-// The first folder of a list such as systemd sets.
+// Returns the first folder of a list with ':' between the folders, as systemd sets it.
 std::string firstOf(std::string_view list) { return std::string(list.substr(0, list.find(':'))); }
 
 }  // namespace
 
 std::string stateFolder() {
-  // NOLINTBEGIN(concurrency-mt-unsafe): read once, at the start
+  // NOLINTBEGIN(concurrency-mt-unsafe): called before any thread starts
   if (const char* given = std::getenv("STATE_DIRECTORY"); given && *given) return firstOf(given);
   if (::geteuid() == 0) return kServiceFolder;
   if (const char* own = std::getenv("XDG_STATE_HOME"); own && *own == '/')
@@ -81,7 +82,8 @@ Result<std::string> StateFolder::read() { return textOf(path_); }
 
 Result<std::string> StateFolder::readPrevious() { return textOf(path_ + ".previous"); }
 
-// The new state is complete under a name of its own before the old one gets its second name.
+// The new state is written completely under a temporary name before the old state becomes the
+// previous one.
 Result<Ok> StateFolder::write(const std::string& text) {
   const std::string folder = folderOf(path_), next = path_ + ".next";
   std::error_code error;
@@ -110,9 +112,10 @@ std::string findStateFile(const std::string& wanted, const std::string& instance
 
 namespace {
 
-// The path of a kept configuration, such as "FOLDER/etc-merlin-merlin.json.wall.last-good". The
-// name has the whole path and the role, because configurations in several folders may have the same
-// name, and each role checks other files. A dash in the path is doubled.
+// Returns the path of a stored configuration, such as
+// "FOLDER/etc-merlin-merlin.json.wall.last-good". The name contains the whole path of the
+// configuration, because configurations in several folders may have the same name, and the role,
+// because each role checks other files. A '/' in the path becomes a dash, and a dash is doubled.
 std::string lastGoodIn(const std::string& folder, const std::string& configuration,
                        std::string_view role) {
   const std::string path = absolutePath(configuration);

@@ -1,5 +1,5 @@
-// StateFolder: keeps the state in a file, with the previous and a damaged one beside it; and
-// functions that determine where that file is.
+// StateFolder: stores the state in a file, with the previous one and a damaged one beside it. Also
+// functions that determine the paths of this file and of others that outlive merlind.
 #pragma once
 
 #include <string>
@@ -9,14 +9,16 @@
 
 namespace merlin::state {
 
-// FILE, FILE.previous, FILE.damaged; while it is being written also FILE.next and FILE.keep.
+// Stores the last state in FILE, the one before it in FILE.previous, and an unusable one, which
+// putAside() has moved, in FILE.damaged. FILE.next and FILE.keep exist only while the state is
+// being written.
 class StateFolder final : public StateFiles {
  public:
   explicit StateFolder(std::string path) : path_(std::move(path)) {}
 
   Result<std::string> read() override;
   Result<std::string> readPrevious() override;
-  // Makes the folder if it is missing.
+  // Creates the folder of the file if it is missing.
   Result<Ok> write(const std::string& text) override;
   Result<Ok> putAside() override;
   const std::string& name() const override { return path_; }
@@ -25,34 +27,35 @@ class StateFolder final : public StateFiles {
   std::string path_;
 };
 
-// The folder for everything that has to outlive merlind: the folder that systemd sets
-// (StateDirectory=), else /var/lib/merlin for root, else $XDG_STATE_HOME/merlin or
-// ~/.local/state/merlin. Empty if there is no such folder, since this user has no home. Reads the
-// environment: to be called before any thread starts.
+// Returns the folder for everything that has to outlive merlind: $STATE_DIRECTORY, which systemd
+// sets (StateDirectory=); else /var/lib/merlin for root; else $XDG_STATE_HOME/merlin; else
+// $HOME/.local/state/merlin. Empty if none of these variables is set. Reads the environment: to be
+// called before any thread starts.
 std::string stateFolder();
 
-// The file that is used: `wanted`, or, if that is empty, INSTANCE.state.json in stateFolder(). A
-// process without a wall has a file of its own, with ".devices" appended, since the process of the
-// wall may have the other. Empty if there is no folder. To be called before any thread starts.
+// Returns the path of the state file: `wanted`, or, if that is empty, INSTANCE.state.json in
+// stateFolder(); empty if there is no folder. For a process without a wall, ".devices" is appended,
+// since the process with the wall may use the other file. To be called before any thread starts.
 std::string stateFile(const std::string& wanted, const std::string& instance, bool has_wall);
 
-// The state file as found by a program other than merlind, which knows neither merlind's user nor
-// its environment: stateFile() of a process with a wall, or, if there is no such file, that of the
-// installed service in /var/lib/merlin if that exists.
+// Returns the path of the state file for a program other than merlind, which knows neither
+// merlind's user nor its environment: stateFile() of a process with a wall; or, if `wanted` is
+// empty and this file does not exist, the file of the installed service in /var/lib/merlin if that
+// exists. To be called before any thread starts.
 std::string findStateFile(const std::string& wanted, const std::string& instance);
 
-// The file in which a process of this role keeps the last good settings of this configuration: in
-// stateFolder(), or empty if there is none. Reads the environment: to be called before any thread
-// starts.
+// Returns the path of the file in which a process of this role stores the settings of this
+// configuration with which it ran last: a file in stateFolder(); empty if there is no folder.
+// `role`: "wall", "devices" or "all". Reads the environment: to be called before any thread starts.
 std::string lastGoodFile(const std::string& configuration, const std::string& role);
 
-// The existing files of that kind, as found by a program other than merlind: in stateFolder(), or,
-// if there are none, in the installed services' /var/lib/merlin.
+// Returns the files of lastGoodFile() that exist, one for each role, for a program other than
+// merlind: those in stateFolder(), or, if there are none, those of the installed services in
+// /var/lib/merlin.
 std::vector<std::string> findLastGoodFiles(const std::string& configuration);
 
-// The content folder that is used, as an absolute path, so that other programs can use it:
-// `wanted`, or, if that is empty, INSTANCE.shown beside the state's `file`, from stateFile(). Empty
-// if there is neither.
+// Returns the absolute path of the content folder: `wanted`, or, if that is empty, INSTANCE.shown
+// beside the state file `file` (from stateFile()). Empty if both are empty.
 std::string shownFolder(const std::string& wanted, const std::string& file,
                         const std::string& instance);
 

@@ -15,7 +15,8 @@ Result<State> parsed(const Result<std::string>& text, const std::string& name) {
   return parseState(*text, name);
 }
 
-// What is used instead of a damaged state file.
+// Returns the part of a message that says what is used instead of a damaged state file. `previous`:
+// the previous state, or the reason why it cannot be used.
 const char* outcomeOf(const Result<State>& previous) {
   if (previous) return "the previous state is used";
   if (previous.error().code == Errc::kNotFound)
@@ -52,7 +53,8 @@ void StateKeeper::load() {
   switch (last.error().code) {
     case Errc::kMalformed: return loadPrevious(last.error());
     case Errc::kNotFound:
-      // Also if merlind ended after putAside() and before the next write().
+      // The first start has no previous state either. If merlind ended between putAside() and the
+      // next write(), only the previous state exists.
       if (auto previous = parsed(files_->readPrevious(), files_->name()); previous) {
         state_ = *std::move(previous);
         notices_.push_back(
@@ -148,7 +150,7 @@ void StateKeeper::loop(const std::stop_token& stop, Progress& progress) {
     const bool last = stop.stop_requested();
     const Progress::Pause pause(progress);  // writing to a disk may take long
     save();
-    if (last) return;  // even if it failed
+    if (last) return;  // after the stop request, saving is tried only once
   }
 }
 

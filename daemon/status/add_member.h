@@ -7,8 +7,8 @@
 
 namespace merlin::status {
 
-// Returns `document` with the member `name`, at its end, if `value` is not empty. A text that is
-// not a JSON object is returned as it is.
+// Returns `document`, a JSON object, with the member `name` set to `value`; a new member is put at
+// the end. Returns `document` unchanged if `value` is empty or `document` is not a JSON object.
 std::string addMember(const std::string& document, const char* name, nlohmann::ordered_json value);
 
 }  // namespace merlin::status

@@ -57,7 +57,8 @@ Result<std::string> askOnce(const CommandAddress& server, const std::string& com
   }
 }
 
-// Message when a server on another machine does not answer: the cause remains open.
+// Returns the message for a server that does not answer; for one on another machine it lists
+// possible causes.
 std::string noAnswer(const CommandAddress& server, Duration timeout) {
   return fmt::format("{}: no answer within {:.1f} s{}", server.endpoint, toSeconds(timeout),
                      server.keys ? "; does it run there, with this server key, and does it list "
@@ -89,7 +90,7 @@ Result<std::string> ask(const CommandAddress& server, const std::string& command
 struct CommandSender::Connection {
   zmq::context_t context{1};
   std::optional<zmq::socket_t> socket;
-  CommandAddress server{""};      // to which the socket is connected
+  CommandAddress server{""};      // the server to which the socket is connected
   std::optional<Timestamp> sent;  // set while an answer is outstanding
 };
 

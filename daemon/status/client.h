@@ -17,10 +17,10 @@ namespace merlin::status {
 // Keys of an encrypted connection to a server on another machine.
 struct ClientKeys {
   std::string server_key;  // the server's public key
-  KeyPair own;             // the client's, whose public key the server lists
+  KeyPair own;             // the client's own keys; the server lists the public one
 };
 
-// Where a role's commands are accepted.
+// Address at which a role accepts commands.
 struct CommandAddress {
   std::string endpoint;            // "ipc://PATH"; with keys "tcp://HOST:PORT"
   std::optional<ClientKeys> keys;  // none: not encrypted
@@ -46,14 +46,15 @@ class CommandSender {
   CommandSender(const CommandSender&) = delete;
   CommandSender& operator=(const CommandSender&) = delete;
 
-  // Whether the last command was answered; only then another one can be sent.
+  // Whether no answer is outstanding; only then a command can be sent.
   bool isReady() const noexcept;
-  // Sends {"command": name}, with "argument" if it is not empty. REQUIRES: isReady(). Errors: kIo.
+  // Sends {"command": name}, with "argument" if it is not empty. If the message cannot be sent
+  // without waiting, it is dropped and isReady() stays true. REQUIRES: isReady(). Errors: kIo.
   Result<Ok> send(const CommandAddress& server, const std::string& command,
                   const std::string& argument, Timestamp now);
-  // The answer to the last command, once: the JSON text of "result"; nothing while there is none.
-  // Errors: kTimeout (no answer within kPatience), kInvalidArgument (the daemon refused the
-  // command), kIo.
+  // Returns the answer to the last command once, as the JSON text of "result"; nothing while it is
+  // outstanding. Errors: kTimeout (no answer within kPatience), kInvalidArgument (the daemon
+  // refused the command), kIo.
   std::optional<Result<std::string>> answer(Timestamp now);
 
   static constexpr Duration kPatience = std::chrono::seconds(2);

@@ -10,21 +10,21 @@
 
 namespace merlin::status {
 
-// A command. Its function returns the JSON value that becomes "result"; an Error becomes
-// {"ok": false, "error": ...}. Called in the server's thread.
+// One command that a socket accepts. Its function is called in the server's thread. It returns the
+// JSON value that becomes "result"; an Error becomes {"ok": false, "error": ...}.
 struct Command {
   std::string name, help;
   std::function<Result<std::string>()> run;
-  // Instead of `run`, for a command that needs the request's "argument", a text.
+  // If set, it is called instead of `run`, with the request's "argument", a text.
   std::function<Result<std::string>(const std::string& argument)> run_with = nullptr;
 };
 
-// The answer to a request {"command": NAME, "argument": TEXT}: {"ok": true, "result": ...} or
-// {"ok": false, "error": "..."}. Runs the command, in the calling thread. REQUIRES: the request has
-// at most 4 KiB, so that deep nesting cannot overflow the stack.
+// Runs the command of a request {"command": NAME, "argument": TEXT} in the calling thread and
+// returns the answer: {"ok": true, "result": ...} or {"ok": false, "error": "..."}. REQUIRES: the
+// request has at most 4 KiB, so that deep nesting cannot overflow the stack.
 std::string answerTo(std::string_view request, std::span<const Command> commands);
 
-// The answer to a request that failed.
+// Returns the answer to a request that failed: {"ok": false, "error": what}.
 std::string failure(std::string_view what);
 
 }  // namespace merlin::status

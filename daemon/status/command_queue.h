@@ -16,20 +16,22 @@ namespace merlin::status {
 // Thread-bound.
 class CommandQueue {
  public:
-  // `id`: the caller's, for the answer.
+  // A command that waits. `id`: a number of the caller's choice, which Answered gets with the
+  // answer.
   struct Waiting {
     std::uint64_t id = 0;
     std::string command, argument;
-    Timestamp until{};  // the command is given up at this time
+    Timestamp until{};  // if not sent by this time, the command fails: kTimeout
   };
-  // The JSON text of the command's result. Errors: kTimeout, kInvalidArgument (the role refused
-  // it), kIo, kNotFound (the role does not run).
+  // Called once for each command, with the JSON text of its result. Errors: kTimeout,
+  // kInvalidArgument (the role refused it), kIo, kNotFound (the role does not run).
   using Answered = std::function<void(std::uint64_t id, const Result<std::string>& answer)>;
 
   // Adds a command. Returns false if kMostWaiting commands wait already.
   bool add(Waiting command);
-  // Sends what can be sent to `command_endpoint` (empty: the role does not run) and passes answers
-  // on.
+  // Calls `answered` for each command that was answered or has failed, and sends the next command
+  // if none is outstanding. `command_endpoint`: where the role takes commands; empty: the role does
+  // not run, so all waiting commands fail.
   void update(const std::string& command_endpoint, Timestamp now, const Answered& answered);
 
   static constexpr std::size_t kMostWaiting = 16;

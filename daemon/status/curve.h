@@ -10,21 +10,21 @@
 
 namespace merlin::status {
 
-// Each key is 40 characters of Z85 (ZeroMQ RFC 32).
+// A key pair; each key is 40 characters of Z85 (ZeroMQ RFC 32).
 struct KeyPair {
   std::string public_key, secret_key;
 };
 
-// Errors: kUnsupported (a libzmq without CURVE).
+// Makes a new key pair. Errors: kUnsupported (a libzmq without CURVE).
 Result<KeyPair> makeKeyPair();
 
-// Writes or reads a file of two lines, "public KEY" and "secret KEY", which only its owner can
-// read. Errors, with the file's name: kNotFound, kIo, kMalformed.
+// Write and read a file of two lines, "public KEY" and "secret KEY". A written file can be read by
+// its owner only. Errors, with the file's name: kNotFound, kIo, kMalformed.
 Result<Ok> writeKeyPair(const std::string& path, const KeyPair& keys);
 Result<KeyPair> readKeyPair(const std::string& path);
 
-// Reads a file of public keys, one per line; '#' begins a comment. Errors: kNotFound, kIo,
-// kMalformed, with the file's name and the line.
+// Reads a file of public keys, one per line. Lines that begin with "# " are comments; text after a
+// key is ignored. Errors: kNotFound, kIo, kMalformed, with the file's name and the line.
 Result<std::vector<std::string>> readPublicKeys(const std::string& path);
 
 // Whether the text is a valid key.

@@ -16,15 +16,17 @@ namespace merlin::status {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// ISO 8601, to the microsecond: "2026-11-23T14:05:07.000250Z".
+// Writes a time, in nanoseconds since 1970 (UTC), as ISO 8601 to the microsecond:
+// "2026-11-23T14:05:07.000250Z".
 std::string isoUtc(std::int64_t utc_ns);
-// isoUtc() of `now`, a time of CLOCK_MONOTONIC, with the clock offset in the segment's header.
+// Converts `now`, a time of CLOCK_MONOTONIC, by the clock offset in the segment's header, and
+// writes it like isoUtc().
 std::string timeUtc(const shm::Header& header, Timestamp now);
 
 // Rounds to three decimals; 0 if not finite.
 double round3(double value);
 
-// The document as text. Texts of devices may be invalid UTF-8, which is replaced.
+// Writes the document as JSON text. Replaces invalid UTF-8, which texts of devices may contain.
 std::string dump(const OrderedJson& json);
 
 template <std::size_t N>
@@ -32,7 +34,8 @@ std::string text(const char (&field)[N]) {
   return std::string(textIn(field));
 }
 
-// Rounds to six decimals (a micrometre, a microradian), enough for measurements.
+// Returns the values as a JSON list, rounded to six decimals (a micrometre, a microradian), which
+// is enough for measurements; 0 for a value that is not finite.
 template <typename T>
 OrderedJson list(std::span<const T> values) {
   OrderedJson json = OrderedJson::array();

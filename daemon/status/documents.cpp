@@ -11,7 +11,8 @@
 namespace merlin::status {
 namespace {
 
-// Null while no hand points; "pixel" is null if no wall tile shows the place pointed at.
+// Returns the place that a hand points at; null while no hand points. Its "pixel" is null if no
+// wall tile shows that place.
 OrderedJson pointerJson(const shm::WallInteraction& h) {
   if (h.pointing == shm::WallInteraction::kNone) return nullptr;
   OrderedJson pixel = nullptr;
@@ -38,7 +39,8 @@ OrderedJson deviceJson(const DeviceHealth& h, Timestamp now) {
           {"bad_bytes", h.bad_bytes}};
 }
 
-// The current posture (after the minimum hold time), the one of the newest record, and its margin.
+// Returns the current posture of a glove (after the minimum hold time), its margin, and as "seen"
+// the posture of the newest sample; null before there are any.
 OrderedJson postureJson(const shm::DeviceSlots::Glove& glove, Timestamp now) {
   const auto held = glove.posture_state->read();
   const auto shown = glove.posture->newest();
@@ -54,7 +56,7 @@ OrderedJson postureJson(const shm::DeviceSlots::Glove& glove, Timestamp now) {
           {"age_s", ageSeconds(held->received_ns, now)}};
 }
 
-// The servers for other programs, with their counters of refused and closed connections.
+// Returns the servers for other programs, with their counters of refused and closed connections.
 OrderedJson serversJson(const std::vector<net::ServerHealth>& servers) {
   OrderedJson all = OrderedJson::object();
   for (const net::ServerHealth& s : servers) {
@@ -92,7 +94,8 @@ OrderedJson posturesJson(const shm::DeviceSlots& devices, Timestamp now) {
   return all;
 }
 
-// The last gesture of a hand; null while none is recognised.
+// Returns the last gesture of a hand; null if the hand has had no gesture recognition since the
+// start.
 OrderedJson gestureJson(const shm::DeviceSlots::Hand& hand, Timestamp now) {
   const auto g = hand.gesture->read();
   if (!g) return nullptr;
@@ -138,7 +141,7 @@ std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
 
 namespace {
 
-// In the order of shm::OutputStats::picture.
+// Names of the values of shm::OutputStats::picture, in their order.
 constexpr const char* kPictures[] = {"unchecked", "right", "black", "frozen", "torn", "foreign"};
 
 const char* pictureName(const shm::OutputStats& o) {
@@ -171,8 +174,8 @@ OrderedJson detailJson(const shm::WallStats& s) {
           {"unit", text(s.cost_unit)}};
 }
 
-// The content that is shown. `slide`: only for slides. `refused`: why the last requested content is
-// not shown.
+// Returns the content that is shown. "slide" is empty except for slides. "refused" says why the
+// last requested content is not shown.
 OrderedJson contentJson(const shm::WallSegment& segment, const shm::WallStats& stats,
                         const shm::WallInteraction& interaction) {
   const auto content = segment.content.read().value_or(shm::WallContent{});
@@ -192,7 +195,8 @@ const char* playlistName(const shm::WallInteraction& interaction) {
   return interaction.playlist == shm::WallInteraction::kPlaylistWaiting ? "waiting" : "off";
 }
 
-// Null if the event is not going to happen.
+// Returns a time in seconds, rounded; null if it is negative, which means that the event is not
+// going to happen.
 OrderedJson secondsUntil(float in_s) {
   if (in_s < 0) return nullptr;
   return round3(in_s);
@@ -273,7 +277,7 @@ std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                       {"stale_s", ageSeconds(s.updated_ns, now)},
                       {"outputs", outputsJson(segment)},
                       {"servers", serversJson(servers)}};
-  // The cost of a model also gets the name that people look for.
+  // The cost of a model is also given as "triangles", the name that people look for.
   if (text(s.cost_unit) == kTriangles) json["triangles"] = s.cost;
   if (renderer) json["renderer"] = rendererJson(*renderer);
   if (remote) {

@@ -13,24 +13,26 @@
 
 namespace merlin::status {
 
-// Topic "status" of the role devices: health of the devices, and the posture. About 1 kB.
+// Returns the document of the topic "status" of the role devices, about 1 kB: health of the devices
+// and of `servers`, postures and gestures.
 std::string devicesStatus(const shm::DeviceSlots& devices, Timestamp now,
                           const std::vector<net::ServerHealth>& servers = {});
 // The renderer that draws the wall.
 struct RendererState {
   std::string name{}, vendor{}, driver{}, library{};  // from OpenGL; library: "EGL" or "OSMesa"
   std::string node{}, pci{};                          // of a GPU; empty if unknown
-  bool software = true;                               // drawn by the CPU
+  bool software = true;                               // whether the CPU draws
   int contexts = 1;
   const char* read_back = "direct";  // or "asynchronous"
-  const char* correction = "cpu";    // where outputs' corrections are computed, or "gpu"
-  std::string correction_fault{};    // why they are not computed where set; empty: no fault
-  const char* scan_out = "copied";   // how corrected signals come to displays, or "drawn"
-  std::string scan_out_fault{};      // why one is copied that might be drawn; empty: none is
+  const char* correction = "cpu";    // or "gpu": where outputs' corrections are computed
+  std::string correction_fault{};    // why not where the setting says; empty: no fault
+  const char* scan_out = "copied";   // or "drawn": how corrected signals reach displays
+  std::string scan_out_fault{};      // why a signal is copied that could be drawn; empty: none is
 };
 
-// Topic "status" of the role wall. `remote`: another machine's devices, if the wall uses them.
-// `renderer`: null before it is known.
+// Returns the document of the topic "status" of the role wall. `servers`: health of its servers.
+// `remote`: another machine's devices; null if the wall uses none. `renderer`: null before it is
+// known.
 std::string wallStatus(const shm::WallSegment& segment, Timestamp now,
                        const std::vector<net::ServerHealth>& servers = {},
                        const shm::DeviceSlots* remote = nullptr,
@@ -45,21 +47,23 @@ struct ShownFolderState {
 // Returns `document`, a JSON object, with the member "shown_folder": {"path", "limit_bytes",
 // "fault", "names"}.
 std::string addShownFolder(const std::string& document, const ShownFolderState& folder);
-// The same with "missing_contents": {NAME: why it cannot be shown}, which is omitted if no content
-// is missing.
+// Returns `document`, a JSON object, with the member "missing_contents": {NAME: why it cannot be
+// shown}; unchanged if `missing` is empty.
 std::string addMissingContents(const std::string& document,
                                const std::vector<std::pair<std::string, std::string>>& missing);
 
-// Topic "sample": the newest posture, glove, hand, tracker and ball, and the actions of their
-// inputs.
+// Returns the document of the topic "sample": the newest sample of each device and hand, the
+// actions of their inputs, and the health of the devices.
 std::string newestSamples(const shm::DeviceSlots& devices, Timestamp now);
-// Topic "metrics" of either role: a flat list of counters and gauges for a metrics collector.
+// Return the document of the topic "metrics" of a role: a flat JSON object of counters and gauges
+// for a metrics collector.
 std::string devicesMetrics(const shm::DeviceSlots& devices);
 std::string wallMetrics(const shm::WallSegment& segment);
-// Topic "event": one thing that happened. `kind` is a word.
+// Returns a document of the topic "event", for one event at the time `now`. `kind`:
+// EventKind::name.
 std::string event(std::string_view kind, const Event& event, Timestamp now);
 
-// A list of texts, as a command's reply.
+// Returns the texts as a JSON list, for a command's reply.
 std::string textList(const std::vector<std::string>& texts);
 
 }  // namespace merlin::status

@@ -15,11 +15,12 @@ namespace merlin::status {
 // Thread-bound.
 class EndedThreads {
  public:
-  // Both outlive this.
+  // `watch` and `services` must outlive this object.
   EndedThreads(const ThreadWatch& watch, Services& services) : watch_(watch), services_(services) {}
 
   // To be called several times a second. Reports an ended thread at once; half a second later, when
-  // clients have received the report, returns the error with which the daemon shall end.
+  // clients have received the report, returns the error with which the daemon must end. Otherwise
+  // returns nothing.
   std::optional<Error> check(Timestamp now);
 
  private:

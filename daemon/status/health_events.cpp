@@ -15,8 +15,8 @@ namespace {
 // Whether the absence of a device is intended.
 bool isIntended(std::string_view reason) { return reason == kNotConfigured || reason == kStopped; }
 
-// Opening is not an event: an absent device is opened again every second. Neither is the state of a
-// process that has just started and will open it.
+// Whether the device is being opened, or will be because the process has just started. This is not
+// an event, because an absent device is opened again every second.
 bool isBeingOpened(const DeviceHealth& health) {
   return health.state == HealthState::kOpening || textIn(health.reason) == kNotOpenedYet;
 }

@@ -21,20 +21,22 @@ class HealthEvents {
         told_(devices_.health.size()),
         last_gestures_(devices_.hands.size()) {}
 
-  // The changes since the last call: "glove: ok (CyberGlove, 22 sensors)", "tracker: absent
-  // (/run/merlin/t: No such file)". A device that is retried with the same result is reported once.
-  // So is a device that fails in the same way again and again and works only briefly in between
-  // (shm::kBriefly): "ok" is then reported only after it has lasted for that time. An event is a
-  // fault if the device is not ok, or reports a problem.
+  // Returns the changes since the last call as events: "glove: ok (CyberGlove, 22 sensors)",
+  // "tracker: absent (/run/merlin/t: No such file)". A device that is retried with the same result
+  // is reported once. A device that fails repeatedly in the same way and works only for less than
+  // shm::kBriefly in between is also reported once; "ok" is then reported only after it has lasted
+  // for that time. An event is a fault if the device is not ok or reports a problem, unless its
+  // absence is intended (not configured, stopped), which is routine.
   std::vector<Event> take(Timestamp now);
-  // The last gesture of each hand since the last call: "hand: gesture swipe_left".
+  // Returns an event for each hand that has made a gesture since the last call, about its last
+  // gesture: "hand: gesture swipe_left".
   std::vector<Event> takeGestures();
 
  private:
   // What was reported of a device, and its history.
   struct Told {
-    std::string last, fault;  // the last event, and the last one of a device that did not work
-    std::int64_t ok_ns = std::numeric_limits<std::int64_t>::min();  // since when it was ok last
+    std::string last, fault;  // text of the last event, and of the last fault
+    std::int64_t ok_ns = std::numeric_limits<std::int64_t>::min();  // when it last became ok
     bool recurs = false;  // the fault came back after a brief ok
   };
   // Whether the device is ok, but not yet for long enough after a fault that recurs.

@@ -10,7 +10,7 @@
 namespace merlin::status {
 namespace {
 
-// "2026-11-24T18:00".
+// Writes a local time as text: "2026-11-24T18:00".
 std::string localText(std::int64_t local_minute) {
   const auto seconds = static_cast<std::time_t>(60 * local_minute);
   std::tm tm{};

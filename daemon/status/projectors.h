@@ -1,4 +1,4 @@
-// The projectors in a role's status.
+// Writes the projectors into a role's status document, and reads them from it.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,18 @@
 namespace merlin::status {
 
 struct ProjectorStatus {
-  std::string name{}, kind{};  // "gpio" or "pjlink"
-  // off, warming, on, cooling, unknown; `wanted`: empty if `power` is as wanted.
+  std::string name{}, kind{};  // kind: "gpio" or "pjlink"
+  // `power`: "off", "warming", "on", "cooling" or "unknown". `wanted`: "on" or "off"; empty if
+  // `power` is as wanted.
   std::string power{}, wanted{};
   std::string health{}, reason{};  // "ok", "unreachable"
   std::string address{}, identity{};
-  std::vector<int> lamp_hours{};     // of each lamp
+  std::vector<int> lamp_hours{};     // hours of use of each lamp
   std::optional<double> within_s{};  // longest time until it reaches the power state that it is
                                      // changing to, or that is wanted
 };
 
-// When the schedule switches all projectors next.
+// The next time at which the schedule switches all projectors.
 struct ProjectorSwitching {
   std::int64_t local_minute = 0;  // minutes from 1970-01-01 00:00 on the local calendar
   bool on = false;
@@ -32,8 +33,8 @@ std::string addProjectors(const std::string& document,
                           const std::vector<ProjectorStatus>& projectors,
                           const std::optional<ProjectorSwitching>& next = {});
 
-// The projectors in a document that addProjectors() wrote, with name, power and wanted alone; none
-// if it has none, or is not JSON.
+// Returns the projectors in a document that addProjectors() wrote, with only `name`, `power` and
+// `wanted` set; none if the document has none or is not JSON.
 std::vector<ProjectorStatus> projectorsIn(const std::string& document);
 
 }  // namespace merlin::status

@@ -50,7 +50,7 @@ class RelaySession final : public net::Session {
     if (const auto written = writeFar(); !written) return written.error();
     return Taken{accepted->bytes, accepted->frames};
   }
-  // Whether the handshake is complete; a client that only connects never gets so far.
+  // Whether the handshake is complete; it never is for a client that only connects.
   bool established() const noexcept override { return from_far_.ready(); }
 
   int farFd() const noexcept override { return far_.get(); }
@@ -144,7 +144,7 @@ Result<Ok> Relay::listen() {
       Error{Errc::kInvalidArgument, settings_.endpoint + ": is neither ipc:// nor tcp://"};
   if (!path().empty()) {
     listener = net::listenLocal(path(), kMode);
-    file_ = listener ? inodeOf(path()) : 0;  // what else may be there is not ours
+    file_ = listener ? inodeOf(path()) : 0;  // 0: a file there is not ours
   } else if (settings_.endpoint.starts_with(kTcp)) {
     const auto address = parseTcp(settings_.endpoint);
     if (!address) return address.error();
@@ -168,7 +168,8 @@ void Relay::run(const std::stop_token& stop, Progress& progress) {
 }
 
 // If the socket's file (or its folder) was removed, creates it again, so that clients can connect.
-// If that fails, it is tried again until it succeeds: only root may be able to make the folder.
+// If that fails, for example because only root can create the folder, it is tried again every
+// second.
 void Relay::listenAgainWhereGone() {
   const Timestamp now = clock_.now();
   if (path().empty() || now - checked_ < kCheckPeriod) return;

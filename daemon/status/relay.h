@@ -51,7 +51,7 @@ class Relay final : public net::Server {
   net::ConnectionServer server_;
   std::uint64_t file_ = 0;  // inode of the public socket's file; 0: it does not listen
   Timestamp checked_{};     // when the file was last checked
-  std::string failure_;     // why it could not be created again; empty: it could
+  std::string failure_;     // why the file could not be created again; empty: no failure
   WatchedThread thread_;
 };
 

@@ -41,8 +41,8 @@ bool RoleFollower<Reader>::update(Timestamp now) {
   return another;
 }
 
-// Does nothing while it is connected there. A run that could not be followed at first, as too many
-// files were open, may go on for months.
+// Connects to the topics at `endpoint`; does nothing if connected to it already. Called again after
+// a failure, such as too many open files, because the run may last for months.
 template <typename Reader>
 void RoleFollower<Reader>::connect(const std::string& endpoint) {
   const auto connected = topics_.connect(endpoint);

@@ -1,5 +1,5 @@
-// RoleFollower: a role of merlind that runs in another process of this machine: its segment, its
-// topics and the address for its commands; follows it over restarts.
+// RoleFollower: follows a role of merlind in another process of this machine across its restarts:
+// gives access to its segment, its topics and the address for its commands.
 #pragma once
 
 #include <cstdint>
@@ -22,20 +22,19 @@ class RoleFollower {
   RoleFollower(const std::string& instance, std::string role, std::vector<std::string> topics,
                SharedMemory::From from = SharedMemory::From::kOwnUserOrRoot);
 
-  // Looks for the role, and connects to a new run of it; if that fails, it is tried again every
-  // second. Returns true if a new run has replaced the
-  // last one, or the role has ended: what the last run published must then be forgotten. Never
-  // waits.
+  // Looks for the role, and connects to a new run of it; if connecting fails, it is tried again
+  // every second. Returns true if a new run has begun or the role has ended; documents of the last
+  // run are then out of date. Never waits.
   bool update(Timestamp now);
 
   const std::string& role() const noexcept { return role_; }
-  // Null while the role does not run. Valid until the next update().
+  // Returns the role's segment; null while the role does not run. Valid until the next update().
   const typename Reader::View* segment() const noexcept { return segment_; }
-  // Generation of the run that is followed; 0: none.
+  // Returns the generation of the run that is followed; 0: none.
   std::uint64_t generation() const noexcept { return generation_; }
-  // Where the role takes commands; empty while it does not run here.
+  // Returns the address at which the role takes commands; empty while it does not run here.
   const std::string& commandEndpoint() const noexcept { return command_endpoint_; }
-  // The next document that has arrived; nothing if there is none.
+  // Returns the next document that has arrived; nothing if there is none.
   std::optional<TopicFollower::Message> take() { return topics_.take(); }
 
  private:
@@ -47,8 +46,8 @@ class RoleFollower {
   const typename Reader::View* segment_ = nullptr;
   std::uint64_t generation_ = 0;
   std::string command_endpoint_;
-  Timestamp connected_{};  // when connect() was called last
-  std::string fault_;      // why it failed; empty: it did not
+  Timestamp connected_{};  // when connect() was last called
+  std::string fault_;      // why connect() failed last; empty: it succeeded
 };
 
 }  // namespace merlin::status

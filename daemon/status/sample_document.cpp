@@ -1,4 +1,4 @@
-// The document of the topic "sample".
+// Makes the document of the topic "sample".
 #include <algorithm>
 #include <span>
 
@@ -9,7 +9,7 @@
 namespace merlin::status {
 namespace {
 
-// Short health of each device, for a client that only receives samples.
+// Returns a short health of each device, for a client that only receives samples.
 OrderedJson briefHealth(const shm::DeviceSlots& devices) {
   OrderedJson all = OrderedJson::object();
   for (const auto& [device, slot] : devices.health) {
@@ -39,13 +39,13 @@ OrderedJson handJson(const HandSample& h) {
           {"delay_s", h.delay_s}};
 }
 
-// The last gesture of a hand.
+// Returns the last gesture of a hand.
 OrderedJson gestureSampleJson(const GestureState& g) {
   return {{"received_ns", g.received_ns}, {"began_ns", g.began_ns}, {"counter", g.counter},
           {"passed_over", g.passed_over}, {"name", text(g.name)},   {"certainty", g.certainty}};
 }
 
-// The actions that have begun at least once; "held": names of those that are held.
+// Returns the actions that have begun at least once; "held" lists the names of those that are held.
 OrderedJson actionsJson(const shm::ActionState& state) {
   OrderedJson begun = OrderedJson::object(), held = OrderedJson::array();
   for (std::size_t i = 0; i < kActions.size(); ++i) {

@@ -29,8 +29,8 @@ void setText(char (&field)[N], const std::string& text) {
   std::memset(field + n, 0, N - n);
 }
 
-// Read a number, or a list of exactly N numbers; `field` is unchanged if the value is of another
-// kind.
+// Read the member `key`: a number, or a list of exactly N numbers. `field` is unchanged if the
+// member is missing or of another kind.
 template <typename T>
 void read(const Json& object, const char* key, T& field) {
   const auto found = object.find(key);
@@ -201,8 +201,9 @@ class Apply {
     const auto last = slot.read();
     if (!last || last->counter != s.counter || last->passed_over != s.passed_over) slot.publish(s);
   }
-  // The documents do not contain the order in which actions began: `recent` lists those that began
-  // between two documents in the order of kActions.
+  // Fills the list `recent` of actions that have begun. The documents do not contain the order in
+  // which actions began, so those that began between two documents are listed in the order of
+  // kActions.
   static void list(const shm::ActionState& last, shm::ActionState& s) {
     constexpr std::uint32_t kKept = sizeof(s.recent);
     s.sequence = last.sequence;

@@ -16,8 +16,8 @@ namespace merlin::status {
 
 struct SampleLinkSettings {
   std::string endpoint;                               // "tcp://HOST:PORT" of the other daemon
-  std::string server_key;                             // its public key
-  KeyPair keys;                                       // ours
+  std::string server_key;                             // public key of the other daemon
+  KeyPair keys;                                       // this machine's keys
   Duration silence = std::chrono::milliseconds(500);  // after which the link counts as lost
   // The socket is recreated after renew_after of silence, then each time after twice as long, up to
   // renew_at_most: libzmq does not reconnect by itself after a protocol error (the peer did not
@@ -26,8 +26,8 @@ struct SampleLinkSettings {
 };
 
 // Follows the topic "sample" on a thread of its own and writes the samples of the devices and hands
-// in `names` into `segment`, whose only writer it is; others are ignored. Times are converted to
-// this machine's clock such that a sample is as old as it was when it was sent; the delay of the
+// in `names` into `segment`, whose only writer it is; all others are ignored. Converts times to
+// this machine's clock so that a sample has the age that it had when it was sent; the delay of the
 // network is unknown and not added. While nothing is received, the health of every device is
 // absent, with the reason.
 class SampleLink {
@@ -64,8 +64,9 @@ class SampleLink {
   WatchedThread thread_;
 };
 
-// Publishes the document's samples in `segment`, except those whose counter has not changed. False
-// if the document is invalid. For SampleLink and its tests.
+// Publishes the samples of a document of the topic "sample" in `segment`, except those whose
+// counter has not changed, and the health of the devices, with `from` as their port. Returns false
+// if the document is invalid or has more than 64 KiB. For SampleLink and its tests.
 bool applySamples(const std::string& document, const std::string& from, Timestamp now,
                   const shm::SlotNames& names, shm::DevicesSegment& segment);
 

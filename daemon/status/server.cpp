@@ -22,7 +22,7 @@ namespace {
 constexpr Duration kFollowersCome = std::chrono::seconds(3);
 constexpr int kServerRound_ms = 100;
 constexpr int kMostRequestBytes = 4096;
-constexpr int kMostSaidBytes = 4096;  // of one frame from a subscriber
+constexpr int kMostSaidBytes = 4096;  // maximum size of a frame from a subscriber
 constexpr int kMostQueued = 100;      // documents queued for a subscriber that does not read
 constexpr int kHandshake_ms = 2000;
 constexpr std::size_t kEventsKept = 50;
@@ -34,7 +34,8 @@ constexpr const char* kCommandsDomain = "commands";
 constexpr Duration kSocketCheckPeriod = std::chrono::seconds(1);
 constexpr Duration kSayAgain = std::chrono::seconds(10);
 
-// Restricts sockets that libzmq binds to the daemon's user.
+// Sets the umask while it exists, so that only the daemon's user can open the sockets that libzmq
+// binds.
 class Umask {
  public:
   Umask() : before_(::umask(0177)) {}
@@ -46,7 +47,7 @@ class Umask {
   mode_t before_;
 };
 
-// The path of the socket behind a public endpoint.
+// Returns the path of the inner socket, which is behind the relay of a public endpoint.
 std::string innerOf(const std::string& endpoint) {
   return endpoint.substr(std::string("ipc://").size()) + ".inner";
 }
@@ -232,7 +233,7 @@ Result<std::unique_ptr<net::Server>> StatusServer::startNetworkCommands(ThreadWa
   commands.endpoint = settings_.network_commands.endpoint;
   commands.inner = sockets_->commands;
   commands.limits.opening = std::chrono::seconds(5);  // over a network, with encryption
-  // A handshake costs libzmq half a millisecond, also if the key is unknown.
+  // A handshake costs libzmq half a millisecond, even if the key is unknown.
   commands.limits.accepts_per_s = 50;
   commands.limits.accepts_burst = 50;
   commands.limits.messages_per_s = 100;  // two for each request
@@ -309,8 +310,8 @@ void StatusServer::admit() {
   if (!request.empty()) sendAll(sockets_->doorman, zapAnswer(request, doors_));
 }
 
-// A request arrives through the ROUTER as three parts: the connection's name, nothing, the request.
-// Anything else gets no answer.
+// Answers a request from the network. The ROUTER delivers it in three parts: the connection's name,
+// an empty part, the request. A message of another form gets no answer.
 void StatusServer::answerNetwork() {
   const auto parts = receiveAll(sockets_->network);
   if (parts.size() != 3 || !parts[1].empty()) return;

@@ -27,13 +27,14 @@ struct Publication {
 struct StatusServerSettings {
   std::string name;                               // the role, "wall", for reports and threads
   std::string status_endpoint, command_endpoint;  // "ipc://..."
-  // Where the same topics are published, encrypted, for clients on other machines whose keys are
-  // listed; it takes no commands.
+  // Address at which the topics are also published, encrypted, for clients on other machines whose
+  // keys are listed; no commands are accepted there.
   CurveServer network;
   std::string network_name, network_setting;  // of the relay for `network`: its name in reports,
                                               // and the JSON pointer of its setting
-  // Where requests are answered, encrypted, from clients on other machines whose keys are listed:
-  // every command to those that may command; status and events to those that may read.
+  // Address at which requests are answered, encrypted, from clients on other machines whose keys
+  // are listed: all commands for clients that may command, only `status` and `events` for clients
+  // that may read.
   CurveServer network_commands;
   std::vector<Publication> publications;
   std::vector<Command> commands;
@@ -64,7 +65,8 @@ class StatusServer {
   // alone (the port is in use) and be tried again. REQUIRES: that address is set. Errors: those of
   // Relay::start().
   Result<std::unique_ptr<net::Server>> startNetworkTopics(ThreadWatch& watch) const;
-  // The same for the address of `network_commands`.
+  // Starts the relay at the encrypted address of `network_commands`. REQUIRES: that address is set.
+  // Errors: those of Relay::start().
   Result<std::unique_ptr<net::Server>> startNetworkCommands(ThreadWatch& watch) const;
 
   // Reports of the relays: counters of accepted and refused connections. Thread-safe.
@@ -92,7 +94,7 @@ class StatusServer {
   Doors doors_;
   std::deque<std::string> last_events_, unsent_events_;
   std::vector<Timestamp> due_;
-  Timestamp followed_from_;  // events wait until then, so that those of the start are heard too
+  Timestamp followed_from_;  // events are held back until then: followers subscribe first
   Timestamp checked_{};      // when the inner sockets' files were last checked
   Timestamp said_{};         // when an error was last logged
   std::vector<std::unique_ptr<Relay>> relays_;

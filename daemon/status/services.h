@@ -14,11 +14,11 @@ namespace merlin::status {
 // Thread-safe.
 class Services {
  public:
-  // Set a service's state. `service`: a word such as "samples". A change becomes an event.
+  // Set the state of a service. `service`: its name, such as "samples". A change becomes an event.
   void ok(const std::string& service) { set(service, {}); }
   void failed(const std::string& service, const std::string& reason) { set(service, reason); }
 
-  // The changes since the last call, a sentence each.
+  // Returns an event for each change since the last call.
   std::vector<Event> takeEvents();
 
   // Returns `document`, a JSON object, with the member "services" added if there are any:
@@ -27,7 +27,7 @@ class Services {
 
  private:
   struct Service {
-    std::string name, reason;  // empty: it works
+    std::string name, reason;  // reason: why it failed; empty: it works
   };
   void set(const std::string& service, std::string reason);
 

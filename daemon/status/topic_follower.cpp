@@ -51,8 +51,11 @@ std::optional<TopicFollower::Message> TopicFollower::take() {
     zmq::message_t topic, document;
     while (c.socket->recv(topic, zmq::recv_flags::dontwait)) {
       // The parts of a message arrive together.
-      if (topic.more() && c.socket->recv(document, zmq::recv_flags::dontwait) && !document.more())
-        return Message{topic.to_string(), document.to_string()};
+      int parts = 1;
+      for (bool more = topic.more(); more; more = document.more(), ++parts) {
+        if (!c.socket->recv(document, zmq::recv_flags::dontwait)) break;
+      }
+      if (parts == 2) return Message{topic.to_string(), document.to_string()};
     }
   } catch (const std::exception&) {  // the next connect() creates a new socket
     c.socket.reset();

@@ -18,16 +18,16 @@ class TopicFollower {
   TopicFollower(const TopicFollower&) = delete;
   TopicFollower& operator=(const TopicFollower&) = delete;
 
-  // Follows the publisher at this address from now on, and no longer the previous one; empty: none.
-  // Does nothing if it is the same address as before. Succeeds also if nobody publishes there yet.
+  // Follows the publisher at this address instead of the previous one; empty: follows none. Does
+  // nothing if the address is the same as before. Succeeds also if nobody publishes there yet.
   // Errors: kIo.
   Result<Ok> connect(const std::string& status_endpoint);
 
   struct Message {
     std::string topic, document;
   };
-  // The next document that has arrived; nothing if there is none. At most 100 are kept; if more
-  // arrive between two calls, they are lost. A document is at most 1 MiB long.
+  // Returns the next document that has arrived; nothing if there is none. At most 100 are kept; if
+  // more arrive between two calls, they are lost. A document is at most 1 MiB long.
   std::optional<Message> take();
 
  private:

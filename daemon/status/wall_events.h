@@ -15,11 +15,12 @@ class WallEvents {
  public:
   explicit WallEvents(const shm::WallSegment& segment) : segment_(segment) {}
 
-  // The changes since the last call, such as "frame rate reduced to 15 of 30 Hz: ...".
-  // Degradations and failures are faults.
+  // Returns an event for each change since the last call, such as "frame rate reduced to 15 of 30
+  // Hz: ...". Only the failure of an output is a fault; a reduced rate or detail is news.
   std::vector<Event> take();
-  // The same for what the outputs were found to show, such as "output left is black instead of
-  // ...". Outputs that have failed are left out, since take() reports them.
+  // Returns an event for each change of what an output was found to show when it was read back,
+  // such as "output left is black instead of ..."; a wrong picture is a fault. take() reports
+  // outputs that have failed.
   std::vector<Event> takePictures();
 
  private:
@@ -28,8 +29,8 @@ class WallEvents {
   const shm::WallSegment& segment_;
   std::uint32_t divisor_ = 1, scale_ = 1, operator_coarser_ = 0, held_ = 0, returned_ = 0;
   float asked_hz_ = 0;
-  std::vector<std::string> faults_;    // of the outputs, by number; empty: it works
-  std::vector<std::string> pictures_;  // what is wrong with theirs; empty: nothing
+  std::vector<std::string> faults_;    // fault of each output; empty: it works
+  std::vector<std::string> pictures_;  // what is wrong with each output's picture; empty: nothing
 };
 
 }  // namespace merlin::status

@@ -17,14 +17,14 @@ class Watchdog {
   // `interval`: time between two pings; zero: no watchdog, never ping.
   explicit Watchdog(Duration interval) : interval_(interval) {}
 
-  // True if a ping is due, no thread has ended unexpectedly, and each thread that existed at the
-  // last ping has made progress since or is paused.
+  // Returns whether systemd is to be pinged now: a ping is due, no thread has ended unexpectedly,
+  // and each thread that existed at the last ping has made progress since or is paused.
   bool ping(Timestamp now, const std::vector<ThreadState>& threads);
 
  private:
   Duration interval_;
   Timestamp last_{};
-  std::map<std::uint64_t, std::uint64_t> seen_;  // progress by thread
+  std::map<std::uint64_t, std::uint64_t> seen_;  // progress at the last ping, by thread id
 };
 
 }  // namespace merlin::status

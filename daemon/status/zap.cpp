@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kFrames = 7, kId = 1, kDomain = 2, kMechanism = 5, kKey = 6;
 constexpr std::size_t kKeyBytes = 32, kKeyText = 40;
 
-// Encodes the key as Z85; empty if the key is invalid.
+// Encodes a binary key as Z85; returns an empty text if the key does not have 32 bytes.
 std::string z85(const std::string& key) {
   char text[kKeyText + 1] = "";
   if (key.size() != kKeyBytes) return {};

@@ -63,7 +63,7 @@ Result<Ok> ZmtpGuard::greet(std::uint8_t byte) {
   return Ok{};
 }
 
-// Does nothing until the header is complete.
+// Begins a frame; does nothing until its header is complete.
 Result<Ok> ZmtpGuard::begin() {
   const auto flags = static_cast<std::uint8_t>(header_[0]);
   if (flags & ~(kMore | kLong | kCommand)) return malformed("a frame has unknown flags");
@@ -90,7 +90,7 @@ Result<Ok> ZmtpGuard::begin() {
   return body_left_ == 0 ? endFrame() : Result<Ok>(Ok{});
 }
 
-// Heartbeats do not count towards total_bytes, or they would use it up.
+// Heartbeats do not count towards total_bytes, because in a long connection they would exhaust it.
 Result<Ok> ZmtpGuard::endFrame() {
   in_body_ = false;
   ready_ |= command_ && name_ == kReady;

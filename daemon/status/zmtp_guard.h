@@ -1,4 +1,4 @@
-// ZmtpGuard: checks that the bytes that a client sends to a ZeroMQ socket keep within limits. No
+// ZmtpGuard: checks that the bytes that a client sends to a ZeroMQ socket stay within limits. No
 // I/O.
 //
 // It follows the framing of ZMTP 3, which is visible even if messages are encrypted: a greeting of

@@ -11,7 +11,7 @@ namespace merlin::wall {
 
 namespace {
 
-// Axes of an output whose tiles are all mounted alike, so those of the first tile.
+// Returns the axes of the first tile. All tiles of an output are mounted in the same way.
 state::SeenAxes seenAxes(const std::vector<render::out::PlacedTile>& tiles) {
   if (tiles.empty()) return {};
   const render::frame::TileAxes axes = render::frame::axesOf(tiles.front());
@@ -28,7 +28,7 @@ AlignedOutput alignedOutput(const render::out::OutputSettings& output,
                             render::correct::SignalParts parts, ThreadTeam& team,
                             render::correct::CorrectionPass& pass, std::string& unreadable) {
   render::correct::CorrectionSettings settings = output.correction;
-  std::shared_ptr<render::correct::MeasuredCorrection> measured;  // shared by `make` and its copies
+  std::shared_ptr<render::correct::MeasuredCorrection> measured;  // shared by all copies of `make`
   if (!settings.mpcdi.empty()) {
     if (auto read = render::correct::readMeasured(settings.mpcdi, settings.mpcdi_region)) {
       measured = std::make_shared<render::correct::MeasuredCorrection>(*std::move(read));

@@ -1,4 +1,4 @@
-// Turns a configured output into one that the Aligner can align.
+// Makes an AlignedOutput, which the Aligner can align, from a configured output.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace merlin::wall {
 
-// Returns an output that can be aligned; its `make` builds corrections, which are applied on the
-// wall's thread, by `pass` or by the threads of `team`. Both must outlive it. `parts`: the pictures
-// in its signal, of `size` together. If a measured file cannot be read, the rest of the correction
-// is still applied, because one output that looks wrong is better than a dark wall; `unreadable`
-// receives the reason.
+// Returns an output whose `make` builds corrections; these are applied on the wall's thread by
+// `pass`, or by the threads of `team`. Both must outlive the result. `size`: size of its signal.
+// `parts`: the pictures in its signal. If the measured file cannot be read, the rest of the
+// correction is still applied, because one output that looks wrong is better than a dark wall;
+// `unreadable` receives the reason.
 AlignedOutput alignedOutput(const render::out::OutputSettings& output,
                             const render::out::PictureSize& size,
                             render::correct::SignalParts parts, ThreadTeam& team,

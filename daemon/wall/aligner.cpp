@@ -16,16 +16,17 @@ using state::Alignment;
 using state::Place;
 
 constexpr auto kAlignerStep = std::chrono::milliseconds(500);
-// For undo, pushes of the ball that follow each other within this time are one step.
+// Pushes of the ball that follow each other within this time are undone as one step.
 constexpr Duration kSamePush = std::chrono::milliseconds(500);
 
-// Moves of the actions align_left to align_down [px], in the order of kAlignActions.
+// Offsets of the actions align_left to align_down as seen on the wall [px], in the order of
+// kAlignActions.
 constexpr state::Offset kMoves[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
 constexpr std::size_t kFirstMove = 2, kUndo = 6, kRedo = 7, kNextCard = 8;
 
 Error refusal(const std::string& what) { return {Errc::kInvalidArgument, what}; }
 
-// Describes what a step, or undoing it, changed.
+// Returns a description of what a step, or undoing it (`undone`), has changed.
 std::string changeText(const state::Step& step, bool undone) {
   if (step.changes.size() > 1) return fmt::format("{} corners or points", step.changes.size());
   const auto& [place, before, after] = step.changes[0];
@@ -157,8 +158,8 @@ Result<Ok> Aligner::move(const state::MoveRequest& request, bool on) {
   return Ok{};
 }
 
-// A step is undone or redone even if the configuration no longer has its output; the effect becomes
-// visible when the output is configured again.
+// Undoes or redoes a step. This is also done if the configuration no longer has the step's output;
+// the effect is then visible when the output is configured again.
 Result<Ok> Aligner::step(bool undo) {
   Alignment next = alignment_;
   const state::Step* const step = undo ? next.undo() : next.redo();
@@ -281,8 +282,8 @@ Result<Ok> Aligner::act(std::size_t action) {
   return move(seenMove(kMoves[action - kFirstMove]));
 }
 
-// Builds the request to move the selected corner by an offset that is given as seen by people
-// before the wall.
+// Returns the request to move the selected corner by an offset as people in front of the wall see
+// it.
 state::MoveRequest Aligner::seenMove(const state::Offset& by) const {
   const AlignedOutput& output = entries_[selected_].output;
   return {output.name, state::cornerAt(corner_), output.axes.onSignal(by)};
@@ -302,8 +303,8 @@ void Aligner::executeAsked(const AlignInput& input) {
   keepRefusal(move(seenMove(input.push), on));
 }
 
-// Builds the correction of each output with its newest settings; after several moves in a row, only
-// the last one is built.
+// Builds the correction of each output whose settings have changed. After several moves in a row,
+// only the correction for the last one is built.
 void Aligner::buildPending() {
   for (Entry& entry : entries_) {
     render::correct::CorrectionSettings settings;
@@ -334,7 +335,7 @@ void Aligner::loop(const std::stop_token& stop, Progress& progress) {
       asked = std::exchange(asked_, {});
     }
     executeAsked(asked);
-    const Progress::Pause pause(progress);  // building the map of a large output may take seconds
+    const Progress::Pause pause(progress);  // building a correction may take seconds
     buildPending();
   }
 }

@@ -1,5 +1,5 @@
-// Aligner: moves the corners and mesh points of outputs while the wall runs. Each change builds a
-// new correction on the aligner's own thread, which replaces the old correction between two frames.
+// Aligner: moves the corners and mesh points of outputs while the wall runs. After each change, the
+// aligner's own thread builds a new correction, which replaces the old one between two frames.
 #pragma once
 
 #include <condition_variable>
@@ -20,61 +20,62 @@
 
 namespace merlin::wall {
 
-// Actions that inputs may be bound to, in this order: align_output_next, align_corner_next,
-// align_left, align_right, align_up, align_down, align_undo, align_redo, next_testcard.
+// Actions that the aligner executes and to which inputs may be bound. AlignInput::actions has
+// indexes into this list.
 inline constexpr const char* kAlignActions[] = {
     "align_output_next", "align_corner_next", "align_left", "align_right",  "align_up",
     "align_down",        "align_undo",        "align_redo", "next_testcard"};
 inline constexpr std::size_t kAlignActionCount = std::size(kAlignActions);
 
-// Requests of bound inputs since they were last read.
+// Requests of bound inputs since the last read of the input.
 struct AlignInput {
   std::vector<std::uint8_t> actions;  // indexes into kAlignActions, in the order of their begin
-  state::Offset push{};               // motion of the selected corner by the ball [px]
+  state::Offset push{};  // motion of the selected corner by the ball, as seen on the wall [px]
   bool isNothing() const;
 };
 
 // Thread-safe.
 class Aligner {
  public:
-  // On return, the correction of each output is built from its configuration and the offsets of the
-  // keeper's state; an alignment that does not fit its output is set aside, and one that fits again
-  // comes back, each with a notice.
-  // `refused`: names of outputs that are not corrected. `cards`, `keeper` and `watch` must outlive
-  // this object.
+  // Builds the correction of each output from its configuration and the offsets in the keeper's
+  // state, before it returns. An alignment that does not fit its output is set aside, and one that
+  // fits again comes back into effect; a notice of the keeper reports each. `refused`: names of the
+  // outputs that are not corrected. `cards`, `keeper` and `watch` must outlive this object.
   Aligner(std::vector<AlignedOutput> outputs, std::vector<std::string> refused,
           render::testcard::CardOverlay& cards, state::StateKeeper& keeper, ThreadWatch& watch);
   ~Aligner();
   Aligner(const Aligner&) = delete;
   Aligner& operator=(const Aligner&) = delete;
 
-  // Executes a request in one of the forms of state::kAlignForms. A change is saved, and shown some
-  // frames later. Returns state::reportText(). Takes some milliseconds if the output has a mesh.
-  // Errors, which change nothing: kInvalidArgument (no such output or point; the corrected image
-  // would be folded, or too far outside the output).
+  // Executes a request in one of the forms of state::kAlignForms. A change is saved, and is visible
+  // some frames later. Returns state::reportText(). Takes some milliseconds if the output has a
+  // mesh. Errors: kInvalidArgument (the request is malformed; there is no such output or point;
+  // there is nothing to undo or redo; or the corrected image would be folded or too far outside the
+  // output); nothing changes then.
   Result<std::string> run(const std::string& argument);
 
-  // Takes other base values for an output, which are shown some frames later; alignments are set
-  // aside or come back as at the start. An output that is not corrected is ignored.
-  // REQUIRES: validate(configured); the measured file is the same as before.
+  // Replaces the configured correction of an output; the change is visible some frames later.
+  // Alignments are set aside or come back as in the constructor. Nothing happens if the output is
+  // not corrected. REQUIRES: `configured` is valid, and its measured file is the same as before.
   void configure(const std::string& output, const render::correct::CorrectionSettings& configured);
 
-  // Shows the test card of this name from one of the next frames on; "off" shows none. The selected
-  // corner is marked on it once somebody has selected one. Errors: kInvalidArgument.
+  // Shows the test card with this name from one of the next frames on; "off" ends it. If somebody
+  // has selected a corner, this corner is marked on the card. Errors: kInvalidArgument (there is no
+  // such card).
   Result<Ok> showCard(const std::string& name);
 
   // Whether a test card is shown.
   bool showsCard() const;
 
-  // Passes on requests of bound inputs, which are executed in their order; returns at once. At most
-  // kMostAsked actions wait; further ones are dropped. To be called on the wall's thread. A move
-  // that is refused is reported as a notice of the keeper.
+  // Passes requests of bound inputs to the aligner's thread, which executes them in their order;
+  // returns at once. At most kMostAsked actions may wait; further ones are dropped. If a request is
+  // refused, a notice of the keeper reports the reason. To be called on the wall's thread.
   void ask(const AlignInput& input);
   static constexpr std::size_t kMostAsked = 200;
 
-  // The corner that the actions move.
+  // The corner that bound inputs move.
   struct Selection {
-    std::string output;  // empty: no output can be aligned
+    std::string output;  // name of the output; empty: none can be aligned
     state::Place place;
     bool operator==(const Selection&) const = default;
   };
@@ -83,12 +84,13 @@ class Aligner {
  private:
   struct Entry {
     AlignedOutput output;
-    std::uint64_t wanted = 1, built = 0;  // versions of its settings: the newest, the one shown
+    // Versions of its correction: the newest one requested, and the newest one built.
+    std::uint64_t wanted = 1, built = 0;
   };
 
   Result<Entry*> find(const std::string& name);
   void fitAlignments();
-  // Each of the following must be called with mutex_ locked.
+  // REQUIRES for all of the following: mutex_ is locked.
   Result<Ok> execute(const state::AlignRequest& request);
   Result<Ok> move(const state::MoveRequest& request, bool on = false);
   Result<Ok> step(bool undo);
@@ -106,19 +108,21 @@ class Aligner {
 
   render::testcard::CardOverlay& cards_;
   state::StateKeeper& keeper_;
-  mutable std::mutex mutex_;  // protects all members that follow, up to refusal_
+  mutable std::mutex mutex_;  // guards all members up to refusal_
   std::vector<Entry> entries_;
   std::vector<std::string> refused_;
   state::Alignment alignment_;
   state::SetAside set_aside_;
   std::size_t selected_ = 0, corner_ = 0;
-  bool chosen_ = false;  // somebody has selected a corner
+  bool chosen_ = false;  // whether somebody has selected a corner
   std::optional<render::testcard::Card> card_;
-  std::string done_;     // description of the last undo or redo
-  Timestamp pushed_{};   // time of the last push by the ball
-  std::string refusal_;  // of a bound input, if its last request was refused; reported only once
+  std::string done_;    // description of the last undo or redo
+  Timestamp pushed_{};  // time of the last push by the ball
+  // Why the last request of a bound input was refused, so that the same reason is not reported
+  // again; empty: it was executed.
+  std::string refusal_;
   std::mutex asked_mutex_;
-  std::condition_variable_any wake_;  // with asked_mutex_
+  std::condition_variable_any wake_;  // used with asked_mutex_
   AlignInput asked_;
   bool work_ = false;
   WatchedThread thread_;

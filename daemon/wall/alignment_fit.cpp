@@ -12,14 +12,14 @@ namespace {
 
 using render::correct::CorrectionSettings;
 
-// A corner may lie outside the output by at most this share of its width or height, so that the
-// image is not lost.
+// A corner may be outside the output by at most this share of its width or height, so that the
+// image does not disappear.
 constexpr double kMostOutside = 0.5;
 
 double outside(double place, double size) { return std::max({0.0, -place, place - size}); }
 
-// Explains why offsets that were made for the form `aligned` are not those of an output of the form
-// `now`.
+// Returns why offsets that were made for the form `aligned` are not valid for an output of the form
+// `now`. REQUIRES: !aligned.fits(now).
 std::string formMisfit(const state::OutputForm& aligned, const state::OutputForm& now) {
   state::OutputForm same = aligned;
   same.corners = now.corners;
@@ -69,7 +69,7 @@ Result<Ok> checkAlignment(const AlignedOutput& output, const state::Alignment& a
     const state::Place corner = state::cornerAt(i);
     const double x = corner.column * width + settings.corners[2 * i],
                  y = corner.row * height + settings.corners[2 * i + 1];
-    if (alignment.offset(output.name, corner) == state::Offset{}) continue;  // as configured
+    if (alignment.offset(output.name, corner) == state::Offset{}) continue;  // not moved: no limit
     if (outside(x, width) <= kMostOutside * width && outside(y, height) <= kMostOutside * height)
       continue;
     return misfit(
@@ -123,7 +123,7 @@ std::vector<FittedOutput> fittedOutputs(const WallSettings& drawn, state::Alignm
                                         state::SetAside set_aside) {
   std::vector<FittedOutput> changed;
   for (const render::out::OutputSettings& settings : drawn.outputs) {
-    if (settings.kind == render::out::OutputKind::kSharedMemory) continue;  // not aligned
+    if (settings.kind == render::out::OutputKind::kSharedMemory) continue;  // cannot be aligned
     const auto size = render::out::pictureSize(settings, drawn.tiles);
     if (!size) continue;
     AlignedOutput output{settings.shownName(), size->width, size->height, settings.correction, {}};

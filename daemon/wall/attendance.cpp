@@ -16,7 +16,7 @@ bool isPushed(const BallSample& ball) {
 }
 
 // Whether a bound input or the command `move` acts on what is shown. Each such action counts as a
-// separate touch, however soon it follows another one.
+// new touch, however soon it follows another one.
 bool acts(const WallInput& input) {
   const render::scene::SceneInput& scene = input.scene;
   const bool stepped = !scene.step.way_m.isZero(0) || !scene.step.turn_rad.isZero(0);
@@ -58,8 +58,9 @@ void Attendance::nextOfPlaylist() {
   asked_.next = true;
 }
 
-// Whether a bound input belongs to the touch that has ended black or frozen: a gesture or a long
-// press is complete only after its first finger or button, which ends them at once.
+// Whether a bound input belongs to the touch that has just ended black or frozen. A pinch or a long
+// press triggers its action some time after its first finger or button has touched, which has ended
+// that state at once.
 bool Attendance::isOfEndingTouch(const WallInput& input, Timestamp now) {
   constexpr auto kGone = std::numeric_limits<std::uint32_t>::max();
   if (fingers_ > ended_.fingers) ended_.finger_last = now;
@@ -77,14 +78,14 @@ Attendance::Asked Attendance::takeAsked(const WallInput& input, Timestamp now) {
     const std::lock_guard lock(mutex_);
     asked = std::exchange(asked_, {});
   }
-  const bool late = isOfEndingTouch(input, now);  // then it does not begin again what has ended
+  const bool late = isOfEndingTouch(input, now);  // must not begin again what it has ended
   asked.blank ^= input.blank % 2 == 1 && (blank_ || !late || !ended_.blank);
   asked.freeze ^= input.freeze % 2 == 1 && (frozen_ || !late || !ended_.frozen);
   return asked;
 }
 
-// A posture alone is not enough: a hand at rest may hold it for ever, for example a glove that lies
-// on a table.
+// Whether the hand acts, i.e. begins an action or moves while it holds one. Holding an action is
+// not enough, since a hand at rest may hold it for ever, for example a glove that lies on a table.
 bool Attendance::handMoves(const render::scene::SceneInput& input) {
   const std::array holding{input.grab, input.fly, input.point_at};
   const auto before = std::exchange(holding_, holding);
@@ -98,9 +99,10 @@ bool Attendance::handMoves(const render::scene::SceneInput& input) {
   return moves;
 }
 
-// Contact alone is not enough: a finger may rest on a touch surface for ever, or a marked object
-// stand on it. A mouse's wheel counts without a finger. A finger that goes undoes nothing, nor do
-// those that move while they are left of the gesture that made the wall black.
+// Determines how fingers and mouse wheels act. Contact alone does not count, since a finger or an
+// object may rest on a touch surface for ever. A mouse's wheel counts without a finger. A finger
+// that leaves does not undo blank and freeze; nor do moving fingers that remain from the gesture
+// that caused that state.
 Attendance::Motion Attendance::fingersMove(const render::scene::TouchMotion& touch) {
   const std::uint32_t before = std::exchange(fingers_, touch.fingers);
   const bool come = touch.fingers > before, go = touch.fingers < before;
@@ -118,8 +120,8 @@ Attendance::Motion Attendance::fingersMove(const render::scene::TouchMotion& tou
           .lets_go = go};
 }
 
-// Whether the ball is pushed, fingers come, move or go, a mouse's wheel turns, one of the ball's
-// buttons is pressed or released now, or a hand moves.
+// Determines how the input acts: a push of the ball, its buttons, held motion actions, fingers,
+// mouse wheels, and a hand that moves.
 Attendance::Motion Attendance::motionOf(const WallInput& input) {
   const auto& ball = input.scene.ball;
   const std::uint32_t buttons = ball ? ball->buttons : 0;

@@ -1,10 +1,10 @@
-// Attendance: whether somebody uses the wall, and what it shows otherwise: the playlist. Maintains
-// the effect of the commands blank and freeze until the next input.
+// Attendance: determines whether somebody uses the wall; if nobody does, it runs the playlist. It
+// also keeps the wall black or frozen, after the commands blank and freeze, until the next touch.
 //
-// A touch is anything by which a visitor or an operator acts on the wall: a push of the ball, a
-// button, a finger that comes to a touch surface, moves on it or leaves it, a turn of a mouse's
-// wheel, a hand that moves while it holds an action, a command that changes what is shown. A finger
-// that leaves is one to the playlist only: it does not undo blank and freeze.
+// A touch is anything by which a person acts on the wall: a push of the ball, a button, a finger
+// that touches a touch surface, moves on it or leaves it, a turn of a mouse's wheel, a hand that
+// moves while it holds an action, a command that changes what is shown. A finger that leaves ends
+// the playlist, but does not undo blank and freeze.
 #pragma once
 
 #include <array>
@@ -19,65 +19,70 @@
 
 namespace merlin::wall {
 
-// Thread-bound to the wall's thread, except where it says thread-safe.
+// Thread-bound to the wall's thread, except for members whose comment says thread-safe.
 class Attendance {
  public:
   explicit Attendance(const PlaylistSettings& playlist) : playlist_(playlist) {}
 
-  // Each is thread-safe and takes effect with the next update().
-  // Shows black, or freezes the picture; a second call undoes it.
+  // Thread-safe, like all functions up to nextOfPlaylist(); each takes effect with the next
+  // update(). The first two show black or freeze the picture; a second call undoes this.
   void toggleBlank();
   void toggleFreeze();
-  // To be called when a command that changes what is shown is executed; undoes both.
+  // Counts as a touch that also undoes blank and freeze. To be called when a command that changes
+  // what is shown is executed.
   void touch();
-  // To be called when somebody uses the wall by other means than the devices' input; ends the
-  // playlist.
+  // Counts as a touch for the playlist only: ends it, but does not undo blank and freeze. To be
+  // called when somebody uses the wall by other means than the devices' input.
   void attend();
-  // See Playlist.
+  // See Playlist::on(), off() and next(). Beginning the playlist and its next content also undo
+  // blank and freeze.
   void switchPlaylist(bool on);
   void nextOfPlaylist();
 
-  // To be called once a frame, with the devices' input. REQUIRES: `now` never decreases. While the
-  // wall is black or frozen, the part of `input` that moves the scene is removed; the input that
-  // ends this state moves the scene as usual. While the playlist runs, it turns the scene.
+  // To be called once a frame with the devices' input. While the wall is black or frozen, the part
+  // of `input` that moves the scene is removed; an input that ends this state moves the scene as
+  // usual. While the playlist runs, the speed at which it turns the scene is set in `input`.
+  // REQUIRES: `now` never decreases.
   struct Frame {
-    Playlist::Wanted playlist;  // its light is 0 while the wall is black
+    Playlist::Wanted playlist;  // what the playlist wants; light is 0 while the wall is black
     bool held = false;          // black or frozen: nothing moves the scene
   };
   Frame update(WallInput& input, Timestamp now);
 
-  // Replaces the playlist's settings: see Playlist.
+  // Replaces the playlist's settings: see Playlist::configure().
   void configure(const PlaylistSettings& playlist) { playlist_.configure(playlist); }
 
   using Shown = shm::WallInteraction::Shown;
   Shown shown() const noexcept;
-  // Whether the picture is to stay as it is; also true while black covers it.
+  // Whether the picture is frozen; also true while the frozen picture is covered by black.
   bool isFrozen() const noexcept { return frozen_; }
-  float light() const noexcept { return light_; }  // as of the last update()
+  float light() const noexcept { return light_; }  // brightness as of the last update()
   Playlist::State playlist() const noexcept { return playlist_.state(); }
-  // Nothing is due while the wall is black or frozen, since then no time passes for the playlist.
+  // See Playlist::due(). While the wall is black or frozen, nothing is due, since no time passes
+  // for the playlist then.
   Playlist::Due due() const noexcept;
 
-  // A motion, such as a push of the ball, is a new touch only after this time without motion,
-  // because whoever presses or releases a button of the ball also pushes the ball.
+  // While the wall is black or frozen, a motion, such as a push of the ball, ends this state only
+  // after this time without motion, because a person who presses or releases a button of the ball
+  // also pushes the ball.
   static constexpr Duration kPause = std::chrono::milliseconds(500);
-  // Least motion of a hand that is a touch while the hand holds an action; above the tracker's
-  // noise.
+  // Smallest motion of a hand that counts as a touch while the hand holds an action. It is greater
+  // than the tracker's noise.
   static constexpr float kHandMoves_m = 0.02F;
-  // The same for fingers, above the noise of a finger at rest: in heights of the surface; for
-  // spreading and turning, in the units of TouchMotion.
+  // Smallest motion of fingers that counts as a touch, in heights of the surface, or, for spreading
+  // and turning, in the units of TouchMotion. It is greater than the noise of a finger at rest.
   static constexpr float kFingersMove = 0.005F;
 
  private:
   struct Asked {
     bool blank = false, freeze = false, touched = false, attended = false, next = false;
-    std::optional<bool> playlist;  // on or off
+    std::optional<bool> playlist;  // true: on, false: off; nothing: not requested
   };
   Asked takeAsked(const WallInput& input, Timestamp now);
   struct Motion {
-    bool touches = false;  // somebody acts
-    bool wakes = false;    // in a way that undoes blank and freeze
-    bool lets_go = false;  // a finger goes, or a button is released
+    bool touches = false;  // somebody acts, which ends the playlist
+    bool wakes = false;    // somebody acts in a way that undoes blank and freeze
+    bool lets_go = false;  // a finger leaves, or a button is released
   };
   Motion motionOf(const WallInput& input);
   bool isOfEndingTouch(const WallInput& input, Timestamp now);
@@ -85,28 +90,28 @@ class Attendance {
   Motion fingersMove(const render::scene::TouchMotion& touch);
 
   std::mutex mutex_;
-  Asked asked_;  // guarded by mutex_: since the last update()
+  Asked asked_;  // guarded by mutex_: what was requested since the last update()
   Playlist playlist_;
   bool blank_ = false, frozen_ = false;
   float light_ = 1;
   std::optional<Timestamp> last_update_;
   std::optional<Timestamp> last_motion_;
-  // At the last frame: actions held by a hand and pressed buttons; the hand's position when its
-  // motion last counted.
+  // State at the last frame: whether a hand held grab, fly and point_at; the pressed buttons of the
+  // ball; and the position of the hand when its motion last counted as a touch.
   std::array<bool, 3> holding_{};
   std::uint32_t buttons_ = 0;
   std::array<float, 3> hand_m_{};
-  // Number of fingers at the last frame, and their movement since a motion last counted.
+  // Number of fingers at the last frame, and their motion since it last counted as a touch.
   std::uint32_t fingers_ = 0;
   std::array<float, 4> fingers_moved_{};
-  // Of the fingers that touched while their bound gesture made the wall black or frozen, those that
-  // have not gone since; 0 once another one has come.
+  // Number of fingers that still touch since their gesture (pinch or spread) made the wall black or
+  // frozen; 0 after another finger has touched.
   std::uint32_t of_gesture_ = 0;
-  // What the last touch has ended: see isOfEndingTouch().
+  // State that the last touch has ended: see isOfEndingTouch().
   struct Ended {
     bool blank = false, frozen = false;
-    std::uint32_t fingers = 0, buttons = 0;  // there before it; all bits: those that came are gone
-    Timestamp finger_last{}, button_last{};  // when one that came with it was there last
+    std::uint32_t fingers = 0, buttons = 0;  // before the touch; all bits set: the touch is over
+    Timestamp finger_last{}, button_last{};  // when a finger or button of the touch was last there
   };
   Ended ended_;
 };

@@ -64,7 +64,7 @@ Error ContentRequests::noSuchName(const std::string& name) const {
 }
 
 std::vector<std::string> ContentRequests::namesInFolder() const {
-  constexpr std::size_t kMost = 50;  // keeps the status and error messages short
+  constexpr std::size_t kMost = 50;  // keeps status and error messages short
   std::vector<std::string> names;
   for (NamedFile& file : folder_.namedFiles()) {
     if (names.size() == kMost) break;
@@ -93,7 +93,8 @@ Result<std::uint32_t> ContentRequests::showFile(const std::string& name) {
   return number;
 }
 
-// Lets the watch's thread read the model, since that may take long.
+// Shows a content of the content folder. A model is read by the thread of ModelWatch, since that
+// may take long; a picture is read here.
 Result<Ok> ContentRequests::showEntry(const ContentEntry& entry, std::uint32_t request) {
   const auto read = [this, entry, request]() -> Result<ReadyModel> {
     std::vector<std::string> skipped;

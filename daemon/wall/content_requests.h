@@ -1,4 +1,4 @@
-// ContentRequests: what people ask the wall to show: contents of the configuration by name, and
+// ContentRequests: executes requests to show a content: contents of the configuration by name, and
 // files in the content folder.
 #pragma once
 
@@ -19,43 +19,46 @@
 
 namespace merlin::wall {
 
-// All of them outlive ContentRequests.
+// What ContentRequests needs. All must outlive it.
 struct ContentRequestParts {
   const WallSettings& wall;
   const std::vector<ContentEntry>& entries;  // the contents of the configuration
   const MissingContents& missing;            // which of `entries` cannot be shown yet
-  ModelWatch& watch;                         // reads models, and reports
-  Attendance& attendance;                    // a request is a touch
-  const std::atomic<WallLoop*>& loop;        // null before the first frame
+  ModelWatch& watch;                         // reads models, and reports events
+  Attendance& attendance;                    // each request counts as a touch
+  const std::atomic<WallLoop*>& loop;        // null while the loop does not run
 };
 
-// Thread-safe, but for makeFolder().
+// Thread-safe, except for makeFolder().
 class ContentRequests {
  public:
   explicit ContentRequests(const ContentRequestParts& parts);
 
-  // Makes the content folder; reports as an event why that cannot be done. To be called once, as
-  // the daemon starts.
+  // Creates the content folder if it is missing; if this fails, an event reports the reason. To be
+  // called once, at the daemon's start.
   void makeFolder();
 
-  // Shows the content of that name: one of the configuration, else one of namesInFolder(), by
-  // showFile(). Returns the number of the request: when it is done, shm::WallContent::finished is
-  // that number. Errors: kBusy, kInvalidArgument (no such name), those of showFile().
+  // Shows the content with this name: that of the configuration, or, if there is none, that of the
+  // content folder, as showFile() does. Returns the number of the request;
+  // shm::WallContent::finished has this number when the request is done. Errors: kBusy (the wall's
+  // loop does not run yet), kInvalidArgument (there is no such name, or its file cannot be read
+  // yet), those of showFile().
   Result<std::uint32_t> show(const std::string& name);
 
-  // The same for a file in the content folder, by its name there; removes files that are no longer
-  // needed there. Errors: kBusy, those of ShownFolder::entryOf() and readContent(); a model's file
-  // is read later, so its errors are reported with `finished`. Reads a picture's coarsest level, a
-  // few milliseconds.
+  // Shows a file in the content folder by its file name, and removes files there that are no longer
+  // needed (ShownFolder::tidy()). Returns the number of the request as show() does. Errors: kBusy
+  // (the wall's loop does not run yet), those of ShownFolder::entryOf() and readContent(). A
+  // model's file is read after the return, so its errors are reported by shm::WallContent::refused.
+  // Of a picture, the coarsest level is read before the return, which takes a few milliseconds.
   Result<std::uint32_t> showFile(const std::string& name);
 
   const ShownFolder& folder() const noexcept { return folder_; }
 
-  // The names of the contents in the content folder that show() accepts, i.e. without those whose
-  // name a configured content has; the newest first, 50 at most.
+  // Returns the names of the contents in the content folder that show() accepts, newest first, at
+  // most 50. Names that a configured content has are omitted.
   std::vector<std::string> namesInFolder() const;
 
-  // Names of contents that cannot be shown yet, each with the reason.
+  // Returns the names of configured contents that cannot be shown yet, each with the reason.
   std::vector<std::pair<std::string, std::string>> missing() const;
 
  private:

@@ -6,8 +6,8 @@
 namespace merlin::wall {
 namespace {
 
-// Index of `place` in the list; the last index if the list lacks it, so that the first place
-// follows.
+// Returns the index of `place` in `places`; the last index if it is not there, so that the first
+// place follows.
 std::size_t turnOf(std::size_t place, std::span<const std::size_t> places) {
   const auto at = std::ranges::find(places, place);
   return at == places.end() ? places.size() - 1 : static_cast<std::size_t>(at - places.begin());
@@ -59,7 +59,7 @@ void ContentTurns::calibrate(const Eigen::Isometry3f& T_eye_content) {
   if (source_ && listed_ > 1) source_->prepare(first);
 }
 
-// First place whose content is not missing; 0 if all are missing.
+// Returns the first place of the list whose content is not missing; 0 if all are missing.
 std::size_t ContentTurns::firstThere() const noexcept {
   for (std::size_t place = 0; place < listed_; ++place) {
     if (!contents_[place].missing) return place;
@@ -67,8 +67,8 @@ std::size_t ContentTurns::firstThere() const noexcept {
   return 0;
 }
 
-// Draws the initial view at a cost close to `cost` and measures the time. The fastest of three
-// draws counts, since the first one fills caches.
+// Measures the time that drawing the initial view of content index_ takes, at a cost close to
+// `cost`. The shortest of three times is used, since the first one includes filling the caches.
 void ContentTurns::measureInitialView(const Eigen::Isometry3f& T_eye_content, std::size_t cost) {
   const std::size_t step = detail().stepWithin(cost);
   InitialView& view = initial_[index_];
@@ -148,8 +148,8 @@ void ContentTurns::choose(std::size_t place) noexcept {
   if (asked_ == place) chosen_ = true;
 }
 
-// A request for the place that is already requested, for example for its next slide, does not end a
-// person's choice.
+// A request for the place that is already requested, for example because of its next slide, does
+// not reset chosen_.
 void ContentTurns::request(std::size_t place) noexcept {
   if (place >= contents_.size() || contents_[place].missing) return;
   if (std::exchange(asked_, place) != place) chosen_ = false;
@@ -163,8 +163,8 @@ bool ContentTurns::showRequested() {
   return true;
 }
 
-// The cost of the new content's initial view is not known; the governor learns it while the content
-// is shown.
+// The drawing time of the new content's initial view is not known; the governor learns it while the
+// content is shown.
 bool ContentTurns::replace(const ContentSource::Replacement& fresh) {
   const bool nothing_shown = contents_[asked_].missing;
   contents_[fresh.place] = fresh.content;

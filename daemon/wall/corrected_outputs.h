@@ -1,5 +1,5 @@
-// CorrectedOutputs: the outputs of the configuration, each with the correction of its picture, the
-// check of what it shows and the tap of its signal; and the alignment of them all.
+// CorrectedOutputs: owns the outputs of the configuration, each with the correction of its picture,
+// the check of what it shows and the tap of its signal; and the aligner of all of them.
 #pragma once
 
 #include <cstdint>
@@ -29,61 +29,63 @@
 
 namespace merlin::wall {
 
-// How signals that the GPU corrects come to the displays.
+// How signals that the GPU corrects get to the displays.
 struct ScanOutReport {
-  bool drawn = false;   // at least one output's last signal was drawn into the memory that it shows
-  std::string fault{};  // why one is copied that might be drawn; empty: none is
+  // Whether the last signal of at least one output was drawn into the memory that its display
+  // shows.
+  bool drawn = false;
+  std::string fault{};  // why a signal is copied that could be drawn; empty: none is
 };
 
-// All that is referred to outlives CorrectedOutputs.
+// What CorrectedOutputs needs. All that is referred to must outlive it.
 struct CorrectedOutputsParts {
   const Settings& settings;  // `wall` is drawnWall() of the configured one
   const render::tiles::TilePlan& plan;
-  std::uint64_t generation = 0;  // new at each start of the daemon
+  std::uint64_t generation = 0;  // differs in each run of the daemon
   render::testcard::CardOverlay& cards;
   state::StateKeeper& keeper;
   KeptFiles& kept_files;
   ThreadWatch& watch;
   Clock& clock;
-  // The operator's panel in the frame; nothing: there is none.
+  // Place of the operator's panel in the frame; nothing: there is no panel.
   std::optional<PanelPointer::Place> panel{};
 };
 
-// Thread-bound to the wall's thread once that runs, but for aligner(), whose members are
-// thread-safe, signals(), uncorrected() and scanOut().
+// Thread-bound to the wall's thread once this thread runs, except for aligner() and signals(),
+// whose members are thread-safe where they say so, uncorrected(), scanOut() and set().mend().
 class CorrectedOutputs {
  public:
-  // Opens the outputs. If any is of kind kms, this must precede the creation of every drawing
-  // context. Errors: those of makeOutput(), with the output's name.
+  // Opens the outputs. If an output is of kind kms, make() must be called before any drawing
+  // context is created. Errors: those of makeOutput(), with the output's name.
   static Result<std::unique_ptr<CorrectedOutputs>> make(const CorrectedOutputsParts& parts);
   ~CorrectedOutputs() = default;
   CorrectedOutputs(const CorrectedOutputs&) = delete;
   CorrectedOutputs& operator=(const CorrectedOutputs&) = delete;
 
-  // Sets the functions that outputs of kind window call, on their own threads, for the person at
-  // them.
+  // Sets the functions that outputs of kind window call, on their own threads, to execute what the
+  // person at the window does.
   void onWindow(render::out::WindowActs acts) { window_ = std::move(acts); }
 
   render::out::OutputSet& set() { return outputs_; }
-  // Begins to check from time to time what the outputs show.
+  // Starts to check regularly what the outputs show.
   void startChecks() { checks_->start(parts_.watch); }
-  // Returns the corrections by output number; null if the output is sent the frame itself. To be
-  // called once; the caller must keep them until close().
+  // Returns the corrections by output number; null for an output that is sent the uncorrected
+  // frame. To be called once; the caller must keep them until close().
   std::vector<std::unique_ptr<render::frame::Correction>> takeCorrections() {
     return std::move(corrections_);
   }
   render::correct::ShaderPass& shaderPass() { return shader_pass_; }
-  // Thread-safe until close().
+  // Returns how corrected signals get to the displays. Thread-safe until close() is called.
   ScanOutReport scanOut() const;
 
   Aligner& aligner() { return *aligner_; }
   SignalTaps& signals() { return *signals_; }
-  // Which outputs are shown without the correction that was measured for them, and why; empty:
-  // none. The same as long as the wall runs.
+  // Returns a text about which outputs are shown without the correction that was measured for them,
+  // and why; empty: none. Does not change while the wall runs.
   const std::string& uncorrected() const noexcept { return uncorrected_; }
 
-  // Closes all outputs and ends the alignment. Outputs of kind window execute commands until then,
-  // so this must be called before anything that those commands use is destroyed.
+  // Closes all outputs and destroys the aligner. Outputs of kind window execute commands until
+  // then, so close() must be called before anything that these commands use is destroyed.
   void close();
 
  private:
@@ -96,25 +98,25 @@ class CorrectedOutputs {
   void makeSignals();
 
   CorrectedOutputsParts parts_;
-  render::out::kms::Cards graphics_cards_;  // their displays, shared by the outputs on them
+  render::out::kms::Cards graphics_cards_;  // shared by the outputs on their displays
   render::out::OutputSet outputs_{{}};
-  std::optional<render::out::PictureChecks> checks_;  // of outputs_
-  ThreadTeam team_;  // threads for the corrections; used on the wall's thread
-  render::correct::ShaderPass shader_pass_;  // of the corrections, where a GPU computes them
+  std::optional<render::out::PictureChecks> checks_;  // checks of outputs_
+  ThreadTeam team_;  // threads that compute corrections; used by the wall's thread
+  render::correct::ShaderPass shader_pass_;  // computes the corrections on a GPU
   std::vector<std::unique_ptr<render::frame::Correction>> corrections_;
   std::string uncorrected_;
   std::unique_ptr<SignalTaps> signals_;
-  std::unique_ptr<Aligner> aligner_;  // replaces corrections
+  std::unique_ptr<Aligner> aligner_;  // replaces the corrections after a change
   render::out::WindowActs window_;
 };
 
-// Whether signals that this renderer corrects are drawn into displays' memory where that is
-// possible. Pure.
+// Whether signals that this renderer corrects are to be drawn directly into the memory of displays
+// where this is possible. Pure.
 bool drawsIntoDisplays(const render::frame::RenderSettings& settings,
                        const render::gl::RendererInfo& renderer);
 
-// Name of the shared-memory object that the frame is in, if an output of kind shared_memory shows
-// it; empty otherwise.
+// Returns the name of the shared memory with the frame if an output of kind shared_memory is
+// configured; empty otherwise.
 std::string sharedFrameName(const Settings& settings);
 
 }  // namespace merlin::wall

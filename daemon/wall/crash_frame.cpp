@@ -29,7 +29,7 @@ CrashFrame::CrashFrame(render::out::CapturedFrame frame, DatedFiles files, Threa
         std::mutex mutex;
         std::unique_lock lock(mutex);
         std::condition_variable_any never;
-        while (!stop.stop_requested()) {  // reports progress, as every watched thread must
+        while (!stop.stop_requested()) {  // reports progress, as watched threads must
           progress.step();
           never.wait_for(lock, stop, kBeat, [] { return false; });
         }
@@ -38,7 +38,7 @@ CrashFrame::CrashFrame(render::out::CapturedFrame frame, DatedFiles files, Threa
 CrashFrame::~CrashFrame() { thread_.stop(); }
 
 void CrashFrame::write(Progress& progress) {
-  const Progress::Pause pause(progress);  // a disk may be slow
+  const Progress::Pause pause(progress);  // writing to a disk may take long
   const auto path = saveFrame(std::exchange(frame_, {}), files_);
   if (path)
     logWarning("the wall's process was killed or crashed; the last frame before that is in {}",

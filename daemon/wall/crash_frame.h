@@ -1,4 +1,4 @@
-// CrashFrame: writes to a file the last frame of a wall's process that was killed or crashed.
+// CrashFrame: writes the last frame of a wall's process that was killed or crashed to a file.
 #pragma once
 
 #include <optional>
@@ -10,15 +10,16 @@
 
 namespace merlin::wall {
 
-// The newest frame in the shared memory of this name ("/merlin-framebuffer"), if its process is
-// gone without having removed it. To be called before this process makes its own under that name,
-// which replaces it. Takes as long as copying the frame.
+// Returns the newest frame in the shared memory of this name ("/merlin-framebuffer") if the process
+// that wrote it has ended without removing the memory; otherwise nothing. To be called before this
+// process creates its own memory under this name, which replaces the old one. Cost: copies the
+// frame.
 std::optional<render::out::CapturedFrame> frameOfCrash(const std::string& name);
 
 class CrashFrame {
  public:
-  // Writes the frame as a PNG file, once, on a thread that gives way to all others; the log says
-  // where it is. `watch` must outlive this.
+  // Writes the frame as a PNG file, on a thread of the lowest priority, and logs the path of the
+  // file. `watch` must outlive this object.
   CrashFrame(render::out::CapturedFrame frame, DatedFiles files, ThreadWatch& watch);
   ~CrashFrame();
   CrashFrame(const CrashFrame&) = delete;
@@ -29,7 +30,7 @@ class CrashFrame {
 
   render::out::CapturedFrame frame_;
   DatedFiles files_;
-  WatchedThread thread_;  // declared last: it uses all others
+  WatchedThread thread_;  // declared last, because it uses all other members
 };
 
 }  // namespace merlin::wall

@@ -11,8 +11,8 @@
 namespace merlin::wall {
 namespace {
 
-// While a ball is pushed, it sends samples at least this often. If the last sample is an older
-// push, the sample of its release was lost, and the push is ignored.
+// A ball that is pushed sends samples with at most this interval. If the last sample is a push and
+// older than this, the sample of the release was lost, and the push is ignored.
 constexpr Duration kPushLasts = std::chrono::milliseconds(500);
 
 bool pushed(const BallSample& b) {
@@ -21,8 +21,8 @@ bool pushed(const BallSample& b) {
          std::any_of(std::begin(b.rotation), std::end(b.rotation), moves);
 }
 
-// Replaces the hand's pose by the one predicted for the time `seen`, if shared memory has a
-// smoothed hand that was computed from the same tracker sample.
+// Replaces the pose in `hand` by the pose predicted for the time `seen`, if `slots` has a
+// HandSample that was computed from the same tracker sample.
 void predictPose(const shm::DeviceSlots::Hand* slots, Timestamp seen, TrackerSample& hand) {
   const auto h = slots ? slots->samples->newest() : std::nullopt;
   if (!h || h->received_ns != hand.received_ns) return;
@@ -31,8 +31,8 @@ void predictPose(const shm::DeviceSlots::Hand* slots, Timestamp seen, TrackerSam
   std::copy(pose.orientation_wxyz.begin(), pose.orientation_wxyz.end(), hand.orientation_wxyz);
 }
 
-// The actions by which a hand moves the model. While a hand only points, another one may move the
-// model.
+// Actions by which a hand moves the model or the viewer. A hand that only points does not prevent
+// another hand from doing so.
 constexpr std::array kMoving = {actionIndex("grab"), actionIndex("fly")};
 constexpr std::array kOfHand = {actionIndex("grab"), actionIndex("fly"), actionIndex("point_at")};
 
@@ -42,15 +42,15 @@ bool holdsOneOf(const actions::ActionCounts& counts, std::span<const std::size_t
   return std::any_of(actions.begin(), actions.end(), [&](std::size_t i) { return counts.held[i]; });
 }
 
-// Whether actions of this source are the hand's: it is the glove that the hand wears, or has the
-// buttons that the hand holds.
+// Whether the actions of this source belong to the hand: it is the glove that the hand wears, or
+// the ball whose buttons the hand holds.
 bool isOfHand(const shm::DeviceSlots& devices, const FollowedHand& hand,
               const std::string& source) {
   const auto* const glove = devices.glove(hand.glove);
   return (glove && glove->name == source) || (!hand.buttons.empty() && hand.buttons == source);
 }
 
-// Whether the hand holds one of these actions.
+// Whether a source that belongs to the hand holds one of the actions `of`.
 bool holdsOneOf(const shm::DeviceSlots& devices, const actions::Actions& actions,
                 const FollowedHand& hand, std::span<const std::size_t> of) {
   for (std::size_t i = 0; i < devices.actions.size(); ++i) {
@@ -72,9 +72,10 @@ render::scene::HeldMotion motionOf(const actions::ActionCounts& used) {
           .roll_right = between(actionIndex("roll_left"), actionIndex("roll_right"))};
 }
 
-// Index of the action in kAlignActions; kAlignActionCount if it is none of them.
+// Returns the index in kAlignActions of an action, which is an index into kActions;
+// kAlignActionCount if it is not there.
 std::uint8_t alignActionOf(std::size_t action) {
-  if (action >= kActions.size()) return kAlignActionCount;  // sent by a newer release
+  if (action >= kActions.size()) return kAlignActionCount;  // written by a newer release
   const auto* const found = std::find(std::begin(kAlignActions), std::end(kAlignActions),
                                       std::string_view(kActions[action]));
   return static_cast<std::uint8_t>(found - std::begin(kAlignActions));
@@ -128,7 +129,7 @@ std::optional<T> DeviceFeed::fresh(const shm::Channel<T>& channel,
   return sample;
 }
 
-// Returns the person to whom a device or a hand belongs.
+// Returns the person to whom a device or a hand belongs; "" if none is configured.
 std::string DeviceFeed::personOf(const std::string& device) const {
   const auto found = std::find_if(settings_.devices.begin(), settings_.devices.end(),
                                   [&](const OwnedDevice& d) { return d.device == device; });
@@ -162,7 +163,8 @@ std::optional<BallSample> DeviceFeed::readBall(const shm::DeviceSlots::Ball& slo
   return ball;
 }
 
-// Held actions count only while their device works: a process that has ended cannot release them.
+// Reads balls, touch surfaces and actions. Held actions count only while their device works, since
+// a process that has ended cannot release them.
 DeviceFeed::Acts DeviceFeed::readActs(const shm::DeviceSlots& devices, Timestamp now) {
   Acts acts;
   acts.actions = actions_.read(devices);
@@ -175,7 +177,8 @@ DeviceFeed::Acts DeviceFeed::readActs(const shm::DeviceSlots& devices, Timestamp
     acts.balls.push_back(readBall(ball, now));
     if (!acts.balls.back() || leaves_out_ball_) ends(ball.name);
   }
-  // When the devices' process restarts, it counts fingers and the wheel's notches from 0.
+  // After a restart, the process of the devices counts fingers and the wheel's notches from 0
+  // again.
   const std::uint64_t run = devices.header->generation;
   if (std::exchange(touches_of_, run) != run) touches_.clear();
   touches_.resize(devices.touches.size());
@@ -210,9 +213,9 @@ void DeviceFeed::takeTurns(const shm::DeviceSlots& devices, const Acts& now_acts
   holder_ = turns_.update(now, acting);
 }
 
-// The hand that acted last remains the acting one while it holds an action, so that a second hand
-// does not take over the model. Exception: a hand that moves the model takes over from one that
-// only points.
+// Returns the index of the acting hand; settings_.hands.size() if there is none. The hand that
+// acted last remains the acting one while it holds an action, so that a second hand does not take
+// over the model; but a hand that moves the model takes over from one that only points.
 std::size_t DeviceFeed::handThatActs(const shm::DeviceSlots& devices,
                                      const actions::Actions& actions) {
   const auto holds = [&](std::size_t hand, std::span<const std::size_t> of) {
@@ -250,7 +253,8 @@ void DeviceFeed::readHand(const shm::DeviceSlots& devices, const actions::Action
   readPosture(devices, settings_.hands[hand_].glove, now, input);
 }
 
-// Predicts the pose of a hand for the time when the next frame is visible.
+// Returns the sample of the hand's station, with the pose predicted for the time when the next
+// frame is visible; nothing if the station delivers none.
 std::optional<TrackerSample> DeviceFeed::predicted(const shm::DeviceSlots& devices,
                                                    const FollowedHand& followed, Timestamp now) {
   auto hand = station(devices, followed.place, now);
@@ -270,9 +274,9 @@ void DeviceFeed::readPosture(const shm::DeviceSlots& devices, const std::string&
   if (held) std::copy(std::begin(held->name), std::end(held->name), input.posture.begin());
 }
 
-// Whether `source` is the glove, or has the buttons, of a hand other than the acting one; the
-// actions by which it would move the model or point are then ignored. So are those of a glove on no
-// hand if the acting hand wears another one.
+// Whether `source` is the glove or the ball (whose buttons are held) of another hand than the
+// acting one, or a glove on no hand while the acting hand wears another glove. The actions grab,
+// fly and point_at of such a source are ignored.
 bool DeviceFeed::isOfAnotherHand(const shm::DeviceSlots& devices, const std::string& source) const {
   if (hand_ >= settings_.hands.size()) return false;
   const FollowedHand& acting = settings_.hands[hand_];
@@ -283,7 +287,8 @@ bool DeviceFeed::isOfAnotherHand(const shm::DeviceSlots& devices, const std::str
          });
 }
 
-// Returns whether a ball moves a corner.
+// Sets the part of `input` that comes from actions. Returns whether align_push is held, i.e. the
+// ball moves a corner.
 bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Actions& actions,
                             WallInput& input) {
   actions::ActionCounts used;
@@ -305,8 +310,8 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
       if (align < kAlignActionCount && !left_out) input.align.actions.push_back(align);
     }
   }
-  // When another hand takes over, the model is released for one frame, so that the new hand moves
-  // it from its present place.
+  // When another hand takes over the model, the model is released for one frame, so that the new
+  // hand moves it from its present position.
   if (other_hand_ && moved_) {
     for (const std::size_t action : kMoving) used.held[action] = false;
   }
@@ -319,13 +324,14 @@ bool DeviceFeed::useActions(const shm::DeviceSlots& devices, const actions::Acti
   return used.held[actionIndex("align_push")];
 }
 
-// A full push moves the selected corner by kFullPush_px_s; the speed grows with the cube of the
-// push, so that fractions of a pixel can be set. Meanwhile the ball does not move the scene.
+// Moves the selected corner by the ball's push if align_push is held (`held`); the ball then does
+// not move the scene. A full push moves the corner at kFullPush_px_s; the speed grows with the cube
+// of the push, so that small pushes move it by fractions of a pixel.
 void DeviceFeed::moveCorner(Duration since_last, bool held, WallInput& input) const {
   auto& ball = input.scene.ball;
   if (!held || !ball) return;
   constexpr double kFullPush_px_s = 60;
-  const double seconds = std::min(toSeconds(since_last), 0.1);  // limited after a long frame
+  const double seconds = std::min(toSeconds(since_last), 0.1);  // limited if a frame took long
   const auto moved = [&](float push) {
     return kFullPush_px_s * seconds * static_cast<double>(push * push * push);
   };
@@ -334,7 +340,7 @@ void DeviceFeed::moveCorner(Duration since_last, bool held, WallInput& input) co
   std::fill(std::begin(ball->rotation), std::end(ball->rotation), 0.0F);
 }
 
-// A mouse's wheel counts beside the fingers of another surface.
+// Uses the motion of the surface with the most fingers, and adds the turns of mouse wheels.
 void DeviceFeed::readTouches(const shm::DeviceSlots& devices, const Acts& acts,
                              render::scene::TouchMotion& used) const {
   float by_wheel = 0;

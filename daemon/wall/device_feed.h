@@ -1,5 +1,6 @@
 // DeviceFeed: reads the wall's input from the shared-memory segment of the devices, which this
-// process or another one writes. The devices' slots are found by name when the segment is opened.
+// process or another one writes. The slots of the devices are found by name when the segment is
+// opened.
 #pragma once
 
 #include <optional>
@@ -15,13 +16,14 @@
 
 namespace merlin::wall {
 
-// Thread-bound. Never waits: reads the newest samples and omits devices that do not work.
+// Thread-bound. Never waits: it reads the newest samples and omits devices that do not work.
 //
-// Among several balls the one that is pushed counts, among several hands the one that holds an
-// action, otherwise the first of each; among several touch surfaces the one that is touched, and
-// each mouse's wheel. The actions of all devices count, but only the hand that acts grabs, flies
-// and points by its glove and by the buttons that it holds. Among several people, only the input of
-// the one who has the wall counts (Turns); the hands of the others may still point.
+// Of several balls, the first one that is pushed counts, otherwise the first one. Of several hands,
+// the one that holds an action acts, otherwise the first one. Of several touch surfaces, the one
+// with the most fingers counts; the wheel of each mouse counts too. The actions of all devices
+// count, but grab, fly and point_at only if they belong to the glove or the buttons of the acting
+// hand. Of several people, only the input of the person who has the wall counts (Turns); other
+// people's hands may still point.
 class DeviceFeed final : public InputFeed {
  public:
   DeviceFeed(std::string segment_name, FeedSettings settings)
@@ -37,7 +39,7 @@ class DeviceFeed final : public InputFeed {
   Duration age() const noexcept override { return age_.value_or(Duration::zero()); }
 
  private:
-  // What the devices of one person do now.
+  // What all devices do at the time of a read().
   struct Acts {
     std::vector<std::optional<BallSample>> balls;     // index: DeviceSlots::balls
     std::vector<render::scene::TouchMotion> touches;  // index: DeviceSlots::touches
@@ -71,16 +73,16 @@ class DeviceFeed final : public InputFeed {
   FeedSettings settings_;
   Turns turns_;
   Duration until_visible_ = Duration::zero();
-  std::optional<std::string> holder_;  // who has the wall
-  std::size_t hand_ = 0;               // the hand that acted last: index of settings_.hands
-  bool other_hand_ = false;            // hand_ changed at the last read
-  bool moved_ = false;                 // something was grabbed, or flown, at the last read
+  std::optional<std::string> holder_;  // the person who has the wall; nothing: nobody
+  std::size_t hand_ = 0;               // the hand that acted last, an index into settings_.hands
+  bool other_hand_ = false;            // whether hand_ changed in the last read()
+  bool moved_ = false;                 // whether grab or fly was held in the last read()
   bool leaves_out_ball_ = false;
   std::optional<Duration> age_;
   std::optional<Timestamp> last_read_;
   actions::ActionReader actions_;
   std::vector<render::scene::TouchFollower> touches_;  // index: DeviceSlots::touches
-  std::uint64_t touches_of_ = 0;  // generation of the devices' process that touches_ follow
+  std::uint64_t touches_of_ = 0;  // generation of the segment whose samples touches_ follow
 };
 
 }  // namespace merlin::wall

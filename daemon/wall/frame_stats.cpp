@@ -16,13 +16,14 @@ void FrameStats::deadline(Timestamp at, bool moving, bool met) {
   settle(met);
 }
 
-// `unsettled_` counts deadlines from the first late one; a single late deadline is an outlier.
+// Updates the length of the last disturbance. `unsettled_` counts the deadlines since the first
+// late one. A single late deadline is ignored as an outlier.
 void FrameStats::settle(bool met) {
   met_run_ = met ? met_run_ + 1 : 0;
   if (met_run_ < 5) {
     ++unsettled_;
   } else if (unsettled_ > 0) {
-    const std::uint32_t until = unsettled_ - 4;  // the last four of these were met already
+    const std::uint32_t until = unsettled_ - 4;  // without the last four, which were met
     if (until >= 2) settle_ = until;
     unsettled_ = 0;
   }
@@ -50,8 +51,8 @@ void FrameStats::advance(Timestamp now) {
 }
 
 double FrameStats::heldRate(Timestamp now, double asked_hz) const {
-  // Computed as a share of the requested rate, since the number of deadlines in a window of one
-  // second varies by one.
+  // The rate is computed from the share of deadlines that were met, not from their number, since
+  // the number of deadlines within a second varies by one.
   double met = 0, all = 0;
   for (auto d = minute_.rbegin(); d != minute_.rend() && now - d->at < kSecond; ++d) {
     met += d->met;

@@ -1,5 +1,5 @@
-// FrameStats: statistics of deadlines and frames over the last second, the last minute and since
-// the start. Pure.
+// FrameStats: statistics of deadlines and frames for the last second, for the last minute, and
+// since the start. Pure.
 #pragma once
 
 #include <array>
@@ -10,43 +10,49 @@
 
 namespace merlin::wall {
 
-// Thread-bound. Memory is bounded by a minute of deadlines.
+// Thread-bound. Stores the deadlines of the last minute and the frames of the last second.
 class FrameStats {
  public:
   static constexpr Duration kSecond = std::chrono::seconds(1), kMinute = std::chrono::seconds(60);
 
-  // Records a deadline that has passed. `moving`: something moved, so a new frame was due;
-  // otherwise the frame shown was still valid. `met`: the frame came in time, or none was due.
+  // Records a deadline that has passed. `moving`: whether something moved, so that a new frame was
+  // due; otherwise the frame shown was still valid. `met`: whether the frame was in time, or none
+  // was due.
   void deadline(Timestamp at, bool moving, bool met);
 
-  // Records a frame that was drawn while something moved, with detail of this cost.
+  // Records a frame that was drawn while something moved. `work`: time from its begin to its
+  // delivery. `cost`: cost of its detail.
   void frame(Timestamp finished, Duration work, Duration period, std::size_t cost);
 
-  // To be called once a period: forgets deadlines older than a minute and frames older than a
-  // second.
+  // Removes deadlines older than a minute and frames older than a second. To be called once a
+  // period.
   void advance(Timestamp now);
 
-  // Share of the last second's deadlines that were met, times asked_hz [Hz].
+  // Returns the share of the last second's deadlines that were met, times asked_hz [Hz]; 0 if there
+  // were none.
   double heldRate(Timestamp now, double asked_hz) const;
-  // Of the deadlines of the last `over` at which something moved, the share that was late; 0 if
-  // there were none.
+  // Returns the share of late deadlines among those of the last `over` at which something moved; 0
+  // if there were none. REQUIRES: over <= kMinute.
   double lateShare(Timestamp now, Duration over) const;
-  double medianWorkSeconds() const;  // of the frames of the last second; 0 if there were none
-  double utilisation() const;        // mean of work / period of the same frames
-  // Deadlines while something moved, since the start: all, the late ones, and the longest run of
-  // late ones.
+  double medianWorkSeconds() const;  // median of the last second's frames; 0: there were none
+  double utilisation() const;        // mean of work / period of these frames; 0: none
+  // Return, for the deadlines at which something moved since the start: their number, the number of
+  // late ones, and the length of the longest run of late ones.
   std::uint64_t deadlines() const noexcept { return deadlines_; }
   std::uint64_t late() const noexcept { return late_; }
   std::uint32_t longestLate() const noexcept { return longest_late_; }
 
-  // Length of the last disturbance in deadlines: from the first late one until five in a row were
-  // met, without these five. A single late deadline does not count; 0 before the first disturbance.
+  // Returns the length of the last disturbance, as a number of deadlines: from the first late one
+  // until five in a row were met, without these five. A single late deadline is no disturbance. 0
+  // before the end of the first disturbance.
   std::uint32_t settleFrames() const noexcept { return settle_; }
 
-  // (95th - 5th percentile) / mean of the costs of the last 100 frames; 0 before there are 100.
+  // Returns (95th - 5th percentile) / mean of the costs of the last 100 frames; 0 before there are
+  // 100 frames.
   double oscillation() const;
 
-  // Histogram of work / period in buckets of 1/16; the last bucket holds all larger values.
+  // Returns the histogram of work / period of all frames since the start. Each bucket is 1/16 wide;
+  // the last one also counts all larger values.
   static constexpr std::size_t kBuckets = 32;
   const std::array<std::uint32_t, kBuckets>& histogram() const noexcept { return histogram_; }
 

@@ -7,9 +7,9 @@
 namespace merlin::wall {
 namespace {
 
-constexpr std::size_t kMostRunOver = 200;  // fewer than the trace keeps
+constexpr std::size_t kMostRunOver = 200;  // fewer than the 256 entries of the trace
 
-// Times within a frame are 32-bit nanoseconds; those above 4.29 s are clamped.
+// Converts a time within a frame to 32-bit nanoseconds; times above 4.29 s are clamped.
 std::uint32_t clampedNs(Duration d) {
   constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(d.count(), 0, kMost));

@@ -1,5 +1,5 @@
-// FrameTracer: collects the timed steps of one frame, and the deadlines that it ran over, in the
-// form in which shared memory stores them. Pure.
+// FrameTracer: collects the times of the steps of one frame, and the further periods that the frame
+// covered because it was late, in the form in which shared memory stores them. Pure.
 #pragma once
 
 #include <span>
@@ -11,25 +11,25 @@
 
 namespace merlin::wall {
 
-// Thread-bound. Call begin(), add() for each step and end(); then frames() can be published. It has
-// as many late frames as FrameStats counts late deadlines.
+// Thread-bound. For each frame, call begin(), add() for each step, and end(); then publish
+// frames(). frames() has one late entry for each late deadline that FrameStats counts, unless
+// runOver() has dropped some.
 class FrameTracer {
  public:
   void begin(Timestamp at, Timestamp deadline, bool moving);
-  // Adds a step that lasted from `from` to `to`; steps beyond the capacity of FrameTrace are
+  // Adds a step that lasted from `from` to `to`. Steps beyond the capacity of FrameTrace::steps are
   // dropped.
   void add(shm::StepKind kind, Timestamp from, Timestamp to, std::uint16_t tile = 0);
   void add(std::span<const render::frame::FrameStep> steps);
-  // Marks the frame as left out, because there is no time to draw one.
+  // Marks the frame as omitted, because there is no time to draw it.
   void leaveOut() noexcept { left_out_ = true; }
-  // The frame ran over this period too, from `begin` to `deadline`. If there are too many, the
-  // first are dropped.
+  // To be called for each further period, from `begin` to `deadline`, that the frame took. Of more
+  // than 200 such periods, the first ones are dropped.
   void runOver(Timestamp begin, Timestamp deadline);
-  // `cost`: cost of the detail of the frame shown. A late frame is stored with an end after its
-  // deadline; one that is left out, or that another frame ran over, with an end just after it at
-  // the earliest.
+  // Ends the frame at `at`. `cost`: cost of the detail of the frame that is shown. If a frame is
+  // late, the end that is stored is after its deadline, also for a frame that was omitted.
   void end(Timestamp at, std::uint32_t cost);
-  // The frame, and behind it one without steps for each period that it ran over.
+  // Returns the frame, followed by an entry without steps for each period of runOver().
   std::span<const shm::FrameTrace> frames() const noexcept { return frames_; }
 
  private:

@@ -13,8 +13,8 @@
 namespace merlin::wall {
 namespace {
 
-// Whether the file of a content can be the one of a relative path that an earlier version saved:
-// the folder that this path was relative to is not known.
+// Whether the path of a content ends with `relative`, a path that an earlier version saved; the
+// folder to which that path was relative is not known.
 bool endsWith(const ContentEntry& entry, const std::string& relative) {
   std::string_view end = relative;
   while (end.starts_with("../")) end.remove_prefix(3);
@@ -23,7 +23,7 @@ bool endsWith(const ContentEntry& entry, const std::string& relative) {
 
 }  // namespace
 
-// Place of the content that the state names; nothing if the configuration lacks it.
+// Returns the place of the content that the state names; nothing if the configuration lacks it.
 std::optional<std::size_t> LastContent::placeInState() const {
   const std::string path = keeper_.state().content;
   if (path.empty()) return 0;
@@ -52,8 +52,8 @@ void LastContent::keep(std::size_t place) {
   if (kept_ == place) return;
   const bool first = !std::exchange(kept_, place);
   if (place >= entries_.size()) return;
-  // If the kept content's file cannot be read yet, another one is shown first. The state is not
-  // changed then, so that the next start tries the kept content again.
+  // If the file of the saved content cannot be read yet at a start, another content is shown first.
+  // The state does not change then, so that the next start tries the saved content again.
   if (first && !missing_.faultOf(placeInState().value_or(0)).empty()) return;
   const std::string path = place == 0 ? std::string() : absolutePath(entries_[place].path);
   if (keeper_.state().content != path) keeper_.change([&](state::State& s) { s.content = path; });

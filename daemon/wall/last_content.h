@@ -1,4 +1,5 @@
-// LastContent: which content was shown last, in the daemon's state.
+// LastContent: stores in the daemon's state which content was shown last, and finds this content at
+// a start.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +12,25 @@
 
 namespace merlin::wall {
 
-// The state stores an empty path for the first content, so that the configuration decides which one
-// it is, and the absolute path of any other one. Earlier versions stored a relative path if
-// --config was relative; it means the content whose path ends with it. Not thread-safe, but first()
-// may run beside keep().
+// The state has an empty path for the first content of the configuration, so that the configuration
+// decides which content this is, and the absolute path of any other content. Earlier versions
+// stored a relative path if --config was relative; it stands for the content whose path ends with
+// it. Not thread-safe, except that first() may run at the same time as keep().
 class LastContent {
  public:
-  // `missing`: of `entries`, the contents of the configuration. All outlive this object.
+  // `entries`: the contents of the configuration. `missing`: which of them cannot be shown yet. All
+  // arguments must outlive this object.
   LastContent(const std::vector<ContentEntry>& entries, const MissingContents& missing,
               state::StateKeeper& keeper)
       : entries_(entries), missing_(missing), keeper_(keeper) {}
 
-  // The place of the content to begin with. Adds a notice to those of the state if the
-  // configuration lacks the content that was shown last.
+  // Returns the place of the content that was shown last; 0, and a notice of the keeper, if the
+  // configuration no longer has this content.
   std::size_t first() const;
 
-  // Saves that the content of this place is shown; a place beyond the configured contents, i.e. a
-  // file, is not saved. Cheap if the place is that of the last call.
+  // Saves that the content of this place is shown. A place after those of the configured contents,
+  // i.e. a file in the content folder, is not saved. Cheap if the place is the same as in the last
+  // call.
   void keep(std::size_t place);
 
  private:

@@ -1,4 +1,4 @@
-// MessageBoard: the last events, for the operator's tile.
+// MessageBoard: stores the last events, which the operator's tile shows.
 #pragma once
 
 #include <deque>
@@ -18,18 +18,19 @@ struct BoardMessage {
 // Thread-safe.
 class MessageBoard {
  public:
-  // Adds a message; the oldest of more than kKept are dropped. A repeated last message is renewed.
+  // Adds a message and removes the oldest ones beyond kKept. If the text is that of the newest
+  // message, only the time of this message is updated.
   void add(Timestamp at, std::string text);
 
-  // Copies the messages to `to`, the newest first. Does not wait: returns false, and leaves `to` as
-  // it is, while another thread adds one.
+  // Copies the messages to `to`, newest first. Does not wait: if another thread holds the lock, it
+  // returns false and does not change `to`.
   bool tryRead(std::vector<BoardMessage>& to) const;
 
   static constexpr std::size_t kKept = 4;
 
  private:
   mutable std::mutex mutex_;
-  std::deque<BoardMessage> messages_;  // guarded by mutex_; the newest first
+  std::deque<BoardMessage> messages_;  // guarded by mutex_; newest first
 };
 
 }  // namespace merlin::wall

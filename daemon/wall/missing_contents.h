@@ -1,4 +1,4 @@
-// MissingContents: which contents of the configuration cannot be shown yet, and why.
+// MissingContents: stores which contents of the configuration cannot be shown yet, and why.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,14 @@
 
 namespace merlin::wall {
 
-// Thread-safe; no call waits for long.
+// A place is the index of a content in contentsOf(). Thread-safe; no call waits for long.
 class MissingContents {
  public:
-  // `faults`: by place, why it cannot be shown; empty: it can.
+  // `faults`: for each place, why its content cannot be shown; empty: it can be shown.
   explicit MissingContents(std::vector<std::string> faults) : faults_(std::move(faults)) {}
 
-  // Why the content of a place cannot be shown; empty if it can, or if there is no such place.
+  // Returns why the content of a place cannot be shown; empty if it can be shown, or if there is no
+  // such place.
   std::string faultOf(std::size_t place) const {
     const std::lock_guard lock(mutex_);
     return place < faults_.size() ? faults_[place] : "";

@@ -16,7 +16,7 @@ constexpr int kChecksUntilGone = 3;
 }  // namespace
 
 bool ReplacedFile::look(const std::optional<FileStamp>& found, Timestamp now) {
-  if (!found) return false;  // being renamed, or removed: keep the model that is shown
+  if (!found) return false;  // being renamed, or removed: the content shown stays
   if (*found != seen_) {
     seen_ = *found;
     since_ = now;
@@ -73,8 +73,8 @@ void ModelWatch::ask(Asked asked) {
   asked_changed_.notify_one();
 }
 
-// Reports the pictures that were left out once, and again only when they change, because the folder
-// is read anew for each slide.
+// Reports the pictures in a folder of slides that are not shown, once and again only when they
+// change, because the folder is read again for each slide.
 void ModelWatch::noteLeftOut(const std::string& slide, const std::string& left_out) {
   const std::string folder = std::filesystem::path(slide).parent_path().string();
   const std::lock_guard lock(mutex_);
@@ -97,7 +97,7 @@ void ModelWatch::offer(ReadyModel ready) {
   const std::lock_guard lock(mutex_);
   offered_.emplace_back(ready.place,
                         Watched{ready.path, ready.stamp, ready.picture ? "picture" : "model"});
-  // Drops an older content of this place that the wall has not taken yet.
+  // Removes an older content of this place that the wall has not taken yet.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == ready.place; });
   ready_.push_back(std::move(ready));
 }
@@ -134,7 +134,7 @@ void ModelWatch::readAsked(Progress& progress) {
   }
 }
 
-// Starts to watch the files of the contents that were offered.
+// Starts to watch the files of the contents that were passed to offer().
 void ModelWatch::followOffered() {
   std::vector<std::pair<std::size_t, Watched>> offered;
   {
@@ -148,11 +148,12 @@ void ModelWatch::followOffered() {
   }
 }
 
-// A file that cannot be shown is tried again only after it has changed.
+// Checks the file of a place, and reads it if it is to be read. A replaced file that cannot be
+// shown is tried again only after it has changed again.
 void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   const std::string& path = files_[place].path;
   if (path.empty()) return;
-  const Progress::Pause pause(progress);  // a file server may be slow, and a model large
+  const Progress::Pause pause(progress);  // a file server may be slow, and a model may be large
   const bool missing = !files_[place].fault.empty();
   const auto found = missing ? fileOrFolderStamp(path) : fileStamp(path);
   if (!missing) noteWhetherThere(place, found.has_value());
@@ -169,7 +170,8 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   handOver(place, std::move(ready));
 }
 
-// Hands over what was read because the file of a place has changed.
+// Passes on a content that was read because the file of a place has changed, or reports why it
+// cannot be shown.
 void ModelWatch::handOver(std::size_t place, Result<ReadyModel> ready) {
   const Watched& file = files_[place];
   const bool missing = !file.fault.empty();
@@ -187,14 +189,15 @@ void ModelWatch::handOver(std::size_t place, Result<ReadyModel> ready) {
   }
   ready->was_replaced = true;
   const std::lock_guard lock(mutex_);
-  // Drops an older model of this place that the wall has not taken yet; it is freed here, not on
-  // the wall's thread.
+  // Removes an older content of this place that the wall has not taken yet; it is freed here, not
+  // on the wall's thread.
   std::erase_if(ready_, [&](const ReadyModel& r) { return r.place == place; });
   ready_.push_back(*std::move(ready));
 }
 
-// To be called once per check. Reports a missing file only after kChecksUntilGone checks, since a
-// file that is being replaced may be missing for a moment.
+// Reports that a file is missing, or is there again. To be called once per check. A missing file is
+// reported only after kChecksUntilGone checks in a row, since a file that is being replaced may be
+// missing for a moment.
 void ModelWatch::noteWhetherThere(std::size_t place, bool there) {
   const bool was_gone = gone_[place] >= kChecksUntilGone;
   gone_[place] = there ? 0 : std::min(gone_[place] + 1, kChecksUntilGone);

@@ -24,7 +24,7 @@ Result<Ok> Notice::show(const std::string& text) {
 }
 
 Result<Ok> Notice::stand(const std::string& text, Timestamp now) {
-  constexpr Duration kAhead = std::chrono::seconds(1);  // so that the plate does not blink
+  constexpr Duration kAhead = std::chrono::seconds(1);  // renewed early, so as not to blink
   {
     const std::lock_guard lock(mutex_);
     if (now < until_ - (text_ == text ? kAhead : Duration{})) return Ok{};

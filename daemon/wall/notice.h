@@ -1,5 +1,5 @@
-// Notice: a sentence that a client has the wall show for a few seconds, such as how far the import
-// of a file is: over the picture, and in shared memory.
+// Notice: shows a client's sentence, such as the progress of an import, for a few seconds over the
+// picture, and publishes it in shared memory.
 #pragma once
 
 #include <mutex>
@@ -14,23 +14,25 @@ namespace merlin::wall {
 
 class Notice {
  public:
-  // All must outlive this object.
+  // The arguments must outlive this object.
   Notice(const render::tiles::TilePlan& plan, shm::SeqSlot<shm::WallNotice>& slot,
          const Clock& clock)
       : slot_(slot), clock_(clock), overlay_(plan, clock) {}
 
-  // Shows the sentence for kShown, in place of the one before; "off" ends it. Thread-safe. Errors:
-  // kInvalidArgument (not 1 to kMostBytes bytes of text), those of NoticeOverlay::show().
+  // Shows the sentence for kShown, in place of the one before; the text "off" ends the present
+  // sentence. Thread-safe. Errors: kInvalidArgument (`text` is not 1 to kMostBytes bytes of valid
+  // text), those of NoticeOverlay::show().
   Result<Ok> show(const std::string& text);
 
-  // Shows the sentence for as long as this is called ten times a second, while no client shows
-  // another. Thread-safe. Errors: those of show().
+  // Keeps showing the sentence as long as this is called ten times a second. Does nothing while
+  // another sentence is shown. Thread-safe. Errors: those of show().
   Result<Ok> stand(const std::string& text, Timestamp now);
 
-  // Writes shared memory when the sentence changes; to be called ten times a second, on one thread.
+  // Publishes the sentence in shared memory when it changes or ends. To be called ten times a
+  // second, always on the same thread.
   void tend(Timestamp now);
 
-  // For the wall's thread.
+  // Returns the overlay that draws the sentence. For the wall's thread.
   render::frame::Overlay& overlay() noexcept { return overlay_; }
 
   static constexpr Duration kShown = std::chrono::seconds(5);
@@ -40,9 +42,9 @@ class Notice {
   shm::SeqSlot<shm::WallNotice>& slot_;
   const Clock& clock_;
   render::text::NoticeOverlay overlay_;
-  std::string published_;  // of tend()'s thread
+  std::string published_;  // last published sentence; used by tend() only
   std::mutex mutex_;
-  // Guarded by mutex_.
+  // The sentence and the time at which it ends. Guarded by mutex_.
   std::string text_;
   Timestamp until_{};
 };

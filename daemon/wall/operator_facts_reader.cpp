@@ -23,12 +23,12 @@ std::string textOf(const char (&field)[N]) {
   return std::string(wholeCharacters(textIn(field)));
 }
 
-// Whether the device has a port. If the configuration lists no devices, the default ones exist
+// Whether the device has a port. If the configuration lists no devices, there are default devices
 // without ports.
 bool isConfigured(const DeviceHealth& health) { return textIn(health.reason) != kNotConfigured; }
 
-// The text is the state, followed by the reason if there is one: that of a fault, or the complaint
-// of a device that works.
+// Returns the line about a device: its state, followed by the reason if there is one (a fault, or a
+// warning of a device that works).
 DeviceFact deviceFact(std::string name, const DeviceHealth& health, Timestamp now) {
   const std::string_view state = shm::healthName(health, now);
   const std::string reason = textOf(health.reason);
@@ -40,14 +40,16 @@ DeviceFact deviceFact(std::string name, const DeviceHealth& health, Timestamp no
   return fact;
 }
 
-// Text for what the ball moves. A picture and a panorama have no viewer that could be moved.
+// Returns a text about what the ball moves. Pictures and panoramas have no viewer that could be
+// moved.
 std::string ballMoves(std::string_view kind, bool flies) {
   if (kind == "picture") return "moves the picture";
   if (kind == "panorama") return "turns the view";
   return flies ? "moves the viewer" : "moves the model";
 }
 
-// Opacity in steps of an eighth, so that a message that fades changes the plate only eight times.
+// Returns the opacity of a message of this age, in steps of an eighth, so that the plate is redrawn
+// only eight times while the message fades.
 float strengthAt(Duration age) {
   if (age <= kShown) return 1;
   const double left = 1 - toSeconds(age - kShown) / toSeconds(kFades);
@@ -92,7 +94,8 @@ void OperatorFactsReader::readContent(OperatorFacts& facts) const {
   facts.slide = textOf(content->slide);
 }
 
-// The trace keeps 256 periods: more than a second at the highest rate.
+// Adds the new moving frames of the trace to the chart. The trace contains the last 256 periods,
+// i.e. more than a second at the highest rate.
 void OperatorFactsReader::readFrames(double rate_hz) {
   const std::uint64_t count = wall_.trace.count();
   if (count - frames_read_ >= shm::kHistory)
@@ -116,7 +119,7 @@ void OperatorFactsReader::readDevices(Timestamp now, OperatorFacts& facts) {
 }
 
 void OperatorFactsReader::readMessages(Timestamp now, OperatorFacts& facts) {
-  board_.tryRead(messages_);  // if it fails, keeps the last ones
+  board_.tryRead(messages_);  // if this fails, messages_ does not change
   for (const BoardMessage& message : messages_) {
     const float strength = strengthAt(now - message.at);
     if (strength > 0) facts.messages.push_back({message.text, strength});

@@ -1,5 +1,5 @@
-// OperatorFactsReader: reads what the operator's tile shows from the slots in shared memory, as any
-// client does, and from the message board.
+// OperatorFactsReader: reads the facts that the operator's tile shows, from shared memory, as other
+// processes do, and from the message board.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace merlin::wall {
 
-// Thread-bound to the wall's thread. Takes no lock for which it would have to wait.
+// Thread-bound to the wall's thread. Never waits for a lock.
 class OperatorFactsReader final : public render::text::OperatorSource {
  public:
-  // `wall` and `board` must outlive this object. `devices`: the name of the devices' segment;
-  // `expects_devices`: whether some are configured.
+  // `devices`: name of the devices' segment. `expects_devices`: whether devices are configured.
+  // `wall` and `board` must outlive this object.
   OperatorFactsReader(const shm::WallSegment& wall, std::string devices, bool expects_devices,
                       const MessageBoard& board)
       : wall_(wall),
@@ -39,7 +39,7 @@ class OperatorFactsReader final : public render::text::OperatorSource {
   const MessageBoard& board_;
   std::vector<BoardMessage> messages_;
   render::text::FrameChart chart_;
-  std::uint64_t frames_read_ = 0;  // of the wall's trace
+  std::uint64_t frames_read_ = 0;  // number of entries of the wall's trace read so far
 };
 
 }  // namespace merlin::wall

@@ -28,8 +28,8 @@ ShownKind shownKind(std::string_view kind) {
   return kind == "model" ? ShownKind::kModel : ShownKind::kPicture;
 }
 
-// Rounds to two digits, so that the governor's small steps do not redraw the panel ten times a
-// second.
+// Rounds down to two digits, so that small changes of the governor's budget do not redraw the panel
+// ten times a second.
 std::uint32_t twoDigits(std::uint32_t number) {
   std::uint32_t unit = 1;
   while (number / unit >= 100) unit *= 10;
@@ -40,8 +40,8 @@ float strongest(std::initializer_list<float> pushes) {
   return std::max(pushes, [](float a, float b) { return std::abs(a) < std::abs(b); });
 }
 
-// Converts a sample to two directions: right (pushed or twisted to the right) and up (pushed up or
-// away, or tilted away).
+// Converts a sample of the ball to two directions: right (pushed, turned or rolled to the right)
+// and up (pushed up or away, or tilted away).
 BallPush pushOf(const BallSample& ball) {
   const auto& t = ball.translation;
   const auto& r = ball.rotation;
@@ -86,8 +86,8 @@ OperatorPanel::OperatorPanel(PanelPlace place, PanelOptions options, const Parts
       devices_(parts.devices),
       input_(place_.layout) {}
 
-// A press of blank or freeze does not count as a touch: a touch would end that state first, and the
-// press would then begin it again.
+// Reports a press to Attendance. A press of blank or freeze is no touch(), since a touch would
+// first end that state and the press would then begin it again.
 void OperatorPanel::touchBy(std::optional<ControlId> pressed) {
   if (pressed == ControlId::kBlank || pressed == ControlId::kFreeze)
     parts_.attendance.attend();
@@ -187,7 +187,8 @@ void OperatorPanel::readDevices(Timestamp now, PanelFacts& facts) {
   facts.projectors_wanted = projectors_->wanted;
 }
 
-// The first touch of a wall that is black or frozen only ends that state.
+// Lets the ball operate the panel, or stop doing so. While the wall is black or frozen, a push of
+// the ball only ends that state.
 void OperatorPanel::useBall(WallInput& input, Timestamp now) {
   auto& ball = input.scene.ball;
   const bool toggles = (input.operator_panel % 2 == 1) != std::exchange(toggled_, false);

@@ -1,5 +1,6 @@
-// OperatorPanel: the panel on the operator's tile (render/panel) in merlind: what pointer and ball
-// do with it, what it shows, and which commands it asks for.
+// OperatorPanel: connects the panel on the operator's tile (render/panel) to merlind: it passes
+// pointer and ball to the panel, collects the facts that the panel shows, and returns the commands
+// that a person requests with it.
 #pragma once
 
 #include <array>
@@ -19,66 +20,69 @@
 
 namespace merlin::wall {
 
-// The functions of the panel that are available with these settings and contents. Projectors, video
-// and lamp are not available if the devices belong to another machine.
+// Returns the functions of the panel that are available with these settings and contents.
+// Projectors, video and lamp are not available if the wall uses the devices of another machine.
 render::panel::PanelOptions panelOptions(const Settings& settings,
                                          const std::vector<ContentEntry>& contents);
 
-// What is known of the projectors together.
+// What is known of one projector, or of several together.
 struct ProjectorsSeen {
-  std::string power;           // "on", "warming", "mixed"; empty: not known
-  std::optional<bool> wanted;  // whether they are on, or are to be
+  std::string power;           // "on", "warming", "unknown", "mixed" ...; empty: no projector
+  std::optional<bool> wanted;  // whether they are, or will be, on; nothing: not known
 };
 
-// `wanted`: nothing if nobody has switched the projector; it then follows from `power`, if that is
-// known.
+// Returns what is known of one projector. `wanted`: nothing if nobody has switched it; then
+// `wanted` of the result follows from `power`, unless that is "unknown".
 ProjectorsSeen projectorSeen(std::string power, std::optional<bool> wanted);
 
-// Combines several projectors: the power that they have in common, or "mixed"; `wanted` if all
-// agree, else nothing.
+// Combines several projectors. `power`: that of all of them if it is the same, else "mixed".
+// `wanted`: that of all of them if they agree, else nothing.
 ProjectorsSeen together(const std::vector<ProjectorsSeen>& all);
 
-// Thread-safe, except where it says otherwise.
+// Thread-safe, except for members that a comment assigns to the wall's thread.
 class OperatorPanel final : public render::panel::PanelSource {
  public:
   struct Parts {
-    const shm::WallSegment& wall;        // its slots say what the wall shows
-    shm::SeqSlot<shm::WallPanel>& slot;  // where the panel's place is published
+    const shm::WallSegment& wall;        // source of the facts about the wall
+    shm::SeqSlot<shm::WallPanel>& slot;  // receives the panel's place when it changes
     std::string devices;                 // name of the devices' segment
-    double rate_hz = 0;                  // of the configuration
-    float radius_m = 1;                  // of the content
-    Attendance& attendance;              // a press is a touch
-    const MissingContents& missing;      // of the options' contents
+    double rate_hz = 0;                  // configured frame rate
+    float radius_m = 1;                  // radius of the content
+    Attendance& attendance;              // a press counts as a touch
+    const MissingContents& missing;      // which of options().contents are missing
     const Clock& clock;
   };
-  // All of `parts` must outlive this object.
+  // What `parts` refers to must outlive this object.
   OperatorPanel(render::panel::PanelPlace place, render::panel::PanelOptions options,
                 const Parts& parts);
 
   const render::panel::PanelPlace& place() const noexcept { return place_; }
   const render::panel::PanelOptions& options() const noexcept { return options_; }
 
-  // To be called when the pointer has moved to a pixel of the frame, or away (nothing), or its
-  // button has changed. A press while the wall is black only makes it bright again.
+  // To be called when the pointer has moved to a pixel of the frame or has left it (nothing), or
+  // when the pointer's button was pressed or released. A press while the wall is black only shows
+  // the picture again.
   void point(std::optional<render::panel::Point> in_frame, bool pressed);
-  // Switches whether the ball operates the panel, from the next frame on.
+  // Toggles whether the ball operates the panel, from the next frame on.
   void toggleBall();
-  // Returns the commands requested since the last call, in their order.
+  // Returns the commands requested since the last call, in the order of the requests.
   std::vector<render::panel::Request> takeRequests();
-  // Shows for some time why a command was refused.
+  // Shows for 15 s why a command was refused.
   void refuse(std::string why);
-  // Sets what the role devices reports of the projectors; without a report, the state of those at
-  // the GPIO line is read.
+  // Sets what the role `devices` reports about the projectors. If this is never called, the panel
+  // shows the state of the projectors at the GPIO line, read from shared memory.
   void report(ProjectorsSeen projectors);
 
-  // Once a frame, on the wall's thread, before Attendance::update(): executes what is held, and
-  // removes the ball from `input` while the ball operates the panel.
+  // To be called once a frame on the wall's thread, before Attendance::update(). Updates view().
+  // Adds the motion of the control that is held to `input`, and removes the ball's motion from
+  // `input` while the ball operates the panel.
   void update(WallInput& input, Timestamp now);
-  // On the wall's thread: replaces the configured rate.
+  // Replaces the configured rate. For the wall's thread.
   void configure(double rate_hz) noexcept { parts_.rate_hz = rate_hz; }
-  // On the wall's thread: whether actions of the ball's buttons belong to the panel.
+  // Whether the ball operates the panel, so that its buttons trigger no actions. For the wall's
+  // thread.
   bool takesBall() const noexcept { return view_.by_ball; }
-  // On the wall's thread: the view as of the last update().
+  // Returns the view as of the last update(). For the wall's thread.
   const render::panel::PanelView& view() override { return view_; }
 
  private:
@@ -100,16 +104,16 @@ class OperatorPanel final : public render::panel::PanelSource {
   std::optional<bool> published_by_ball_;
   render::panel::PanelView view_;
 
-  std::mutex mutex_;  // guards all below; never held while anything is waited for
+  std::mutex mutex_;  // guards all members below; never held during a wait
   render::panel::PanelInput input_;
   render::panel::PanelFacts facts_;
   std::vector<render::panel::Request> requests_;
   std::optional<ProjectorsSeen> projectors_;
   std::string notice_;
   Timestamp noticed_at_{};
-  Attendance::Shown shown_ = Attendance::Shown::kPicture;  // at the last update()
-  bool toggled_ = false;    // whether toggleBall() was called since then
-  bool swallowed_ = false;  // the press that is held made a black wall bright
+  Attendance::Shown shown_ = Attendance::Shown::kPicture;  // as of the last update()
+  bool toggled_ = false;    // toggleBall() is to be applied by the next update()
+  bool swallowed_ = false;  // the present press has ended black and does nothing else
 };
 
 }  // namespace merlin::wall

@@ -8,7 +8,7 @@
 namespace merlin::wall {
 namespace {
 
-// Whether a device of this machine has a port or another machine's devices are used.
+// Whether a device of this machine has a port, or the devices of another machine are used.
 bool expectsDevices(const Settings& settings) {
   const auto hasPort = [](const DeviceSettings& d) { return !d.line.port.empty(); };
   return !settings.wall.input.endpoint.empty() ||
@@ -22,7 +22,7 @@ OperatorTile::OperatorTile(const Parts& parts) : parts_(parts) {
   if (!settings.wall.operator_tile.panel) return;
   render::panel::PanelOptions options = panelOptions(settings, parts_.contents);
   auto place = render::panel::placePanel(parts_.plan, options);
-  if (!place) return;  // --check-config reports it
+  if (!place) return;  // `merlind --check-config` reports the reason
   panel_.emplace(*std::move(place), std::move(options),
                  OperatorPanel::Parts{parts_.segment, parts_.segment.panel,
                                       shm::segmentName(settings.instance, "devices"),

@@ -1,5 +1,5 @@
-// OperatorTile: what is drawn over the operator's tile: plates with the wall's state, and the
-// panel; both are off by default.
+// OperatorTile: makes what is drawn over the operator's tile: plates with the wall's state, and the
+// panel. Both are off by default.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class OperatorTile {
     const render::tiles::TilePlan& plan;
     const Settings& settings;
     const std::vector<ContentEntry>& contents;
-    const MissingContents& missing;  // of contents
+    const MissingContents& missing;  // which of `contents` are missing
     shm::WallSegment& segment;
     const MessageBoard& board;
     Attendance& attendance;
@@ -31,11 +31,12 @@ class OperatorTile {
   };
   explicit OperatorTile(const Parts& parts);
 
-  // The panel, for its thread-safe members; null if there is none.
+  // Returns the panel, of which only the thread-safe members may be called; null if there is none.
   OperatorPanel* panel() { return panel_ ? &*panel_ : nullptr; }
   std::optional<PanelPointer::Place> panelInFrame() const;
 
-  // Each makes its overlay; null if that is switched off, or if there is no font, which is logged.
+  // Each makes an overlay and returns it; null if it is switched off or cannot be made (the reason,
+  // such as a missing font, is logged). The overlay is destroyed with this object.
   render::frame::Overlay* makePlates();
   render::frame::Overlay* makePanelOverlay();
 

@@ -7,9 +7,9 @@
 namespace merlin::wall {
 namespace {
 
-constexpr std::string_view kTriangles = "triangles";  // the unit of models and of min_triangles
-constexpr int kSmallerTiles = 1;  // the ladder's step on which tiles are smaller at the full rate
-constexpr int kMostRateDivisor = 4;  // whatever min_rate_hz is
+constexpr std::string_view kTriangles = "triangles";  // unit of models and of min_triangles
+constexpr int kSmallerTiles = 1;     // step of the ladder with smaller tiles at full rate
+constexpr int kMostRateDivisor = 4;  // even if min_rate_hz allows a larger one
 
 }  // namespace
 
@@ -64,7 +64,8 @@ bool Pace::observe(bool late, bool coarsest) {
   const int was = sizeDivisor();
   if (!ladder_.observe(late, coarsest, betterFits())) return false;
   ++changes_;
-  if (sizeDivisor() < was) governor_.expect(was * was);  // the highest possible ratio of costs
+  // The drawing time grows at most as much as the number of pixels.
+  if (sizeDivisor() < was) governor_.expect(was * was);
   return sizeDivisor() != was;
 }
 
@@ -72,9 +73,10 @@ void Pace::observeOperator(bool coarser) {
   if (operator_ladder_.observe(coarser, true, true)) ++changes_;
 }
 
-// The largest divisor of the rate that keeps it at min_rate_hz or above; 1 if there is none.
+// Returns the largest divisor, at most kMostRateDivisor, with which the rate is not below
+// min_rate_hz; 1 if there is none.
 int Pace::mostDivisor() const noexcept {
-  constexpr double kRounding = 1e-6;  // periods are whole nanoseconds
+  constexpr double kRounding = 1e-6;  // tolerance, since periods are whole nanoseconds
   const double times = std::floor(asked_hz_ / governor_.minRateHz() + kRounding);
   return static_cast<int>(std::clamp(times, 1.0, double{kMostRateDivisor}));
 }
@@ -83,14 +85,14 @@ int Pace::divisorAt(int step) const noexcept {
   return std::min(1 << std::max(step - kSmallerTiles, 0), mostDivisor());
 }
 
-// Leaves out the steps that would not lower the rate any further.
+// Limits the ladder to the step with smaller tiles and the further steps that lower the rate.
 void Pace::limitLadder() noexcept {
   const int slower = std::min(mostDivisor() - 1, 2);
   if (ladder_.setMost(kSmallerTiles + slower)) ++changes_;
 }
 
-// Whether there is room for the next better pace: at full size a frame costs at most four times as
-// much, and at a higher rate its period is shorter.
+// Whether a frame of the coarsest detail would fit at the next higher step of the ladder: at full
+// size it takes at most four times as long, and at a higher rate its period is shorter.
 bool Pace::betterFits() const {
   const double needed_s = governor_.predict(governor_.least());
   const int step = ladder_.step();

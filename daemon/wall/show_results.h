@@ -1,5 +1,5 @@
-// ShowResults: what became of the requests to show a content, each published long enough for
-// whoever asked to see it.
+// ShowResults: a queue of the results of requests to show a content. Each result is published long
+// enough for the client to read it.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,25 @@
 namespace merlin::wall {
 
 struct ShowResult {
-  std::uint32_t number = 0;  // of the request
-  std::string refused{};     // why it is not shown; empty: it is
+  std::uint32_t number = 0;  // number of the request
+  std::string refused{};     // why the content is not shown; empty: it is shown
 };
 
 // Not thread-safe.
 class ShowResults {
  public:
-  // Long enough for clients, which poll every few milliseconds, and short enough for one who shows
-  // contents in quick succession.
+  // Time for which each result is published at least. It is long enough for clients, which poll
+  // every few milliseconds, and short enough for a client that shows contents in quick succession.
   static constexpr Duration kPublished = std::chrono::milliseconds(100);
-  static constexpr std::size_t kMostWaiting = 40;  // if more wait, the oldest are dropped
+  static constexpr std::size_t kMostWaiting = 40;  // beyond this, the oldest results are dropped
 
   void add(ShowResult result) {
     if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
     waiting_.push_back(std::move(result));
   }
 
-  // The result to be published now. They come in the order in which they were added; the last one
-  // stays.
+  // Returns the result to be published now. The results are published in the order in which they
+  // were added; the last one stays.
   const ShowResult& current(Timestamp now) {
     if (!waiting_.empty() && (!since_ || now - *since_ >= kPublished)) {
       current_ = std::move(waiting_.front());
@@ -44,7 +44,7 @@ class ShowResults {
  private:
   std::deque<ShowResult> waiting_;
   ShowResult current_;
-  std::optional<Timestamp> since_;  // when current_ was taken
+  std::optional<Timestamp> since_;  // since when current_ is published
 };
 
 }  // namespace merlin::wall

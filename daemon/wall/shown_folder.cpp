@@ -22,19 +22,22 @@ constexpr Duration kLeftOver = std::chrono::hours(1);
 
 bool isHidden(const FolderFile& file) { return file.name.starts_with('.'); }
 
-// systemd's RestrictSUIDSGID= forbids the set-group-ID bit. If the bit cannot be set, clients set
-// the group of their files themselves.
+// Creates the folder, writable for the group of this process, with the set-group-ID bit, so that
+// new files get this group. systemd's RestrictSUIDSGID= forbids this bit; clients then set the
+// group of their files themselves. Returns false if the folder cannot be created; errno has the
+// reason.
 bool makeForGroup(const std::string& folder) {
   if (::mkdir(folder.c_str(), 0770) != 0) return false;
   return ::chmod(folder.c_str(), 02770) == 0 || ::chmod(folder.c_str(), 0770) == 0;
 }
 
-// Total size of the files in a folder of slides; links are not followed.
+// Returns the size of a file, or the total size of the files in a folder of slides. Links are not
+// followed.
 std::uint64_t bytesIn(const fs::directory_entry& entry) {
   std::error_code error;
   if (entry.symlink_status(error).type() == fs::file_type::regular) {
     const std::uintmax_t size = entry.file_size(error);
-    return error ? 0 : size;  // removed in the meantime
+    return error ? 0 : size;  // 0 if it was removed meanwhile
   }
   if (entry.symlink_status(error).type() != fs::file_type::directory) return 0;
   std::uint64_t bytes = 0;
@@ -48,8 +51,8 @@ std::uint64_t bytesIn(const fs::directory_entry& entry) {
   return bytes;
 }
 
-// Age of the file; for a link, that of the link itself. Zero if the file was removed in the
-// meantime.
+// Returns the time since the file was written; for a link, since the link was made. Zero if the
+// file was removed meanwhile.
 Duration ageOf(const std::string& path) {
   struct stat status {};
   timespec now{};
@@ -58,7 +61,7 @@ Duration ageOf(const std::string& path) {
          std::chrono::nanoseconds(now.tv_nsec - status.st_mtim.tv_nsec);
 }
 
-// Files of equal age are sorted by name, so that the order is deterministic.
+// Sorts by age; files of equal age are sorted by name, so that the order is deterministic.
 void sortNewestFirst(std::vector<FolderFile>& files) {
   std::ranges::sort(files, [](const FolderFile& a, const FolderFile& b) {
     return std::pair(a.age, std::string_view(a.name)) < std::pair(b.age, std::string_view(b.name));
@@ -191,7 +194,8 @@ std::vector<FolderFile> ShownFolder::files() const {
   return files;
 }
 
-// Also removes folders; for a link, removes the link only.
+// Removes files and folders; of a link, only the link itself. Returns a sentence about each that
+// cannot be removed.
 std::vector<std::string> ShownFolder::remove(const std::vector<std::string>& names) const {
   std::vector<std::string> faults;
   for (const std::string& name : names) {

@@ -57,8 +57,8 @@ Result<std::unique_ptr<ShownModels>> ShownModels::make(std::vector<WallContent> 
   return shown;
 }
 
-// The viewer is made before the first frame even if no picture is configured: then a picture that
-// is shown later needs no shader to be compiled, and its first frame is in time.
+// The renderer of pictures is made before the first frame even if no picture is configured, so that
+// no shader must be compiled when a picture is shown later, and its first frame is in time.
 Result<Ok> ShownModels::makeViewer(const Eigen::Isometry3f& T_eye_model) {
   std::size_t wall_px = 0;
   for (const render::tiles::Tile& tile : parts_.plan.tiles)
@@ -116,7 +116,8 @@ ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
       if (!there) return there.error();
       entry = *there;
     }
-    // Draws the slide that was replaced, or the folder if none of its slides could be shown before.
+    // Reads only the slide that was replaced; or the folder, if none of its slides could be shown
+    // before.
     const bool slide = entry.kind == ContentKind::kSlides && path != entry.path;
     if (slide) entry.kind = ContentKind::kPicture;
     entry.path = path;
@@ -129,7 +130,8 @@ ModelWatch::Make ShownModels::maker(const std::vector<ContentEntry>& entries,
   };
 }
 
-// Returns the distance at which one pixel of the picture is as wide as eight pixels of the wall.
+// Returns the nearest viewing distance for a picture, as a multiple of the initial one: that at
+// which one pixel of the picture is as wide as eight pixels of the wall.
 float ShownModels::nearestOf(const Picture& picture) const {
   constexpr double kMostSize = 8;
   const render::image::PyramidLevel& finest = picture.file->levels().front();
@@ -177,8 +179,8 @@ std::vector<ShownContent> ShownModels::contents() const {
   return contents;
 }
 
-// Gives the viewer the picture of this place; if the viewer already has it, the picture keeps its
-// tiles.
+// Gives the renderer of pictures the picture of this place. If the renderer already has it, the
+// tiles that were loaded are kept.
 void ShownModels::prepare(std::size_t place) {
   const Shown& shown = shown_[place];
   if (!shown.picture) return;
@@ -186,8 +188,8 @@ void ShownModels::prepare(std::size_t place) {
   if (&pictures_->picture() != shown.picture.get()) pictures_->show(shown.picture);
 }
 
-// Returns false at the last slide if there is another content, which then follows; the first slide
-// is made ready for later.
+// At the last slide, returns false if there is another content, which then follows; the first slide
+// is requested nevertheless, so that it is ready for later.
 bool ShownModels::nextWithin(std::size_t place) {
   const Shown& shown = shown_[place];
   if (shown.entry.kind != ContentKind::kSlides) return false;
@@ -196,8 +198,8 @@ bool ShownModels::nextWithin(std::size_t place) {
   return more;
 }
 
-// Before the first slide comes the previous content, or the last slide if there is no other
-// content.
+// At the first slide, returns false if there is another content: the previous content is then
+// shown. If there is none, requests the last slide.
 bool ShownModels::previousWithin(std::size_t place) {
   const Shown& shown = shown_[place];
   if (shown.entry.kind != ContentKind::kSlides) return false;
@@ -239,7 +241,7 @@ Result<Ok> ShownModels::takeModel(ReadyModel& ready, const Eigen::Isometry3f& T_
   }
   Shown& shown = shown_[ready.place];
   shown.picture.reset();
-  // The old renderer is destroyed before the model that it borrows.
+  // The old renderer is destroyed before the old model, which it uses.
   shown.renderer = *std::move(renderer);
   shown.model = std::move(ready.model);
   return Ok{};
@@ -249,8 +251,8 @@ ContentSource::Replacement ShownModels::refusal(const ReadyModel& ready, std::st
   return {ready.place, {}, false, ready.request, std::move(why), ready.is_slide};
 }
 
-// The last place, for files that are not in the configuration, has a name only once a file is shown
-// there.
+// Stores which file is now shown at its place. The entry of the last place, which is for files that
+// are not in the configuration, is filled in only here.
 void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
   Shown& shown = shown_[ready.place];
   if (std::exchange(shown.missing, false)) {
@@ -259,7 +261,7 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
         newsEvent(fmt::format("{} can be read now, and is shown in its turn", shown.entry.path)));
   }
   shown.file = ready.path;
-  if (!ready.was_replaced) {  // a replaced file keeps its place among the slides
+  if (!ready.was_replaced) {  // a replaced slide keeps its position in the list
     shown.is_first_slide = ready.is_first_slide;
     shown.is_last_slide = ready.is_last_slide;
   }
@@ -273,7 +275,8 @@ void ShownModels::noteFile(const ReadyModel& ready, ContentKind kind) {
 
 std::optional<ContentSource::Replacement> ShownModels::take(bool moving,
                                                             const Eigen::Isometry3f& T_eye_model) {
-  // Ends the wall's thread, and so the process; the restarted process has a new context.
+  // The exception ends the wall's thread and thereby the process; the restarted process creates a
+  // new context.
   if (contexts_->own->wasReset())
     throw std::runtime_error("the GPU was reset, and what it held is lost");
   const Timestamp now = parts_.clock.now();

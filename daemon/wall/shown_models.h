@@ -1,6 +1,6 @@
-// ShownModels: the wall's contents and their renderers, by place (the content's index): a renderer
-// for each model, and one for all pictures. A content is replaced while the wall runs if its file
-// was replaced, or another was asked for.
+// ShownModels: owns the wall's contents and their renderers, by place (the content's index). Each
+// model has a renderer of its own; all pictures share one. A content is replaced while the wall
+// runs if its file was replaced, or if a person requests another one.
 #pragma once
 
 #include <memory>
@@ -17,15 +17,15 @@
 
 namespace merlin::wall {
 
-// Prepares a content that was read: for a model, makes its ModelContent. Called on any thread.
-// Errors: those of ModelContent::make(), with the file's name.
+// Prepares a content that was read, to be shown at `place`; for a model, makes its ModelContent.
+// May be called on any thread. Errors: those of ModelContent::make(), with the file's name.
 Result<ReadyModel> prepareContent(std::size_t place, WallContent content,
                                   const WallSettings& settings);
 
 // Thread-bound to the wall's thread.
 class ShownModels final : public ContentSource {
  public:
-  // What it borrows; all must outlive it.
+  // What ShownModels needs; all must outlive it.
   struct Parts {
     const render::tiles::TilePlan& plan;
     const WallSettings& settings;
@@ -34,24 +34,26 @@ class ShownModels final : public ContentSource {
     render::content::TileSource& tiles;
     const Clock& clock;
   };
-  // `contents`: those of the configuration. One more place follows them, for a content that is not
-  // in the configuration. Errors: those of DrawContexts::make(), and those of ModelContent and
-  // FrameRenderer, with the file's name.
+  // Makes the drawing contexts and the renderers. `contents`: those of the configuration. One more
+  // place follows them, for a content that is not in the configuration. `T_eye_model`: the view for
+  // the warm-up of the renderers. Errors: those of DrawContexts::make(), and those of
+  // ModelContent::make() and FrameRenderer::make(), with the file's name.
   static Result<std::unique_ptr<ShownModels>> make(std::vector<WallContent> contents,
                                                    const Parts& parts,
                                                    const Eigen::Isometry3f& T_eye_model);
 
   // Returns the function with which ModelWatch reads and prepares a replaced file on its own
-  // thread. `entries` and `settings` must outlive it.
+  // thread. `entries` and `settings` must outlive the result.
   static ModelWatch::Make maker(const std::vector<ContentEntry>& entries,
                                 const WallSettings& settings);
 
   std::vector<ShownContent> contents() const;
-  std::size_t listed() const noexcept { return shown_.size() - 1; }  // of the configuration
+  // Returns the number of contents of the configuration.
+  std::size_t listed() const noexcept { return shown_.size() - 1; }
   const render::frame::DrawContexts& contexts() const { return *contexts_; }
 
-  // Returns a picture at once, and a model as soon as nothing moves, or after kPatience if motion
-  // does not end.
+  // See ContentSource. Returns a picture at once, and a model as soon as nothing moves, or after
+  // kPatience if motion does not end. Throws if the GPU was reset, which ends the wall's thread.
   std::optional<Replacement> take(bool moving, const Eigen::Isometry3f& T_eye_model) override;
   void prepare(std::size_t place) override;
   bool nextWithin(std::size_t place) override;
@@ -62,19 +64,20 @@ class ShownModels final : public ContentSource {
  private:
   struct Shown {
     ContentEntry entry;
-    std::unique_ptr<const render::lod::Dendrogram> model;  // the renderer's content borrows it
+    std::unique_ptr<const render::lod::Dendrogram> model;  // used by the content of `renderer`
     std::unique_ptr<render::frame::FrameRenderer> renderer;
-    std::shared_ptr<const render::content::Picture> picture;  // instead of these two
+    // For a picture, instead of `model` and `renderer`.
+    std::shared_ptr<const render::content::Picture> picture;
     std::string file;
     bool is_first_slide = false, is_last_slide = false;
-    bool missing = false;  // `picture` is empty
+    bool missing = false;  // could not be read yet; `picture` is empty
   };
   explicit ShownModels(const Parts& parts) : parts_(parts) {}
   Result<Ok> makeViewer(const Eigen::Isometry3f& T_eye_model);
   Result<Ok> add(ReadyModel ready, ContentEntry entry, const Eigen::Isometry3f& T_eye_model);
   Result<std::unique_ptr<render::frame::FrameRenderer>> attach(
       ReadyModel& ready, const Eigen::Isometry3f& T_eye_model) const;
-  // Whether the content of this place is the only one of the configuration.
+  // Whether the content of this place is the only content of the configuration.
   bool isAlone(std::size_t place) const noexcept { return place < listed() && listed() == 1; }
   void askForSlide(std::size_t place, const SlideTurn& turn, bool to_be_shown);
   void takePicture(ReadyModel& ready);
@@ -87,8 +90,8 @@ class ShownModels final : public ContentSource {
   Parts parts_;
   std::shared_ptr<const render::frame::DrawContexts> contexts_;
   std::unique_ptr<render::frame::FrameRenderer> viewer_;  // renderer of all pictures
-  render::content::PictureContent* pictures_ = nullptr;   // its content
-  std::size_t viewed_ = ~std::size_t{0};                  // place whose picture it shows
+  render::content::PictureContent* pictures_ = nullptr;   // content of viewer_
+  std::size_t viewed_ = ~std::size_t{0};                  // place whose picture viewer_ shows
   std::vector<Shown> shown_;                              // by place
   std::optional<ReadyModel> waiting_;
   Timestamp waits_since_{};

@@ -65,7 +65,7 @@ void SignalTaps::see(std::size_t i, const render::out::Signal& signal,
   if (!lock || !tap.memory) return;
   tap.wanted = false;
   if (signal.width != tap.output.width || signal.height != tap.output.height) return;
-  static_cast<void>(tap.memory->present(signal, info));  // never fails
+  static_cast<void>(tap.memory->present(signal, info));  // present() never fails
 }
 
 }  // namespace merlin::wall

@@ -54,7 +54,7 @@ void SnapshotWriter::loop(const std::stop_token& stop, Progress& progress) {
       if (!asked) continue;
       asked_ = false;
     }
-    const Progress::Pause pause(progress);  // a disk may be slow
+    const Progress::Pause pause(progress);  // writing to a disk may take long
     const auto path = write();
     if (path) ++written_;
     if (path)

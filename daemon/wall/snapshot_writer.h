@@ -1,6 +1,6 @@
-// SnapshotWriter: saves frames as PNG files in a folder when a person requests it, by a bound
-// input, the panel or the command snapshot. Works on its own thread and, like `merlin snapshot`,
-// reads the frame from shared memory.
+// SnapshotWriter: saves frames as PNG files in a folder when a person requests a snapshot by a
+// bound input, the panel or the command `snapshot`. It works on its own thread and reads the frame
+// from shared memory, as `merlin snapshot` does.
 #pragma once
 
 #include <atomic>
@@ -16,29 +16,29 @@
 
 namespace merlin::wall {
 
-// Writes the frame as the next of the files, a PNG, and returns its path. Errors: those of
-// writePng() and DatedFiles::next().
+// Writes the frame as a PNG file with the next name of `files`, removes the oldest files beyond
+// their maximum number, and returns the path. Errors: those of writePng() and DatedFiles::next().
 Result<std::string> saveFrame(const render::out::CapturedFrame& frame, const DatedFiles& files);
 
 // Thread-safe.
 class SnapshotWriter {
  public:
-  // `framebuffer`: name of the segment with the frame, such as "/merlin-framebuffer". `files`:
-  // where images are saved, and how many are kept. `watch` must outlive this object.
+  // `framebuffer`: name of the shared memory with the frame, such as "/merlin-framebuffer".
+  // `files`: where images are saved and how many are kept. `watch` must outlive this object.
   SnapshotWriter(std::string framebuffer, DatedFiles files, ThreadWatch& watch);
-  ~SnapshotWriter();  // a requested frame is still written
+  ~SnapshotWriter();  // a frame that was requested is still written
   SnapshotWriter(const SnapshotWriter&) = delete;
   SnapshotWriter& operator=(const SnapshotWriter&) = delete;
 
-  // Requests that the newest frame is written; returns at once. Requests that arrive before it is
-  // written are merged into one file. The result is logged.
+  // Requests that the newest frame is written; returns at once. Several requests before the frame
+  // is written result in one file. The path or the error is logged.
   void take();
 
-  // Number of files that were written.
+  // Returns the number of files that take() has caused to be written.
   std::uint32_t written() const noexcept { return written_; }
 
-  // Writes the newest frame now; returns its path. Errors: captureFrame()'s, writePng()'s and
-  // DatedFiles::next()'s.
+  // Writes the newest frame on the calling thread and returns the path of the file. Errors: those
+  // of captureFrame() and saveFrame().
   Result<std::string> write() const;
 
  private:

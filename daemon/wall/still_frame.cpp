@@ -6,10 +6,9 @@
 namespace merlin::wall {
 namespace {
 
-// Planned drawing time of the first finer frame of a still scene, so that it is shown within two
-// periods.
+// Maximum planned drawing time of the first finer frame, so that it is shown within two periods.
 constexpr Duration kFirstWork = std::chrono::milliseconds(40);
-constexpr std::size_t kNextDetail = 8;  // factor between the costs of successive finer frames
+constexpr std::size_t kNextDetail = 8;  // ratio of the costs of successive finer frames
 
 }  // namespace
 
@@ -41,8 +40,9 @@ std::optional<std::size_t> StillFrame::refine(const ContentTurns& turns,
   return std::exchange(refining_, std::nullopt);
 }
 
-// The governor's cost model applies to frames drawn at size_divisor; refined frames have full size,
-// so the time is divided by the ratio of their areas.
+// Returns the step of the next finer frame. The governor's cost model applies to frames that are
+// drawn at 1/size_divisor of the width and height; refined frames have full size, so the planned
+// time is divided by the ratio of the areas.
 std::size_t StillFrame::finerStep(const render::content::DetailAxis& detail, std::size_t step,
                                   int size_divisor) const {
   const std::size_t now = detail.costOf(step);

@@ -1,8 +1,9 @@
-// StillFrame: refines the frame of a still scene step by step; each finer frame is faded in.
+// StillFrame: refines the frame of a scene in which nothing moves, in several steps. Each finer
+// frame is faded in.
 //
-// The first finer frame is small enough to be shown soon; each further one has eight times as much
-// detail, and the last one full detail. All of them together take less than 1.5 times as long as
-// full detail alone.
+// The first finer frame has so little detail that it can be shown soon; each further one has eight
+// times as much detail, and the last one has full detail. Drawing all of them takes less than 1.5
+// times as long as drawing full detail alone.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +25,18 @@ class StillFrame {
   StillFrame(const render::governor::Governor& governor, int fade_frames)
       : governor_(governor), fade_frames_(fade_frames) {}
 
-  // To be called when motion has ended, at `now`; `shown` is the canvas that the wall shows.
+  // Starts refinement. To be called when motion has ended, at `now`. `shown`: the canvas that the
+  // wall shows.
   void begin(Timestamp now, std::span<const std::uint8_t> shown);
-  // To be called before a moving frame: abandons refinement and fade.
+  // Ends refinement and fade. To be called before a moving frame is drawn.
   void stop() noexcept;
-  // To be called when another content replaces the one shown: refinement restarts with a frame that
-  // can be shown soon.
+  // Starts refinement again with a frame that can be shown soon. To be called when another content
+  // replaces the one shown.
   void restart() noexcept;
 
   // Draws slices of a frame that is finer than `step`, until about `until`. When the frame is
-  // complete, returns its step, and the fade to it begins; before that, returns nullopt.
-  // `size_divisor`: that of moving frames.
+  // complete, begins the fade to it and returns its step; before that, returns nothing.
+  // `size_divisor`: divisor of the tiles' size in moving frames (Pace::sizeDivisor()).
   std::optional<std::size_t> refine(const ContentTurns& turns,
                                     const Eigen::Isometry3f& T_eye_content, std::size_t step,
                                     int size_divisor, Timestamp until);
@@ -46,9 +48,9 @@ class StillFrame {
     return fade_.next(target);
   }
 
-  // To be called after a frame of the fade was shown at `now`. Returns times since motion ended
-  // [s]: to the first finer frame (only once after begin() or restart()), and to full detail, if
-  // `full_detail`.
+  // To be called after a frame of the fade was shown at `now`. Returns the times since motion
+  // ended: to_first_s, for the first frame of the fade after begin() or restart() only, and
+  // to_full_s if this frame has full detail (`full_detail`).
   struct Times {
     std::optional<float> to_first_s, to_full_s;
   };
@@ -60,9 +62,9 @@ class StillFrame {
 
   const render::governor::Governor& governor_;
   int fade_frames_;
-  render::frame::Fade fade_;             // fades to the last refined frame
+  render::frame::Fade fade_;             // fade to the last refined frame
   std::optional<std::size_t> refining_;  // detail step of the frame that is being refined
-  bool first_ = false;                   // the next finer frame is the first since motion ended
+  bool first_ = false;                   // the next finer frame is the first one since motion ended
   Timestamp since_{};
 };
 

@@ -1,4 +1,5 @@
-// ViewerPlace: adapts the frusta of the wall's tiles to the position of the viewer's tracked head.
+// ViewerPlace: adapts the viewing frusta of the wall's tiles to the position of the viewer's
+// tracked head.
 #pragma once
 
 #include <functional>
@@ -14,17 +15,18 @@ namespace merlin::wall {
 // Thread-bound to the wall's thread.
 class ViewerPlace {
  public:
-  // `plan`: the tile plan used for drawing; must outlive this object. `report` is called with an
-  // event when the tracker station `station` begins or ceases to deliver the head's pose.
+  // `plan`: the tile plan used for drawing; must outlive this object. `station`: number of the
+  // tracker's station on the head, for messages. `report` is called with an event when the station
+  // begins or ceases to deliver the head's pose, and when the eyes come too close to a screen.
   ViewerPlace(render::stereo::Head head, int station, render::tiles::TilePlan& plan,
               std::function<void(Event)> report);
 
-  // To be called once a frame, while nothing is drawn: updates the plan's frusta. Returns true
-  // while the head moves.
+  // Updates the plan's frusta for the head's sample; nothing: there is none. Returns true while the
+  // head moves. To be called once a frame, while nothing is drawn.
   bool update(const std::optional<TrackerSample>& sample, Timestamp now);
 
-  // Time after the first update() without any sample, after which the station is reported as
-  // missing.
+  // Time from the first update() after which the station is reported as missing if no sample has
+  // arrived.
   static constexpr Duration kPatience = std::chrono::seconds(3);
 
  private:
@@ -35,8 +37,8 @@ class ViewerPlace {
   render::tiles::TilePlan& plan_;
   std::function<void(Event)> report_;
   std::optional<Timestamp> began_;
-  std::optional<bool> tracked_;  // last reported state; nullopt before the first report
-  bool is_placed_ = true;        // the frusta fit the head's current position
+  std::optional<bool> tracked_;  // last reported state; nothing: none was reported yet
+  bool is_placed_ = true;        // whether the frusta fit the head's last position
 };
 
 }  // namespace merlin::wall

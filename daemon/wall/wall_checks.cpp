@@ -20,21 +20,21 @@ namespace {
 
 constexpr const char* kCannot = "cannot be used: ";
 
-// Returns the JSON pointer of the content itself, not that of its file.
+// Returns the JSON pointer of the content; `entry.pointer` is that of the content's file.
 std::string placeOf(const ContentEntry& entry) {
   if (!entry.pointer.starts_with("/wall/contents/")) return entry.pointer;
   return entry.pointer.substr(0, entry.pointer.rfind('/'));
 }
 
-// Whether the configuration names content `i` of contentsOf(); otherwise its name is that of its
-// file.
+// Whether the configuration gives content `i` of contentsOf() a name; otherwise the name is that of
+// its file. `count`: number of contents.
 bool isNamed(const WallSettings& wall, std::size_t i, std::size_t count) {
-  const std::size_t before = count - wall.contents.size();  // 1 for /wall/model
+  const std::size_t before = count - wall.contents.size();  // 1 if /wall/model is a content, else 0
   return i >= before && !wall.contents[i - before].name.empty();
 }
 
-// Text for the consequence of a content that cannot be read. `any`: whether another can be read;
-// `is_start`: whether merlind starts now.
+// Returns a text about the consequence of a content that cannot be read. `any`: whether any other
+// content can be read. `is_start`: whether merlind starts now.
 const char* consequence(bool any, bool is_start) {
   if (is_start) {
     return any ? "; the wall is shown without it until it can be read"
@@ -45,7 +45,8 @@ const char* consequence(bool any, bool is_start) {
                "read";
 }
 
-// Reads each content. `keep`: returns all of them; otherwise only those that cannot be read.
+// Reads each content and adds the findings. Returns all contents if `keep`, which means that
+// merlind starts now; otherwise only those that cannot be read.
 std::vector<WallContent> readEach(LoadedSettings& loaded, bool keep) {
   std::vector<WallContent> contents;
   bool any = false;
@@ -115,7 +116,8 @@ void checkPlaylist(LoadedSettings& loaded) {
 
 namespace {
 
-// Adds a finding if the output would overwrite an existing file that is not a PNG image.
+// Adds a finding if `path`, to which an output writes PNG images, is an existing file of another
+// kind.
 void checkIsPicture(LoadedSettings& loaded, const std::string& path, const std::string& at) {
   std::ifstream there(path, std::ios::binary);
   char signature[8] = {};
@@ -126,8 +128,8 @@ void checkIsPicture(LoadedSettings& loaded, const std::string& path, const std::
   }
 }
 
-// A region that was measured for another output is used, since only a person can see whether it
-// fits; suspicious properties are reported as findings.
+// Adds an adjustment if the measured region is also used by an earlier output or has another size
+// than this output. The region is used nevertheless, since only a person can see whether it fits.
 void checkFits(LoadedSettings& loaded, const render::correct::MeasuredCorrection& measured,
                std::size_t index, const std::string& at) {
   const std::vector<render::out::OutputSettings>& outputs = loaded.settings.wall.outputs;
@@ -142,7 +144,8 @@ void checkFits(LoadedSettings& loaded, const render::correct::MeasuredCorrection
                             "needs a region of its own",
                             same->shownName())});
   }
-  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return;  // nothing to draw
+  // drawnWall() needs valid settings.
+  if (loaded.verdict() == LoadedSettings::Verdict::kInvalid) return;
   const WallSettings drawn = drawnWall(loaded.settings.wall);
   if (drawn.outputs.size() != outputs.size()) return;
   const auto size = render::out::pictureSize(drawn.outputs[index], drawn.tiles);
@@ -153,8 +156,8 @@ void checkFits(LoadedSettings& loaded, const render::correct::MeasuredCorrection
                           measured.width, measured.height, size->width, size->height)});
 }
 
-// At a start a damaged file, or one without that region, makes one output look wrong, which is
-// better than a dark wall.
+// Checks the MPCDI file of an output. At a start, a damaged file or one without the region is only
+// an adjustment, because one output that looks wrong is better than a dark wall.
 void checkMeasured(LoadedSettings& loaded, std::size_t index, bool is_start) {
   const render::correct::CorrectionSettings correction =
       loaded.settings.wall.outputs[index].correction;

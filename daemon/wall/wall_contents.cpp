@@ -38,7 +38,7 @@ ContentEntry entryOf(const ContentSettings& c, const std::string& pointer) {
   return entry;
 }
 
-// Returns the part of a path below the content folder.
+// Returns `path` relative to the content folder `entry.below`.
 std::string_view nameBelow(const ContentEntry& entry, std::string_view path) {
   path.remove_prefix(std::min(entry.below.size() + 1, path.size()));
   return path;
@@ -78,8 +78,8 @@ Result<WallContent> readPicture(const ContentEntry& entry, const std::string& fi
   return WallContent{entry, file, stamp, *std::move(picture)};
 }
 
-// Whether this is a picture in a common format that people put into a folder of slides by mistake.
-// `merlin image import` converts these formats, among others.
+// Whether this is a picture in a common format, which people may put into a folder of slides by
+// mistake. `merlin image import` converts these formats, among others, to pyramids.
 bool isOrdinaryPicture(const std::string& name) {
   constexpr std::string_view kEndings[] = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".gif"};
   std::string ending = fs::path(name).extension().string();
@@ -89,7 +89,7 @@ bool isOrdinaryPicture(const std::string& name) {
   return std::ranges::find(kEndings, ending) != std::end(kEndings);
 }
 
-// Names of the files in a folder of slides, each kind in order.
+// Names of the files in a folder of slides, each list sorted by name.
 struct FilesOfSlides {
   std::vector<std::string> pyramids, pictures;
 };
@@ -98,7 +98,7 @@ Result<FilesOfSlides> slidesIn(const ContentEntry& entry) {
   const std::string& folder = entry.path;
   FilesOfSlides files;
   std::error_code error;
-  UniqueFd opened;  // so that nobody can replace it by a link
+  UniqueFd opened;  // keeps the folder open, so that nobody can replace it by a link
   if (!entry.below.empty()) {
     auto found = openFolderBelow(entry.below, nameBelow(entry, folder));
     if (!found) return found.error();
@@ -129,7 +129,8 @@ Result<FilesOfSlides> slidesIn(const ContentEntry& entry) {
   return files;
 }
 
-// Message about pictures in a folder of slides that are left out; empty if there are none.
+// Returns a message about the pictures in a folder of slides that are not shown because they are no
+// pyramids; empty if there are none.
 std::string leftOut(const std::string& folder, const std::vector<std::string>& pictures) {
   if (pictures.empty()) return "";
   constexpr std::size_t kMostNamed = 3;
@@ -146,8 +147,8 @@ std::string leftOut(const std::string& folder, const std::vector<std::string>& p
                      excerpt(first), excerpt(pyramid));
 }
 
-// Returns the first of these that can be shown; nothing if there is none. Those before it are added
-// to `skipped`.
+// Reads the first of these slides that can be shown; nothing if there is none. Adds a sentence
+// about each slide before it to `skipped`.
 std::optional<WallContent> firstOf(const std::vector<std::string>& names, const ContentEntry& entry,
                                    std::vector<std::string>& skipped) {
   for (const std::string& name : names) {
@@ -158,8 +159,9 @@ std::optional<WallContent> firstOf(const std::vector<std::string>& names, const 
   return std::nullopt;
 }
 
-// The slides in the order in which they follow the current one. ahead: from it, exclusive, to the
-// end of the list; around: from the beginning of the list to it, inclusive.
+// The slides in the order in which they follow the current one, cyclically. `ahead`: those after
+// the current one, to the end of the list. `around`: those from the beginning of the list to the
+// current one, inclusive.
 struct Way {
   std::vector<std::string> ahead, around;
 };
@@ -171,8 +173,8 @@ Way wayFrom(std::vector<std::string> slides, const std::string& name, bool back)
   return {{ahead, slides.end()}, {slides.begin(), ahead}};
 }
 
-// Whether none of the slides `ahead` can be shown. If so, they are added to `skipped`, since no
-// turn will report them.
+// Whether none of the slides `ahead` can be shown. If so, adds a sentence about each of them to
+// `skipped`, since they are never tried otherwise.
 bool isEnd(const std::vector<std::string>& ahead, const ContentEntry& entry,
            std::vector<std::string>& skipped) {
   std::vector<std::string> behind_it;
@@ -181,8 +183,9 @@ bool isEnd(const std::vector<std::string>& ahead, const ContentEntry& entry,
   return true;
 }
 
-// "Last" means the last slide that can be shown: otherwise a damaged file at the end would prevent
-// the turn of the next content. The same holds for the first slide.
+// Reads a slide. is_last_slide means the last slide that can be shown: otherwise a damaged file at
+// the end of the list would prevent the change to the next content. The same holds for
+// is_first_slide.
 Result<WallContent> readSlide(const ContentEntry& entry, const SlideTurn& turn,
                               std::vector<std::string>& skipped) {
   const auto files = slidesIn(entry);
@@ -196,7 +199,7 @@ Result<WallContent> readSlide(const ContentEntry& entry, const SlideTurn& turn,
                                               entry.path, slides.size(), skipped.back())};
   }
   const std::string name = fs::path(read->file).filename().string();
-  std::vector<std::string> passed;  // slides in the other direction: they were reported before
+  std::vector<std::string> passed;  // slides in the other direction, which were reported before
   read->is_last_slide =
       isEnd(wayFrom(slides, name, false).ahead, entry, turn.back ? passed : skipped);
   read->is_first_slide =

@@ -1,5 +1,5 @@
-// The contents that a wall can show: those of its configuration, and files of its content folder
-// (ShownFolder).
+// Describes and reads the contents that a wall can show: those of its configuration, and files of
+// its content folder (ShownFolder).
 #pragma once
 
 #include <memory>
@@ -18,75 +18,80 @@ namespace merlin::wall {
 
 enum class ContentKind { kModel, kPicture, kSlides };
 
-// The name and the file of a content; for slides, `path` is a folder.
+// A content that can be shown. For slides, `path` is a folder.
 struct ContentEntry {
-  std::string pointer;  // JSON pointer of the setting that names it
+  // JSON pointer of the setting that names the file; empty for a file of the content folder.
+  std::string pointer;
   std::string name, path;
   ContentKind kind = ContentKind::kModel;
-  render::content::ShowAs show_as = render::content::ShowAs::kAsMarked;  // pictures and slides
-  // The content folder, if the file lies there: no link below it is followed. Empty: the
-  // configuration names the file, so the operator vouches for it.
+  // For pictures and slides only.
+  render::content::ShowAs show_as = render::content::ShowAs::kAsMarked;
+  // The content folder if the file is there: then no symbolic link below this folder is followed.
+  // Empty: the configuration names the file, so its path is trusted.
   std::string below{};
 };
 
-// The configuration's contents in the order in which they are shown: /wall/model if it names one,
-// then /wall/contents. An entry that names no file has an empty path.
+// Returns the contents of the configuration in the order in which they are shown: first /wall/model
+// if it names a file or /wall/contents is empty, then /wall/contents. An entry that names no file
+// has an empty path.
 std::vector<ContentEntry> contentsOf(const WallSettings& wall);
 
-// The names of contents for a message: "left, right".
+// Returns the names of the contents for a message, such as "left, right".
 std::string namesOf(const std::vector<ContentEntry>& contents);
 
-// The default name of a content: that of its file without the ending, or of its folder.
+// Returns the default name of a content: the name of its file or folder without the ending.
 std::string nameOf(const std::string& path);
 
-// The kind of content, model or picture, that a file's ending stands for; nothing for any other
-// ending.
+// Returns the kind of content (kModel or kPicture) that the ending of a file name stands for;
+// nothing for any other ending.
 std::optional<ContentKind> kindByEnding(const std::string& name);
 
-// Indexes in `contents` of the contents with these names. A name that none of them has is left out.
+// Returns the indexes in `contents` of the contents with these names, in the order of `names`.
+// Unknown names are omitted.
 std::vector<std::size_t> placesOf(const std::vector<ContentEntry>& contents,
                                   const std::vector<std::string>& names);
 
-// The entry for a file in the content folder; the file's ending decides its kind, and a folder
-// becomes slides. `name`: of the file, or SLIDES/FILE. Errors: those of openBelow();
-// kInvalidArgument (another ending).
+// Returns the entry for a file or folder in the content folder `folder`. The ending of a file
+// decides its kind; a folder becomes slides. `name`: name of the file or folder, or SLIDES/FILE.
+// Errors: those of openBelow(); kInvalidArgument (unknown ending).
 Result<ContentEntry> contentBelow(const std::string& folder, const std::string& name);
 
-// A content that was read.
+// A content that was read, or could not be read (`fault`).
 struct WallContent {
   ContentEntry entry;
-  std::string file;  // the file that was read: the entry's, or one of its slides
-  FileStamp stamp;   // of that file
+  std::string file;  // the file that was read: that of the entry, or one slide
+  FileStamp stamp;   // stamp of `file`
   std::variant<render::lod::Dendrogram, std::shared_ptr<const render::content::Picture>> data;
   bool is_first_slide = false, is_last_slide = false;
-  // For slides: a sentence about the ordinary pictures in their folder, which are not shown. Empty:
-  // there are none.
+  // For slides: a sentence about pictures in the folder in common formats such as JPEG, which are
+  // not shown. Empty: there are none.
   std::string left_out{};
-  // Why there is nothing to show; then `data` is an empty picture, and `stamp` that of the file or
-  // folder that was tried, if there was one. Empty: it was read.
+  // Why the content could not be read. Then `data` is an empty picture, and `stamp` is that of the
+  // file or folder, if it exists. Empty: the content was read.
   std::string fault{};
 
   bool isModel() const noexcept { return data.index() == 0; }
 };
 
-// Returns what stands for a content that could not be read, until it can be. `tried`: its
-// fileOrFolderStamp() before it was tried.
+// Returns a placeholder for a content that cannot be read yet. `fault`: the reason. `tried`:
+// fileOrFolderStamp() of its path, taken before the attempt to read it.
 WallContent missingContent(const ContentEntry& entry, std::string fault,
                            const std::optional<FileStamp>& tried);
 
-// Which slide of a folder is wanted: the one after `from`, a file, in the order of their names, or
-// the one before it. The default: the first one.
+// Says which slide of a folder to read: the one after the file `from` in the order of the names,
+// or, if `back`, the one before it. With an empty `from`: the first one.
 struct SlideTurn {
   std::string from{};
   bool back = false;
 };
 
-// Reads a content: a model as a whole, a picture's coarsest level only. Of slides it reads the
-// first one after (or before) `turn.from`, cyclically, that can be shown, and tries its neighbours
-// to see whether it is the first or the last slide; it adds to `skipped` a sentence about each
-// slide on the way that cannot be shown. Errors: those of readMrmCopy(), openPicture(),
-// openBelow(); kInvalidArgument (a model lacks the feature that `show` names); kNotFound (a folder
-// without a pyramid that can be shown). O(size of a model's file).
+// Reads a content: a model completely, of a picture only the coarsest level. Of slides, it reads
+// the first one after (or before) `turn.from`, cyclically, that can be shown, and tries its
+// neighbours to find out whether it is the first or the last slide; it adds to `skipped` a sentence
+// about each slide that it tried and that cannot be shown. Errors: those of readMrmCopy(),
+// PyramidFile::open(), makePicture() and openBelow(); kInvalidArgument (a model lacks the feature
+// that `show` names); kNotFound (the folder has no pyramid that can be shown). O(size of a model's
+// file).
 Result<WallContent> readContent(const ContentEntry& entry,
                                 const render::content::ShownFeature& show, const SlideTurn& turn,
                                 std::vector<std::string>& skipped);

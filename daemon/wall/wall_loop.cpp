@@ -11,14 +11,15 @@ namespace {
 
 using shm::StepKind;
 
-// Time that is left unused at the end of a period in which refining is done.
+// Time that refining leaves unused at the end of a period.
 constexpr Duration kRefineMargin = std::chrono::milliseconds(2);
-// Time reserved to read back the last tile and pass the frame to the outputs.
+// Time that is reserved for reading back the last tile and passing the frame to the outputs.
 constexpr Duration kPresentMargin = std::chrono::milliseconds(3);
 // Share of a period that is planned for the first frame after a standstill, which takes longer than
 // predicted: cores wake from sleep, and caches hold data of another frame.
 constexpr double kResumingShare = 0.75;
-// The same for the first frames of another content, whose data is not in any cache yet.
+// Shares of a period that are planned for the first frames of another content, whose data is not in
+// any cache yet.
 constexpr std::array kNewContentShares{0.4, 0.55, 0.75};
 // The detail step is kept while its cost differs from the budget by less than this share, so that
 // detail does not flicker during motion.
@@ -50,7 +51,7 @@ void WallLoop::run(const std::stop_token& stop, const std::function<void()>& fir
     applyRequests();
     if (pace_.update()) {
       parts_.frame_clock.start(parts_.frame_clock.begin(k), pace_.period());
-      parts_.feed.lookAhead(pace_.period());  // a frame is visible when the next one begins
+      parts_.feed.lookAhead(pace_.period());  // a frame becomes visible when the next one begins
       k = 0;
     }
     readInput(k, began);
@@ -100,7 +101,7 @@ void WallLoop::applyTuning() {
       parts_.playlist = std::move(tuning.places);
     }
     if (tuning.scene) {
-      (void)parts_.scene.configure(*tuning.scene);  // validated with the file
+      (void)parts_.scene.configure(*tuning.scene);  // validated by the loader
       lost_.setReturnAfter(tuning.scene->return_after_s);
     }
     if (tuning.feed) parts_.feed.configure(*tuning.feed);
@@ -139,7 +140,7 @@ void WallLoop::showContent() {
   moving_step_.reset();
   full_detail_ = false;
   still_.stop();
-  publishContent(parts_.clock.now());  // overlays on its first frame show its name
+  publishContent(parts_.clock.now());  // overlays on its first frame read the content's name there
 }
 
 void WallLoop::replaceContents() {
@@ -159,15 +160,16 @@ void WallLoop::replaceContents() {
   still_.restart();
 }
 
-// A file that took long to read may arrive when the playlist runs again. The playlist then stops,
-// so that the file is shown for as long as one that could be shown at once.
+// Shows a content that a person requested. If reading it took long, the playlist may run again by
+// now. It is then ended, so that the content is shown as long as one that could be read at once.
 void WallLoop::showChosen(const ContentSource::Replacement& chosen) {
   turns_.choose(chosen.place);
   parts_.attendance.attend();
   finishRequest(chosen.request, {});
 }
 
-// A folder of slides that has vanished or become empty does not block the way to the other
+// Handles a request that was refused. If the folder of slides that is shown has vanished or become
+// empty, another content is requested, so that people and the playlist can get to the other
 // contents.
 void WallLoop::noteRefusal(const ContentSource::Replacement& refused) {
   const bool playing = parts_.attendance.playlist() == Playlist::State::kRunning;
@@ -176,8 +178,8 @@ void WallLoop::noteRefusal(const ContentSource::Replacement& refused) {
   if (refused.request > 0) finishRequest(refused.request, refused.refused);
 }
 
-// Returns the part of the devices' input that takes effect; while the wall is black or frozen, some
-// of it is ignored.
+// Reads the devices' input, and returns the part of it that takes effect: the operator's panel may
+// use some of it, and the rest does not move the scene while the wall is black or frozen.
 WallInput WallLoop::attendedInput(Timestamp now) {
   WallInput input = parts_.feed.read(now);
   input.scene.step = takeStep();
@@ -192,8 +194,9 @@ WallInput WallLoop::attendedInput(Timestamp now) {
   return input;
 }
 
-// Each content of the playlist begins with the initial view, wherever a visitor left it. A content
-// that a person has chosen is shown first, for as long as each content of the playlist.
+// Executes what the playlist wants. Each content of the playlist begins with its initial view,
+// wherever a visitor left it. If a person has chosen the content shown when the playlist begins,
+// the playlist shows it first, as long as each of its own contents.
 void WallLoop::followPlaylist(const Playlist::Wanted& wanted) {
   const std::size_t before = turns_.asked();
   if (wanted.next || (wanted.begins && !turns_.belongsTo(parts_.playlist)))
@@ -204,11 +207,13 @@ void WallLoop::followPlaylist(const Playlist::Wanted& wanted) {
     returnToInitialView();
 }
 
-// While the wall is black or frozen, the picture does not change.
+// Updates the marker, the viewer's position and the return to the initial view; but not while the
+// wall is black or frozen, since the picture must not change then.
 void WallLoop::followViewer(const WallInput& input, Timestamp now) {
   if (held_) return;
   if (parts_.marker) parts_.marker->pointAt(pointedAt());
-  // Updated between frames, so that all tiles of a frame have the same viewer position.
+  // The viewer is updated between frames, so that all tiles of a frame are drawn for the same
+  // position.
   if (parts_.viewer && parts_.viewer->update(input.head, now)) view_.moving = true;
   if (!lost_.update(painter().sees(view_.T_eye_model), view_.moving, now)) return;
   ++counted_.returned;
@@ -219,7 +224,7 @@ void WallLoop::readInput(std::int64_t k, Timestamp began) {
   const WallInput input = attendedInput(began);
   const Timestamp read = parts_.clock.now();
   const bool was_moving = view_.moving;
-  // The next content is shown after the scene's update, from its initial view.
+  // The requested content is shown after the update of the scene, from its initial view.
   turns_.requestNext(input.next_content);
   turns_.requestPrevious(input.previous_content);
   if (input.next_content + input.previous_content > 0) parts_.scene.reset();
@@ -248,7 +253,7 @@ render::frame::PointerMarker::Points WallLoop::pointedAt() const {
   return points;
 }
 
-// Returns the share of a period that is planned for the next frame.
+// A new content and the resumption of motion reduce the share that is planned.
 double WallLoop::plannedShare() const {
   if (new_frames_ > 0) return kNewContentShares[kNewContentShares.size() - new_frames_];
   return resuming_ ? kResumingShare : 1;
@@ -262,8 +267,9 @@ std::size_t WallLoop::chooseStep(std::int64_t k, Timestamp began) {
   return step == detail().steps() ? stepFor(left) : step;
 }
 
-// After a frame that ran over, less than a period is left, so there is time for less detail, or for
-// no frame. With a whole period, the last step is kept if it is nearly right.
+// `available`: time until the deadline. If the previous frame was late, this is less than a period,
+// so there is time for less detail only, or for no frame. With a whole period, the step of the last
+// moving frame is kept if its cost is close to the budget.
 std::size_t WallLoop::stepFor(Duration available) {
   const std::size_t budget = parts_.governor.budgetFor(available);
   if (budget == 0) return detail().steps();
@@ -304,8 +310,8 @@ std::int64_t WallLoop::movingFrame(std::int64_t k, Timestamp began) {
   return next;
 }
 
-// Counts all deadlines that a frame has passed: its own, and later ones if it ran over them too.
-// Returns the number of the next frame.
+// Counts the deadlines that have passed when frame k is finished: its own one, and later ones if it
+// took longer than a period. Returns the number of the next frame.
 std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
   const std::int64_t reached = parts_.frame_clock.frameAt(finished);
   stats_.deadline(deadline(k), true, finished <= deadline(k));
@@ -319,8 +325,8 @@ std::int64_t WallLoop::countDeadlines(std::int64_t k, Timestamp finished) {
 void WallLoop::finishMoving(const render::frame::DrawTimes& times, Duration present, bool met) {
   const std::size_t cost = detail().costOf(step_);
   const bool coarsest = cost <= parts_.governor.least() || step_ + 1 == detail().steps();
-  // times.drawing is the time of a frame in which the operator's view is as fine as the wall
-  // (DrawTimes).
+  // times.drawing is the time that the frame would take if the operator's view were as fine as the
+  // wall (see DrawTimes).
   const Duration fixed = times.fixed + present;
   const bool usual = plannedShare() == 1;
   if (usual || !met) parts_.governor.observe({cost, fixed, fixed + times.drawing, !met});
@@ -338,18 +344,18 @@ std::int64_t WallLoop::stillPeriod(std::int64_t k) {
     showFading();
   else if (parts_.delivery.hasChanged(parts_.clock.now()))
     present(painter().pixels(), full_detail_);
-  // A part that could not be loaded before has been loaded after all.
+  // If a missing part of the content has been loaded meanwhile, the frame is refined once more.
   if (painter().pending() == render::content::Pending::kArrived) full_detail_ = false;
   if (needsRefining()) refine(k);
-  // The frame shown is still valid, so every deadline that has passed counts as met.
+  // The frame shown is still valid, so all deadlines that have passed count as met.
   const std::int64_t reached = parts_.frame_clock.frameAt(parts_.clock.now());
   for (std::int64_t passed = k; passed < std::max(k + 1, reached); ++passed)
     stats_.deadline(deadline(passed), false, true);
   return std::max(k + 1, reached);
 }
 
-// If all remaining parts are still being loaded, there is nothing to draw until one of them is
-// there.
+// Returns false at full detail and during the fade to the finest step; also if all missing parts of
+// the content are still being loaded, since there is nothing to draw until one of them is loaded.
 bool WallLoop::needsRefining() const {
   if (full_detail_ || (step_ == 0 && still_.isFading())) return false;
   const bool waits = step_ == 0 && !still_.isRefining() &&
@@ -369,7 +375,8 @@ void WallLoop::refine(std::int64_t k) {
   showFading();
 }
 
-// Full detail counts as shown when the last frame of the fade to it is shown.
+// Shows the next frame of the fade. Full detail counts as shown when the last frame of the fade to
+// it is shown.
 void WallLoop::showFading() {
   const Timestamp drawn = parts_.clock.now();
   const auto pixels = still_.nextFading(painter().pixels());

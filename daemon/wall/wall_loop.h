@@ -1,10 +1,10 @@
-// WallLoop: draws the wall's frames. The stages of a frame are input, scene, governor, choice of
-// detail, drawing, delivery.
+// WallLoop: draws the wall's frames. The stages of a frame are: input, scene, governor, choice of
+// detail, drawing, and delivery to the outputs.
 //
 // A frame is late if its last pixel reaches the outputs after its deadline, which the FrameClock
-// sets. While anything moves, each period has one frame, with as much detail as the governor
-// allows. While nothing moves, finer frames and then full detail are drawn in slices, so that the
-// first frame after motion resumes can begin on time.
+// sets. While anything moves, one frame is drawn in each period, with as much detail as the
+// governor allows. While nothing moves, finer frames and finally full detail are drawn in slices,
+// so that the first frame after motion resumes can begin on time.
 #pragma once
 
 #include <atomic>
@@ -42,51 +42,52 @@
 namespace merlin::wall {
 
 struct WallParts {
-  std::vector<ShownContent> contents;  // at least one; the first one is shown first
+  std::vector<ShownContent> contents;  // at least one
   render::scene::Scene& scene;
   render::governor::Governor& governor;
   InputFeed& feed;
-  render::frame::Delivery& delivery;  // where frames go
-  WallSlots slots;                    // where statistics are published
+  render::frame::Delivery& delivery;  // passes frames to the outputs
+  WallSlots slots;                    // receive the statistics
   Clock& clock;
   render::out::FrameClock& frame_clock;            // sets the deadlines of frames
-  Attendance& attendance;                          // whether somebody works the wall
+  Attendance& attendance;                          // whether somebody uses the wall
   render::frame::Curtain* curtain = nullptr;       // an overlay of `delivery`; may be null
   render::frame::PointerMarker* marker = nullptr;  // marks where the hand points; may be null
   int fade_frames = 1;                        // number of frames in which a finer frame is faded in
-  double return_after_s = 0;                  // see SceneSettings; 0: never
+  double return_after_s = 0;                  // SceneSettings::return_after_s; 0: never
   Progress* progress = nullptr;               // stepped once a period; may be null
   ContentSource* replacements = nullptr;      // replaces contents while the wall runs; may be null
-  ViewerPlace* viewer = nullptr;              // set if the viewer's head is tracked, else null
-  OperatorPanel* panel = nullptr;             // on the operator's tile; may be null
+  ViewerPlace* viewer = nullptr;              // null: the viewer's head is not tracked
+  OperatorPanel* panel = nullptr;             // panel on the operator's tile; may be null
   std::function<void()> on_snapshot = [] {};  // called when a bound input requests a snapshot
-  // Number of snapshots that were written, whoever requested them.
+  // Returns the number of snapshots written since the start, by inputs and by command.
   std::function<std::uint32_t()> snapshots_written = [] { return 0U; };
-  // Called when a bound input requests an alignment action.
+  // Called when bound inputs request alignment actions or push the selected corner.
   std::function<void(const AlignInput&)> on_align = [](const AlignInput&) {};
-  // Whether a test card covers the picture.
+  // Returns whether a test card covers the picture.
   std::function<bool()> shows_testcard = [] { return false; };
   std::size_t first_content = 0;  // index of the content that is shown first
   std::size_t listed = 0;         // number of contents that are shown in turn; 0: all
-  // Added to a content's index to get its number in shared memory.
+  // Added to a content's index to get its number in shared memory (WallInteraction::content).
   std::uint32_t first_number = 0;
-  std::vector<std::size_t> playlist{};  // contents of the playlist, in order; empty: all in turn
+  // Indexes of the contents of the playlist, in order; empty: all contents in turn.
+  std::vector<std::size_t> playlist{};
 };
 
-// Thread-bound, except where it says thread-safe.
+// Thread-bound, except for members whose comment says thread-safe.
 class WallLoop {
  public:
   explicit WallLoop(WallParts parts);
 
-  // Draws frames of each content's initial view, for about a second, to calibrate the governor;
+  // Draws frames of the contents' initial views, for about a second, to calibrate the governor;
   // they are not shown. Optional; to be called before run().
   void calibrate();
 
-  // Draws frames until `stop`. `first_frame` is called once, after the first frame reached every
-  // output.
+  // Draws frames until `stop`. `first_frame` is called once, after the first frame was passed to
+  // all outputs.
   void run(const std::stop_token& stop, const std::function<void()>& first_frame);
 
-  // Thread-safe: executed before the next frame.
+  // Requests a combination of these actions; they are executed before the next frame. Thread-safe.
   enum Request : std::uint32_t {
     kResetView = 1,
     kNextMode = 2,
@@ -95,24 +96,25 @@ class WallLoop {
   };
   void request(Request what) noexcept { requests_.fetch_or(what); }
 
-  // Thread-safe: shows the content of a place, before the next frame. Nothing happens if there is
-  // no such place.
+  // Shows the content of a place from the next frame on. Nothing happens if there is no such place.
+  // Thread-safe.
   void show(std::size_t place) noexcept { place_asked_.store(static_cast<std::int64_t>(place)); }
-  // Thread-safe: reports that request `number` is done: shown (`refused` is empty), or refused for
-  // this reason.
+  // Publishes that request `number` is done: its content was shown (`refused` is empty), or it was
+  // refused for the reason `refused`. Thread-safe.
   void finishRequest(std::uint32_t number, const std::string& refused);
 
-  // Thread-safe: moves what the ball moves, in the next frame; several calls before a frame add up.
+  // Moves what the ball moves, in the next frame; the steps of several calls before this frame are
+  // added. Thread-safe.
   void move(const render::scene::Push& step);
 
-  // Thread-safe: applies these settings before the next frame. What people changed by command stays
-  // as it is.
+  // Applies these settings before the next frame. What people have changed by command (the rate, a
+  // fixed cost, the playlist switched off) does not change. Thread-safe.
   void tune(WallTuning tuning);
 
-  // Thread-safe; applied before the next frame: see Pace.
+  // See Pace. Applied before the next frame. Thread-safe.
   void hold(std::optional<std::size_t> cost) noexcept { pace_.hold(cost); }
   void setRate(std::optional<double> rate_hz) noexcept { pace_.setRate(rate_hz); }
-  // Thread-safe.
+  // See Pace::limits(). Thread-safe.
   Pace::Limits holdLimits() const noexcept { return pace_.limits(); }
 
  private:
@@ -120,19 +122,21 @@ class WallLoop {
   const render::content::DetailAxis& detail() const noexcept { return turns_.detail(); }
   render::frame::FramePainter& painter() const noexcept { return turns_.painter(); }
 
-  // Each returns the number of the next frame.
+  // Each executes frame or period number k, and returns the number of the next one.
   std::int64_t movingFrame(std::int64_t k, Timestamp began);
   std::int64_t stillPeriod(std::int64_t k);
 
   void applyRequests();
   void applyTuning();
   render::scene::Push takeStep();
-  // Reads the devices and moves the scene.
+  // Reads the devices' input and moves the scene.
   void readInput(std::int64_t k, Timestamp began);
   WallInput attendedInput(Timestamp now);
   void followPlaylist(const Playlist::Wanted& wanted);
   void followViewer(const WallInput& input, Timestamp now);
-  // Returns detail().steps() if there is no time for any frame.
+  // plannedShare() returns the share of a period planned for the next frame. chooseStep() and
+  // stepFor() return the detail step of the next frame, or detail().steps() if there is no time for
+  // any frame.
   double plannedShare() const;
   std::size_t chooseStep(std::int64_t k, Timestamp began);
   std::size_t stepFor(Duration available);
@@ -163,21 +167,23 @@ class WallLoop {
   render::scene::SceneView view_;
   render::scene::LostView lost_;
   std::size_t step_ = 0;  // detail step of the last frame
-  // Detail step of the last moving frame that had a whole period.
+  // Detail step of the last moving frame for which a whole period was available.
   std::optional<std::size_t> moving_step_;
   bool full_detail_ = false;
-  bool resuming_ = false;  // the next frame is the first after a standstill
-  bool held_ = false;      // black or frozen: nothing moves the scene
+  bool resuming_ = false;  // the next moving frame is the first after a standstill
+  bool held_ = false;      // the wall is black or frozen, so nothing moves the scene
   std::atomic<std::uint32_t> requests_{0};
-  std::size_t new_frames_ = 0;  // first moving frames of another content that are still to come
+  // How many of the first moving frames of a new content are still to come.
+  std::size_t new_frames_ = 0;
   std::uint64_t frames_ = 0;
-  shm::WallStats counted_{};                   // only the fields that the loop itself counts
+  shm::WallStats counted_{};                   // only the fields that the loop sets itself
   std::atomic<std::int64_t> place_asked_{-1};  // -1: none
   std::mutex step_mutex_;
-  // Guarded by step_mutex_: the sum of move() since the last frame; the requests that are done.
+  // Guarded by step_mutex_: the sum of the steps of move() since the last frame, and the results of
+  // the requests that are done.
   render::scene::Push step_asked_;
   ShowResults results_;
-  std::vector<WallTuning> tunings_;  // guarded by step_mutex_: since the last frame
+  std::vector<WallTuning> tunings_;  // guarded by step_mutex_: calls of tune() since the last frame
 };
 
 }  // namespace merlin::wall

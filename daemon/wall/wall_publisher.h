@@ -1,4 +1,4 @@
-// WallPublisher: writes the wall's statistics to its shared-memory segment.
+// WallPublisher: writes the wall's statistics to the wall's shared-memory segment.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@
 
 namespace merlin::wall {
 
-// Slots of the segment; a null slot is not written.
+// Slots of the wall's segment. A null slot is not written.
 struct WallSlots {
   shm::SeqSlot<shm::WallStats>& stats;
   shm::Channel<shm::FrameTrace>* trace = nullptr;
@@ -29,14 +29,14 @@ struct WallSlots {
   shm::SeqSlot<shm::WallIdle>* idle = nullptr;
 };
 
-// Thread-bound to the wall's thread: it is the only writer of these slots.
+// Thread-bound to the wall's thread, which is the only writer of these slots.
 class WallPublisher {
  public:
   explicit WallPublisher(const WallSlots& slots) : slots_(slots) {}
 
   void trace(const FrameTracer& tracer);
 
-  // Publishes `counted`, in which the loop has set the fields that it counts itself; stats() sets
+  // Publishes `counted`, in which the loop has set the fields that it counts itself, after setting
   // all other fields from `state`.
   struct State {
     const ContentTurns& turns;
@@ -48,14 +48,15 @@ class WallPublisher {
   };
   void stats(shm::WallStats counted, const State& state, Timestamp now);
 
-  // `out`: has the fields that the loop sets itself; those of pointing are set from the other
-  // arguments.
+  // Publishes `out`, in which the loop has set some fields, after setting the time and the fields
+  // about pointing from the other arguments. `marker`: computes the pixel that is pointed at; may
+  // be null.
   void interaction(shm::WallInteraction out, const render::scene::SceneView& view,
                    const render::frame::PointerMarker* marker, Timestamp now);
   void outputs(const render::out::OutputSet& outputs, Timestamp now);
-  // `result`: what became of the last request for a content. All other fields are set from `shown`.
+  // Publishes the content `shown` and `result`, the result of a request for a content.
   void content(const ShownContent& shown, const ShowResult& result, Timestamp now);
-  // `testcard`: whether a test card covers the picture.
+  // Publishes what the wall will do by itself. `testcard`: whether a test card covers the picture.
   void idle(const Playlist::Due& due, bool testcard, Timestamp now);
 
  private:

@@ -19,8 +19,9 @@
 namespace merlin::wall {
 namespace {
 
-// The contents' files with their stamps at the time of reading, so that a file replaced since then
-// is noticed. There is one more place, for a file that is not in the configuration.
+// Returns the files of the contents with their stamps at the time of reading, so that ModelWatch
+// notices a file that was replaced since then. One more place follows, for a file that is not in
+// the configuration.
 std::vector<ModelWatch::Watched> filesOf(const std::vector<WallContent>& contents) {
   std::vector<ModelWatch::Watched> files;
   for (const WallContent& content : contents)
@@ -42,7 +43,7 @@ std::vector<std::string> faultsOf(const std::vector<WallContent>& contents) {
   return faults;
 }
 
-// Maps the names of a room's tiles to the names of their panels.
+// Returns the names of the panels of a room's tiles, by the name of the tile.
 std::map<std::string, std::string> panelsOf(const WallSettings& wall) {
   std::map<std::string, std::string> panels;
   for (const render::room::DisplaySettings& display :
@@ -111,20 +112,21 @@ WallRole::WallRole(const Settings& settings, std::vector<WallContent> contents,
       tiles_(watch_, clock_),
       requests_({settings_.wall, entries_, missing_, model_watch_, attendance_, loop_}) {}
 
-// In shared memory 0 is the model and 1 the first of the contents, whether there is a model or not.
+// Returns the number that WallInteraction::content has for the first content: 0 if this is
+// /wall/model, otherwise 1, since 0 always stands for /wall/model.
 std::uint32_t WallRole::firstNumber() const noexcept {
   return entries_.front().pointer == "/wall/model" ? 0 : 1;
 }
 
-// Shows a notice while no content can be read, unless a file that is not in the configuration is
-// shown: otherwise only the background would be visible.
+// Shows a notice while no content of the configuration can be read, since only the background is
+// visible then; but not while a file that is not in the configuration is shown.
 void WallRole::tellIfEmpty(Timestamp now) {
   const std::vector<std::string> faults = missing_.faults();
   const bool is_empty = std::ranges::none_of(faults, &std::string::empty);
   if (std::exchange(told_empty_, is_empty) && !is_empty) (void)notice_.show("off");
   const auto shown = segment_->interaction.read();
   if (!is_empty || (shown && shown->content >= firstNumber() + entries_.size())) return;
-  // A tile has room for about fifty letters, so the folder is omitted.
+  // The folder is omitted, since a tile has room for about fifty letters only.
   const std::string& path = entries_.front().path;
   std::string_view reason = faults.front();
   if (reason.starts_with(path + ": ")) reason.remove_prefix(path.size() + 2);
@@ -135,7 +137,8 @@ void WallRole::tellIfEmpty(Timestamp now) {
       std::string(wholeCharacters(std::string_view(why).substr(0, Notice::kMostBytes))), now);
 }
 
-// Logs when signals begin to be drawn into displays' memory, and why they cannot be.
+// Logs when signals are first drawn directly into the memory of displays, and the reason if this is
+// not possible.
 void WallRole::tellScanOut() {
   const ScanOutReport now = outputs_->scanOut();
   if (now.drawn && !told_scan_out_.drawn)
@@ -236,8 +239,8 @@ void WallRole::reload(const Settings& settings, const WallChanges& changes) {
     outputs_->aligner().configure(output.shownName(), output.correction);
 }
 
-// Overlays in drawing order. A test card hides the plates of the operator's tile; the notice and
-// the panel are drawn over it, since they are useful there too.
+// Returns the overlays in drawing order. A test card covers the plates of the operator's tile; the
+// notice and the panel are drawn over the card, since they are useful there too.
 std::vector<render::frame::Overlay*> WallRole::overlaysWith(render::frame::PointerMarker& marker) {
   std::vector<render::frame::Overlay*> overlays = {
       operator_tile_.makePlates(),       &cards_, &notice_.overlay(),
@@ -260,7 +263,8 @@ void WallRole::addOwn(WallParts& parts) {
   parts.playlist = placesOf(entries_, settings_.wall.playlist.contents);
 }
 
-// Decides where corrections are computed: by a shader, or by the CPU if a shader cannot do it.
+// Decides where corrections are computed: by a shader on the GPU, or by the CPU if this is set or
+// the shader cannot be used.
 void WallRole::beginCorrecting(const render::frame::DrawContexts& contexts) {
   using Place = render::frame::CorrectionPlace;
   RendererReport report{contexts.own->info(), contexts.other ? 2 : 1, contexts.asynchronous};
@@ -287,7 +291,7 @@ std::optional<RendererReport> WallRole::renderer() const {
   return report;
 }
 
-// Returns nullopt if the head is not tracked.
+// Returns nothing if the viewer's head is not tracked.
 std::optional<ViewerPlace> WallRole::makeViewerPlace() {
   const WallSettings& wall = settings_.wall;
   const render::stereo::HeadSettings& head = wall.stereo.head;

@@ -1,5 +1,5 @@
-// WallRole: the wall that a configuration describes: models, scene, governor, OpenGL and outputs,
-// run on its own thread.
+// WallRole: owns and runs the wall that a configuration describes: contents, scene, governor,
+// OpenGL and outputs. It draws on a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -32,29 +32,30 @@
 
 namespace merlin::wall {
 
-// What changed in the settings while the wall is drawn.
+// Which groups of the wall's settings differ after a reload.
 struct WallChanges {
   bool rate = false, playlist = false, scene = false, input = false, corrections = false;
 };
 
-// The renderer that draws the wall, for the status.
+// Information about the renderer that draws the wall, for the status.
 struct RendererReport {
   render::gl::RendererInfo info{};
   int contexts = 1;
-  bool asynchronous = false;  // how pixels are read back
-  bool corrects = false;      // whether the renderer computes the corrections, not the CPU
-  // Why the renderer does not compute (all of) them although it is set to; empty: no fault.
+  bool asynchronous = false;  // whether pixels are read back asynchronously
+  bool corrects = false;      // whether the GPU, not the CPU, computes the corrections
+  // Why the GPU does not compute all corrections although it should; empty: no fault.
   std::string correction_fault{};
-  // How the signals that the renderer corrects come to displays; not drawn if it corrects none.
+  // How the signals that the GPU corrects get to the displays; the default value if it corrects
+  // none.
   ScanOutReport scan_out{};
 };
 
 class WallRole {
  public:
-  // Creates the shared-memory segments; the wall's thread does not run yet. `contents`: from
-  // readContents(), at least one. `keeper`: the state that people change at run time; it, `watch`
-  // and `clock` must outlive this object. Errors: kBusy (a running daemon owns the segments), kIo,
-  // and errors in the wall's settings.
+  // Creates the shared memory and opens the outputs; does not start the wall's thread. `contents`:
+  // from readContents(), at least one. `generation`: shm::newGeneration(). `keeper`, `kept_files`,
+  // `watch` and `clock` must outlive this object. Errors: kBusy (a running daemon owns the
+  // segments), kIo, errors in the wall's settings, and those of CorrectedOutputs::make().
   static Result<std::unique_ptr<WallRole>> make(const Settings& settings,
                                                 std::vector<WallContent> contents,
                                                 std::uint64_t generation,
@@ -65,67 +66,74 @@ class WallRole {
   WallRole(const WallRole&) = delete;
   WallRole& operator=(const WallRole&) = delete;
 
-  // Starts the wall's thread. The future is set once: after the first frame to the name of the
-  // OpenGL renderer ("EGL, llvmpipe ..."), or to the error if drawing cannot start.
+  // Starts the wall's thread. The future receives the name of the OpenGL renderer ("EGL, llvmpipe
+  // ...") after the first frame, or an error if drawing cannot start.
   std::future<Result<std::string>> start();
 
-  // Returns nothing before the renderer is chosen, on the wall's thread. Thread-safe.
+  // Returns information about the renderer; nothing until the wall's thread has chosen the
+  // renderer. Thread-safe.
   std::optional<RendererReport> renderer() const;
 
-  // Sets the functions called on the wall's thread: `act` when a bound input requests a snapshot,
-  // `written` for the number of those that were written. To be called before start().
+  // Sets two functions that the wall's thread calls: `act`, when a bound input requests a snapshot,
+  // and `written`, which returns the number of snapshots written so far. To be called before
+  // start().
   void onSnapshot(std::function<void()> act, std::function<std::uint32_t()> written) {
     on_snapshot_ = std::move(act);
     snapshots_written_ = std::move(written);
   }
 
-  // Sets the functions that outputs of kind window call, on their own threads, for the person at
-  // them. To be called before start().
+  // Sets the functions that outputs of kind window call, on their own threads, to execute what the
+  // person at the window does. To be called before start().
   void onWindow(render::out::WindowActs acts) { outputs_->onWindow(std::move(acts)); }
 
-  // Applies these settings before the wall's next frame, without closing anything. `changes`: the
-  // groups that differ. REQUIRES: the first frame was shown; all else in `settings` is as before.
+  // Applies these settings from the wall's next frame on, without closing any output. `changes`:
+  // the groups that differ from the present settings. REQUIRES: the first frame was shown; all
+  // other settings are the same as before.
   void reload(const Settings& settings, const WallChanges& changes);
 
-  // Thread-safe; these four are ignored before the wall's loop runs.
+  // request(), move(), hold() and setRate() do nothing while the wall's loop does not run. All four
+  // are thread-safe.
   void request(WallLoop::Request what);
-  // Moves what the ball moves by `way_radii` times the model's radius and turns it by `turn_deg`.
+  // Moves what the ball moves by `way_radii` (right, up, towards the viewer), in multiples of the
+  // model's radius, and turns it by `turn_deg` about these axes.
   void move(const Eigen::Vector3f& way_radii, const Eigen::Vector3f& turn_deg);
   void hold(std::optional<std::size_t> cost);
   void setRate(std::optional<double> rate_hz);
-  // Thread-safe: the range of costs that hold() may fix for the content that is shown; nothing
-  // before the loop runs.
+  // Returns the range of costs that hold() may fix for the content that is shown; nothing while the
+  // loop does not run. Thread-safe.
   std::optional<Pace::Limits> holdLimits() const;
   // For its thread-safe members.
   CorrectedOutputs& outputs() { return *outputs_; }
-  // What people have asked to be shown; for its thread-safe members.
+  // Executes requests to show a content. For its thread-safe members.
   ContentRequests& contents() { return requests_; }
-  // For its thread-safe members; null if there is no panel on the operator's tile.
+  // Null if there is no panel on the operator's tile. For its thread-safe members.
   OperatorPanel* panel() { return operator_tile_.panel(); }
   // For its thread-safe members.
   Attendance& attendance() { return attendance_; }
 
-  // To be called ten times a second: saves in the state which content is shown, removes shared
-  // memory of signals that nobody requests any more, publishes the notice, and keeps the playlist
-  // from beginning while a test card is shown.
+  // Does the regular work outside the wall's thread: saves in the state which content is shown,
+  // removes the shared memory of signals that nobody requests any more, publishes the notice, shows
+  // a notice while no content can be read, and keeps the playlist from beginning while a test card
+  // is shown. To be called ten times a second, always by the same thread.
   void tend(Timestamp now);
 
-  // Returns the events of the viewer's tracked head since the last call. Thread-safe.
+  // Returns the events about the viewer's tracked head since the last call. Thread-safe.
   std::vector<Event> viewerEvents();
 
-  // Shows a sentence over the picture for a few seconds. Errors: those of Notice::show().
-  // Thread-safe.
+  // Shows a sentence over the picture for a few seconds; "off" ends it. Errors: those of
+  // Notice::show(). Thread-safe.
   Result<Ok> notice(const std::string& text) { return notice_.show(text); }
 
-  // Shows a sentence on the operator's tile for a minute. Thread-safe.
+  // Adds a message that the operator's tile shows for about a minute. Thread-safe.
   void tell(std::string sentence) { board_.add(clock_.now(), std::move(sentence)); }
 
-  // Returns the events of replaced, unreadable and missing files since the last call. Thread-safe.
+  // Returns the events about replaced, unreadable and missing files since the last call.
+  // Thread-safe.
   std::vector<Event> contentEvents();
 
   void writeHeartbeat(Timestamp now) const { segment_.writeHeartbeat(now); }
-  // To be called once a second on the thread that calls writeHeartbeat(): restores the wall's
-  // segment and the outputs' shared memory by SharedMemory::mend().
+  // Restores the wall's segment and the outputs' shared memory if another process has removed them:
+  // see SharedMemory::mend(). To be called once a second on the thread that calls writeHeartbeat().
   Result<std::string> mend();
   const shm::WallSegment& segment() const { return *segment_; }
 
@@ -146,8 +154,8 @@ class WallRole {
 
   Settings settings_;  // `wall` is drawnWall() of the configured one
   std::vector<WallContent> contents_;
-  const std::vector<ContentEntry> entries_;  // of contents_
-  MissingContents missing_;                  // of entries_
+  const std::vector<ContentEntry> entries_;  // entries of contents_
+  MissingContents missing_;                  // which of entries_ are missing
   render::tiles::TilePlan plan_;
   render::scene::Scene scene_;
   render::governor::Governor governor_;
@@ -158,8 +166,8 @@ class WallRole {
   mutable std::mutex renderer_mutex_;
   std::optional<RendererReport> renderer_;
   LastContent last_content_;       // used by the thread of tend() only
-  bool told_empty_ = false;        // the same
-  ScanOutReport told_scan_out_{};  // the same
+  bool told_empty_ = false;        // used by the thread of tend() only
+  ScanOutReport told_scan_out_{};  // used by the thread of tend() only
   render::testcard::CardOverlay cards_;
   MessageBoard board_;
   Attendance attendance_;
@@ -167,14 +175,14 @@ class WallRole {
   Notice notice_;
   render::frame::Curtain curtain_;
   std::unique_ptr<CorrectedOutputs> outputs_;
-  std::optional<render::frame::Delivery> delivery_;  // has the corrections while the wall runs
+  std::optional<render::frame::Delivery> delivery_;  // owns the corrections while the wall runs
   std::function<void()> on_snapshot_ = [] {};
   std::function<std::uint32_t()> snapshots_written_ = [] { return 0U; };
   std::mutex viewer_events_mutex_;
   std::vector<Event> viewer_events_;
   std::promise<Result<std::string>> ready_;
   std::atomic<WallLoop*> loop_{nullptr};
-  // Declared before thread_, which uses all three.
+  // Declared before thread_, which uses these three.
   ModelWatch model_watch_;
   render::content::TileLoader tiles_;
   ContentRequests requests_;

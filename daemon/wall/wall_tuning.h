@@ -1,4 +1,4 @@
-// WallTuning: settings that a wall takes while it runs.
+// WallTuning: settings that can be changed while the wall runs.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,12 @@
 
 namespace merlin::wall {
 
-// A member without a value leaves its setting as it is.
+// A member without a value does not change its setting.
 struct WallTuning {
   std::optional<render::governor::GovernorSettings> governor;
   std::optional<PlaylistSettings> playlist;
-  std::vector<std::size_t> places;  // of playlist->contents, in order; empty: all in turn
+  // Indexes of the contents in playlist->contents, in this order; empty: all contents in turn.
+  std::vector<std::size_t> places;
   std::optional<render::scene::SceneSettings> scene;
   std::optional<FeedSettings> feed;
 };

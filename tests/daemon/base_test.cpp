@@ -43,6 +43,7 @@ TEST(Text, EndsWithAWholeCharacter) {
   EXPECT_EQ(wholeCharacters("a\xc2\xb5"), "a\xc2\xb5");
   EXPECT_EQ(wholeCharacters("a\xc2"), "a");
   EXPECT_EQ(wholeCharacters("\xf0\x9f\xa6"), "");
+  EXPECT_EQ(wholeCharacters("a\nb\xe2\x82"), "a\nb") << "lines of a program's output";
   EXPECT_EQ(wholeCharacters("a\xff\xff\xff\xff"), "a\xff\xff\xff\xff") << "is none";
 }
 

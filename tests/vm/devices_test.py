@@ -65,12 +65,12 @@ def entry(name, port):
     return {"name": name, "driver": DRIVERS[name], "port": port}
 
 
-def start(*devices, **settings):
+def start(*devices, role="devices", **settings):
     """Starts merlind with these devices and waits until it is ready; returns its process id."""
     config = {"run_directory": "/run/merlin", "devices": list(devices), **settings}
     with open(f"{MACHINE.shared}/devices.json", "w", encoding="utf-8") as file:
         json.dump(config, file)
-    pid = int(MACHINE.run("merlind --role devices --config /mnt/devices.json >/run/log 2>&1 & echo $!"))
+    pid = int(MACHINE.run(f"merlind --role {role} --config /mnt/devices.json >/run/log 2>&1 & echo $!"))
     MACHINE.wait_for(r"ready")
     return pid
 
@@ -219,6 +219,31 @@ class Devices(unittest.TestCase):
         vm.until(lambda: configured()["ball"]["samples"] > samples, "its samples go on")
         self.assertEqual(configured()["tracker"]["reconnects"], 0)
         stop(pid)
+
+    def test_7_a_gamepad_moves_a_corner_of_an_output(self):
+        pad, path = self.plug("gamepad")
+        bindings = [{"input": "pad.button.1", "action": "align_corner_next"},
+                    {"input": "pad.axis.ry+", "action": "align_right"}]
+        tiles = {"tile_width": 64, "tile_height": 48, "frame_width": 64, "frame_height": 48, "tiles": [{"name": "left"}]}
+        output = {"kind": "png", "name": "left", "path": "/run/left.png", "interval_s": 86400, "tiles": [{"tile": "left"}]}
+        pid = start({"name": "pad", "driver": "evdev", "port": f"evdev:{path}"}, role="all", bindings=bindings,
+                    state_file="/run/state.json", wall={"tiles": tiles, "outputs": [output]})
+        vm.until(lambda: health()["pad"] == "ok", "the gamepad streams")
+
+        def moved():
+            (left,) = json.loads(MACHINE.run("merlin wall align --list --json"))["outputs"]
+            return {corner: place["moved"] for corner, place in left["corners"].items() if place["moved"] != [0, 0]}
+
+        self.assertEqual(moved(), {})
+        self.report((EV_ABS, ABS_RX, 32767))
+        vm.until(lambda: moved() == {"top_left": [1, 0]}, "the stick moves the corner that is selected first")
+        self.report((EV_ABS, ABS_RX, 0))
+        self.report((EV_KEY, BTN_SOUTH, 1))
+        self.report((EV_KEY, BTN_SOUTH, 0))
+        self.report((EV_ABS, ABS_RX, 32767))
+        vm.until(lambda: moved() == {"top_left": [1, 0], "top_right": [1, 0]}, "the button selects the next corner")
+        stop(pid)
+        MACHINE.run(f"kill {pad}; wait {pad}", succeeds=False)
 
     def fingers(self):
         """The positions of the fingers on the surface."""
