@@ -46,23 +46,23 @@ struct DriverEntry {
   std::unique_ptr<Device> (*make)(const DriverSettings&, const Clock&, SampleSink&) = nullptr;
   // Describes the driver's own settings; null: it has none.
   void (*describe)(DriverSettings&, SettingsVisitor&) = nullptr;
-  // Finds faults in the driver's settings, also in combination with the device's line; null: no
-  // fault is possible. Pointers are relative to the device: "/port", "/cyberglove/rate_hz".
+  // Returns the faults of the driver's settings, also in combination with the device's line; null:
+  // no fault is possible. JSON pointers are relative to the device: "/port", "/cyberglove/rate_hz".
   SettingFaults (*validate)(const DriverSettings&, const LineSettings&) = nullptr;
   bool has_keys = false;  // whether it knows the kernel's keys and buttons by name
   // Whether several devices can share one tcp:// port, each with its own connection.
   bool shares_server = false;
-  // For a tracker: whether poses of this station (1 to kStations) can arrive; null: poses of all
-  // stations can.
+  // For a tracker: returns whether poses of this station (1 to kStations) can arrive; null: poses
+  // of all stations can arrive.
   bool (*has_station)(const DriverSettings&, int station) = nullptr;
 };
 
 std::span<const DriverEntry> drivers();
 
-// nullptr if there is no driver of that name.
+// Returns the driver of that name; nullptr if there is none.
 const DriverEntry* findDriver(std::string_view name);
 
-// "glove", "tracker", "ball", "touch".
+// Returns "glove", "tracker", "ball" or "touch".
 const char* kindName(SampleKind kind);
 
 }  // namespace merlin

@@ -10,12 +10,16 @@ namespace {
 
 constexpr std::size_t kPasses = 120;
 constexpr float kRate = 0.004F;
-constexpr float kNoise = 0.5F;           // of the noise on the new hands, in standard deviations
-constexpr std::size_t kRehearsed = 100;  // hands of each posture, drawn from the statistics
-constexpr float kRehearsedNoise =
-    1.15F;  // standard deviations: other people differ more than those in the statistics
-constexpr double kMostForgotten = 0.005;  // share of the drawn hands that may be lost
-constexpr double kEnough = 0.999;         // share of new hands recognised at which training ends
+constexpr float kNoise = 0.5F;           // noise added to each hand, in standard deviations
+constexpr std::size_t kRehearsed = 100;  // number of hands drawn for each posture
+// Spread of the drawn hands, in standard deviations of the statistics; above 1, since other people
+// differ more than those in the statistics.
+constexpr float kRehearsedNoise = 1.15F;
+// Greatest decrease of the recognised share of drawn hands.
+constexpr double kMostForgotten = 0.005;
+// Recognised share of new hands at which no larger change of the weights is tried.
+constexpr double kEnough = 0.999;
+// The fractions of the trained change of the weights that are tried.
 constexpr double kShares[] = {0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
 
 Slots usedBy(const Weights& weights) {
@@ -26,7 +30,8 @@ Slots usedBy(const Weights& weights) {
   return used;
 }
 
-// Draws hands like those that the network was trained on, in whitened coordinates.
+// Draws `each` hands of every posture, in whitened coordinates. They resemble the hands on which
+// the network was trained.
 std::vector<Sample> rehearse(const WhitenedSpace& space, std::size_t each, Random& random) {
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < space.means().size(); ++k) {

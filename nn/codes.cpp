@@ -8,7 +8,8 @@
 namespace merlin::nn {
 namespace {
 
-constexpr double kLeastGain = 1e-9;  // smaller gains are rounding and could repeat for ever
+// Smaller gains may be rounding errors and could repeat for ever.
+constexpr double kLeastGain = 1e-9;
 
 // Returns a permutation of the pool: first the K codes of the postures, then the free ones.
 std::vector<std::uint32_t> inUseFirst(const std::vector<std::uint32_t>& pool,
@@ -22,7 +23,8 @@ std::vector<std::uint32_t> inUseFirst(const std::vector<std::uint32_t>& pool,
 
 int bits(std::uint32_t a, std::uint32_t b) { return std::popcount(a ^ b); }
 
-// Returns the gain if i and j exchange their codes; j may be a free code.
+// Returns by how much cost() decreases if postures i and j exchange their codes. An index j from
+// the number of postures on stands for a free code.
 double gain(const Likeness& likeness, const std::vector<std::uint32_t>& code, std::size_t i,
             std::size_t j) {
   const std::size_t postures = likeness.size();
@@ -43,7 +45,8 @@ double cost(const Likeness& likeness, const std::vector<std::uint32_t>& code) {
   return sum;
 }
 
-// Exchanges each of the first `postures` codes with any other, until no exchange has a gain.
+// Exchanges each of the first `postures` codes with any other code, until no exchange has a gain.
+// Returns whether any code was exchanged.
 template <typename Gain>
 bool exchange(std::vector<std::uint32_t>& code, std::size_t postures, Gain gain) {
   bool any = false;
@@ -93,7 +96,8 @@ std::vector<std::uint32_t> assignCodes(const Likeness& likeness,
   return best;
 }
 
-// The price of a code is sum_k (o_k - bit_k)^2 without the terms that are the same for every code.
+// The price of a code for a posture is sum_k (o_k - bit_k)^2, where o is the posture's mean output,
+// without the terms that are the same for every code.
 bool exchangeCodes(const std::vector<std::array<double, kOutputs>>& mean,
                    const std::vector<std::uint32_t>& pool, std::vector<std::uint32_t>& codes) {
   const std::size_t postures = codes.size();

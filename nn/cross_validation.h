@@ -21,11 +21,11 @@ struct Fold {
 // folds.
 Fold splitFold(std::span<const LabelledHand> hands, std::size_t folds, std::size_t fold);
 
-// Results of a fold, or their means over several.
+// Result of one fold, or the mean over several folds.
 struct FoldScore {
-  std::size_t hands = 0;  // number of hands tested; of a mean, the sum
-  double accuracy = 0;    // share of them that the network recognises correctly
-  Neighbours neighbours;  // the same for the simplest classifiers
+  std::size_t hands = 0;  // number of hands tested; in a mean over folds, their sum
+  double accuracy = 0;    // share of these hands that the network recognises correctly, 0..1
+  Neighbours neighbours;  // shares that two simple classifiers recognise correctly
 };
 
 // Trains on all folds but `fold`, and tests on `fold`. Errors: those of fit(). Cost: that of fit()
@@ -34,7 +34,7 @@ Result<FoldScore> scoreFold(std::span<const LabelledHand> hands, std::size_t fol
                             std::size_t fold, const FitSettings& settings,
                             const FitProgress& progress = {});
 
-// The means over the folds, each of the same weight. REQUIRES: at least one fold.
+// Returns the means over the folds; every fold has the same weight. REQUIRES: at least one fold.
 FoldScore meanOf(std::span<const FoldScore> folds);
 
 }  // namespace merlin::nn

@@ -23,21 +23,24 @@ struct Example {
   std::uint32_t code = 0;
 };
 
-// Errors: kInvalidArgument if the network's table lacks a posture or an angle is not finite.
+// Converts labelled hands into training examples: scales the values by the network's ranges and
+// looks up each posture's code. Errors: kInvalidArgument if the network's table lacks a posture or
+// a value is not finite.
 Result<std::vector<Example>> toExamples(std::span<const LabelledHand> hands,
                                         const PostureNetwork& network);
 
 struct Score {
   std::size_t total = 0;
   std::size_t right = 0;
-  std::size_t rejected = 0;  // recognised as no posture; the rest were taken for another one
+  // Hands that were recognised as no posture. The remaining hands were taken for a wrong posture.
+  std::size_t rejected = 0;
 
   double accuracy() const noexcept {
     return total == 0 ? 0.0 : static_cast<double>(right) / static_cast<double>(total);
   }
 };
 
-// Recognises every hand and compares the posture's name with its label.
+// Recognises every hand with `network` and compares the result with the hand's label.
 Score score(const PostureNetwork& network, std::span<const LabelledHand> hands);
 
 }  // namespace merlin::nn

@@ -15,8 +15,9 @@ constexpr std::size_t kNoisePool = 1 << 14;
 constexpr float kFirst = 0.9F, kSecond = 0.999F, kLittle = 1e-8F;
 constexpr float kDecay = 1e-4F;
 
-// Draws a nearly normal number with mean 0 and deviation 1. Uses arithmetic alone: the last bits of
-// libm's log and cos differ between processors, and one seed must give one network.
+// Returns a nearly normal random number with mean 0 and standard deviation 1. It uses arithmetic
+// alone: the last bits of libm's log and cos differ between processors, and one seed must give one
+// network.
 float bell(Random& random) {
   double sum = -2;
   for (int i = 0; i < 4; ++i) sum += random.uniform();
@@ -48,7 +49,8 @@ Descent::Descent(Phi phi, std::span<const Sample> samples, std::span<const Input
   for (const Sample& sample : samples) own_side_.push_back(nearest(sample.u) == sample.posture);
 }
 
-// Computes |u - m|^2 = |u|^2 + 2 (|m|^2 / 2 - u m) for all postures at once.
+// Compares |u - m|^2 = |u|^2 + 2 (|m|^2 / 2 - u m) for the means m of all postures; |u|^2 is the
+// same for all and is left out.
 std::uint32_t Descent::nearest(const Input& u) const noexcept {
   std::array<float, kCodes> far = half_square_;
   for (std::size_t i = 0; i < kInputs; ++i) {
@@ -57,8 +59,9 @@ std::uint32_t Descent::nearest(const Input& u) const noexcept {
   return static_cast<std::uint32_t>(std::min_element(far.begin(), far.end()) - far.begin());
 }
 
-// A varied hand that is nearer to another posture's mean would teach the wrong code. It is moved
-// half of the way to its own posture's mean, repeatedly, until that mean is the nearest.
+// A varied hand that is nearer to another posture's mean would teach the wrong code. Therefore it
+// is moved half of the way to its own posture's mean, up to three times, until that mean is the
+// nearest.
 Input Descent::stray(std::size_t n, const Straying& straying) {
   constexpr int kHalvings = 3;
   const Sample& sample = samples_[n];

@@ -5,11 +5,12 @@
 namespace merlin::nn {
 namespace {
 
-// Limit of the drift, as a share of a sensor's range (6 standard deviations over all postures). A
-// larger distance from a posture's mean is not drift, but another posture that was mistaken for
-// this one.
+// Limit of one visit's mean deviation, as a share of a sensor's range (which is 6 standard
+// deviations over all postures). A larger deviation from a posture's mean is not drift, but another
+// posture that was mistaken for this one.
 constexpr float kFurthest = 0.15F;
-constexpr float kMostHands = 1e4F;  // counted in a visit: more of the same hand add nothing
+// Greatest number of hands used of one visit; further ones add no information.
+constexpr float kMostHands = 1e4F;
 
 }  // namespace
 
@@ -35,8 +36,8 @@ Recognition DriftFollower::operator()(const Angles& value) noexcept {
   return seen;
 }
 
-// A posture that is held for long counts once, however many samples it gives: otherwise the way in
-// which it happens to be held would be taken for drift.
+// A posture that is held for long counts as one visit, however many hands it has. Otherwise the way
+// in which the person happens to hold it would be taken for drift.
 void DriftFollower::learn(std::uint32_t code, const Input& hand) noexcept {
   if (code != visited_) {
     endVisit();

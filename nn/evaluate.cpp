@@ -30,7 +30,7 @@ std::size_t nearestOf(const std::vector<Input>& points, const Input& x) {
   return best;
 }
 
-// Ignores slots that never changed in training.
+// Returns the hands' inputs scaled by `ranges`. Slots that never changed in training are set to 0.
 std::vector<Input> scaled(std::span<const LabelledHand> hands, const InputRanges& ranges,
                           const Slots& used) {
   std::vector<Input> points;

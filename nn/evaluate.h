@@ -13,32 +13,36 @@
 namespace merlin::nn {
 
 struct Confusion {
-  std::string shown, taken_for;  // taken_for is empty for no posture
+  std::string shown, taken_for;  // taken_for is empty if no posture was recognised
   std::size_t hands = 0;
 };
 
 struct PostureScore {
   std::string posture;
   Score score;
-  double least_margin = 1, mean_margin = 0;  // over the hands that were recognised correctly; 0..1
+  double least_margin = 1, mean_margin = 0;  // of the correctly recognised hands; 0..1
 };
 
 struct Evaluation {
   Score all;
-  std::size_t unsure = 0;  // hands with a margin below the least one, right or wrong
+  std::size_t unsure = 0;  // hands with a margin below `least_margin`, whether right or wrong
   std::size_t right_and_sure = 0;
-  std::vector<PostureScore> postures;  // the worst first
+  std::vector<PostureScore> postures;  // lowest accuracy first
   std::vector<Confusion> confusions;   // the most frequent first
 };
+// Recognises every hand with `network` and compares the results with the labels. `least_margin`:
+// margin from which a hand counts as sure, 0..1.
 Evaluation evaluate(const PostureNetwork& network, std::span<const LabelledHand> hands,
                     double least_margin);
-// The same for a follower, which is shown the hands in the order given.
+// Recognises every hand with `follower`, in the order given, and compares the results with the
+// labels. The follower learns the drift from these hands.
 Evaluation evaluate(DriftFollower& follower, std::span<const LabelledHand> hands,
                     double least_margin);
 
-// Shares of `test` that two classifiers recognise correctly: the nearest mean of a posture of
-// `train`, and the nearest hand of `train`. Distances are over slots scaled by `train`'s ranges.
-// Cost: train x test.
+// Shares of the hands of `test` that two simple classifiers recognise correctly, 0..1. `mean` takes
+// the posture of `train` whose mean is nearest; `nearest` takes the posture of the nearest hand of
+// `train`. Distances are Euclidean, with each slot scaled by its range in `train`. Cost: number of
+// hands in `train` times number of hands in `test`.
 struct Neighbours {
   double mean = 0, nearest = 0;
 };
@@ -49,10 +53,11 @@ Neighbours neighbours(std::span<const LabelledHand> train, std::span<const Label
 inline constexpr double kNearPostures = 4.0;
 struct Overlap {
   std::string first, second;
-  double deviations = 0;     // standard deviations between their means
+  double deviations = 0;     // distance of their means, in standard deviations
   std::size_t mixed_up = 0;  // hands that are nearer to the mean of the other posture
 };
-// Returns the pairs of `posture` with another posture, nearest first. Empty if it has no hands.
+// Returns the overlaps of `posture` with other postures, nearest first; empty if none of `hands`
+// shows `posture`.
 std::vector<Overlap> overlapsOf(const std::string& posture, std::span<const LabelledHand> hands);
 
 }  // namespace merlin::nn

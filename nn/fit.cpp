@@ -22,10 +22,11 @@ constexpr float kRate = 0.02F, kLastRate = 1e-5F;
 // as much noise as it tolerates, which makes the margins between postures as wide as possible.
 constexpr double kBearableError = 0.005;
 constexpr float kNoiseStep = 1.05F, kFirstNoise = 0.7F, kLeastNoise = 0.35F, kMostNoise = 4.0F;
-constexpr float kMostBeyond = 2.0F;  // limit for hands that are nearer to another posture's mean
-constexpr std::size_t kEvaluationPeriod =
-    4;                                   // passes between two evaluations of the validation hands
-constexpr std::size_t kPatience = 8;     // evaluations without a better error before training ends
+constexpr float kMostBeyond = 2.0F;  // limit of noise for hands that are nearer to another posture
+// Number of passes between two evaluations of the validation hands.
+constexpr std::size_t kEvaluationPeriod = 4;
+// Number of evaluations without a lower error after which the descent ends.
+constexpr std::size_t kPatience = 8;
 constexpr std::size_t kLastPasses = 40;  // final passes, with the validation hands too
 constexpr float kLastRates = 0.1F;       // rate of the final passes, share of kRate
 
@@ -41,7 +42,7 @@ class Fit {
   Fit(const FitSettings& settings, const FitProgress& progress, const WhitenedSpace& space)
       : settings_(settings), progress_(progress), space_(space), random_(settings.seed) {}
 
-  // Samples in whitened coordinates. `kept[n]`: sample n is set aside for validation.
+  // Takes the samples, in whitened coordinates. `kept[n]`: sample n is set aside for validation.
   void take(std::vector<Sample> all, const std::vector<bool>& kept) {
     all_ = std::move(all);
     for (std::size_t n = 0; n < all_.size(); ++n) (kept[n] ? aside_ : train_).push_back(all_[n]);
@@ -140,8 +141,8 @@ class Fit {
     const std::size_t settled = settings_.passes * 4 / 5;
     for (std::size_t i = 0; i < settings_.passes && !stopped_; ++i) {
       const double error = pass(s, descent, kRate * left(i, settings_.passes) + kLastRate);
-      // Until the noise has settled, no network is kept as the best: the margins still grow with
-      // the noise, and the error without noise does not show that.
+      // Until the noise has settled, no network is kept as the best, because the margins still grow
+      // with the noise, which the error without noise does not show.
       if (i < settled) {
         adapt(error);
         continue;

@@ -7,12 +7,14 @@
 
 namespace merlin::nn {
 
-// A glove's measurements in slot order: joint angles [rad], or raw counts of its sensors. A network
-// is trained on one of the two and then takes the same unit.
+// Unit of a glove's measurements: joint angles [rad], or raw counts of its sensors. A network takes
+// measurements in the unit in which it was trained.
 enum class InputUnit { kRadians, kRaw };
+// A glove's measurements in the order of the slots, in either unit.
 using Angles = std::array<float, kInputs>;
 
-// No joint's angle exceeds kMostAngle_rad: a file with larger values holds degrees or raw counts.
+// Greatest absolute values of an input. No joint's angle exceeds kMostAngle_rad; a file with larger
+// values contains degrees or raw counts.
 inline constexpr double kMostAngle_rad = 6.3, kMostRaw = 1e6;
 constexpr double mostValue(InputUnit unit) {
   return unit == InputUnit::kRaw ? kMostRaw : kMostAngle_rad;
@@ -25,11 +27,13 @@ struct InputRange {
 };
 using InputRanges = std::array<InputRange, kInputs>;
 
-extern const std::array<const char*, kInputs> kInputNames;  // "thumb-roll" ... "wrist-yaw"
-extern const InputRanges kGloveRanges;                      // sources: nn/README.md, "Slots"
+// Names of the slots, "thumb-roll" ... "wrist-yaw".
+extern const std::array<const char*, kInputs> kInputNames;
+extern const InputRanges kGloveRanges;  // [rad]; sources: nn/README.md, "Slots"
 
-// x_i = (value_i - low_i) / (high_i - low_i), clamped to [0, 1], so that the inputs are never far
-// from those of training, even if a joint is bent past its range. A NaN stays NaN. Allocation-free.
+// Returns x_i = (value_i - low_i) / (high_i - low_i), clamped to [0, 1], so that the inputs are
+// never far from those of training, even if a joint is bent beyond its range. A NaN stays NaN.
+// Allocation-free.
 Input normalise(const InputRanges& ranges, const Angles& value) noexcept;
 
 }  // namespace merlin::nn

@@ -13,7 +13,7 @@ inline constexpr std::size_t kInputs = 23;  // order and ranges: nn/README.md, "
 inline constexpr std::size_t kHidden = 15;
 inline constexpr std::size_t kOutputs = 5;  // five bits, thresholded at 0.5: up to 32 postures
 
-using Input = std::array<float, kInputs>;    // each in [0, 1]: nn/inputs.h
+using Input = std::array<float, kInputs>;    // each in [0, 1], scaled as in nn/inputs.h
 using Output = std::array<float, kOutputs>;  // activations in [0, 1]
 
 // The transfer function of every node. [GOU] A.5.1 names the three; the last two are shifted and
@@ -24,7 +24,7 @@ using Output = std::array<float, kOutputs>;  // activations in [0, 1]
 enum class Phi { kSigmoid, kSignum, kAtan };
 
 const char* nameOf(Phi phi) noexcept;                         // "sigmoid", "signum", "atan"
-std::optional<Phi> phiNamed(std::string_view name) noexcept;  // the inverse
+std::optional<Phi> phiNamed(std::string_view name) noexcept;  // nothing if unknown
 
 // Weights, row-major; the last column of a row is the bias. 15 x 24 and 5 x 16: 440 numbers.
 // Real is float for recall, double for training.
@@ -35,7 +35,7 @@ struct BasicWeights {
 };
 using Weights = BasicWeights<float>;
 
-// All sums (I_j of A.9) and values (Y_j of A.10) of one forward pass.
+// All sums (I_j of [GOU] A.9) and values (Y_j of A.10) of the nodes in one forward pass.
 template <typename Real>
 struct Pass {
   std::array<Real, kHidden> hidden_sum, hidden;
@@ -56,7 +56,8 @@ Pass<Real> propagate(Phi phi, const BasicWeights<Real>& weights,
 // Returns only the outputs of propagate().
 Output forward(Phi phi, const Weights& weights, const Input& x) noexcept;
 
-// Returns the five-bit code: bit i is set if output i is above 0.5 ([GOU] 2.3), not if it is NaN.
+// Returns the five-bit code: bit i is set if output i is above 0.5 ([GOU] 2.3), and not set if the
+// output is NaN.
 std::uint32_t threshold(const Output& output) noexcept;
 
 }  // namespace merlin::nn

@@ -9,8 +9,8 @@ namespace {
 constexpr std::size_t kBias = kHiddenWidth - 1;
 static_assert(kBias == kHidden && kOutputs <= kOutputWidth);
 
-// sums[j] = sum_i w[i][j] x[i], i from 0 up. Keeps each vector of sums in a register, which makes
-// the pass four times as fast; g++ 12 does not do so by itself.
+// Computes sums[j] = sum_i w[i][j] x[i], with i from 0 upwards. The code keeps each vector of sums
+// in a register, which makes the pass four times as fast; g++ 12 does not do so by itself.
 template <typename Real, std::size_t Rows, std::size_t Width>
 void sumRows(const Real* w, const Real* x, Real* sums) noexcept {
   using Reals = simd::Vector<Real, 16>;

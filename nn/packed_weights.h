@@ -1,5 +1,6 @@
 // The network's weights laid out for vector instructions: nodes side by side, padded with
-// unconnected nodes. One forward pass for recall and training, one gradient. Pure.
+// unconnected nodes. Also the forward pass and the gradient with this layout, as used in training.
+// Pure.
 #pragma once
 
 #include <array>
@@ -10,13 +11,14 @@
 
 namespace merlin::nn {
 
-inline constexpr std::size_t kHiddenWidth = 16;  // the last is a constant 1: the outputs' bias
+// The last node is a constant 1, for the outputs' biases.
+inline constexpr std::size_t kHiddenWidth = 16;
 inline constexpr std::size_t kOutputWidth = 8;
 
 template <typename Real>
 struct alignas(64) PackedWeights {
-  // One row of kHiddenWidth for each input, then a row of biases; then one row of kOutputWidth for
-  // each hidden node, then a row of biases.
+  // One row of kHiddenWidth weights for each input, then a row of biases; then one row of
+  // kOutputWidth weights for each hidden node, then a row of biases.
   static constexpr std::size_t kOutputs0 = (kInputs + 1) * kHiddenWidth;
   std::array<Real, kOutputs0 + kHiddenWidth * kOutputWidth> all{};
 
@@ -39,13 +41,15 @@ struct PackedPass {
   alignas(64) std::array<Real, kOutputWidth> output_sum, output;
 };
 
-// The same as propagate() of network.h: each node's sum in the same order, hence the same bits.
+// Computes the same as propagate() of network.h, bit by bit, since each node's sum is added in the
+// same order. `x`: kInputs numbers.
 template <typename Real>
 void propagate(Phi phi, const PackedWeights<Real>& packed, const Real* x,
                PackedPass<Real>& pass) noexcept;
 
-// Adds one example's share of the gradient of sum_k (Y_k - T_k)^2 by back-propagation and returns
-// that sum. backPropagate() of train.h has an additional factor. REQUIRES: phi not signum.
+// Adds one example's gradient of sum_k (Y_k - T_k)^2, computed by back-propagation, to `gradient`,
+// and returns that sum. `x`: kInputs numbers; T_k is bit k of `code`. backPropagate() of train.h
+// has an additional factor 1 / (5 n). REQUIRES: phi not signum.
 template <typename Real>
 Real addGradient(Phi phi, const PackedWeights<Real>& packed, const Real* x, std::uint32_t code,
                  PackedWeights<Real>& gradient) noexcept;

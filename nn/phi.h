@@ -1,7 +1,7 @@
-// Phi and its slope: for doubles one at a time, for floats a vector at a time.
+// The transfer function Phi and its derivative: scalar for doubles, vectorised for floats.
 //
-// For floats, e^t and atan are polynomials with Cephes' coefficients (S. L. Moshier). They take a
-// vector at a time, are within 2e-7 of Phi, and unlike libm give the same bits on every machine.
+// For floats, e^t and atan are polynomials with Cephes' coefficients (S. L. Moshier). Phi is then
+// accurate to 2e-7, and unlike with libm its bits are the same on every machine.
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,16 @@
 
 namespace merlin::nn {
 
-// Phi of vectors of `bytes` bytes, 16 or 32, in place; written out since g++ 12 vectorises these
-// polynomials only in part.
+// Computes Phi in place, on vectors of `bytes` bytes, 16 or 32. The vector operations are written
+// out, since g++ 12 vectorises these polynomials only in part.
 template <std::size_t bytes>
 struct PhiVectors {
   using Floats = simd::Vector<float, bytes>;
   using Words = simd::Vector<std::uint32_t, bytes>;
 
-  // Replaces t by e^t. |t| is limited to 87, beyond which a float's Phi is 0 or 1. A NaN stays.
+  // Replaces t by e^t. |t| is limited to 87, beyond which a float's Phi is 0 or 1. A NaN stays NaN.
   MERLIN_INLINE static void toExp(Floats& t) noexcept {
-    constexpr float kRound = 12582912.0F;  // 1.5 * 2^23: adding it leaves whole numbers
+    constexpr float kRound = 12582912.0F;  // 1.5 * 2^23: adding it rounds to an integer
     const Floats least = Floats{} - 87.0F, most = Floats{} + 87.0F;
     Floats held = t < least ? least : t;
     held = held > most ? most : held;
@@ -108,7 +108,7 @@ inline double phiOf(Phi phi, double sum) noexcept {
   return sum;
 }
 
-// values = Phi(sums) for `N` nodes.
+// Sets values[j] = Phi(sums[j]) for `N` nodes.
 template <typename Real, std::size_t N, std::size_t bytes = 16>
 MERLIN_INLINE void activate(Phi phi, const Real* sums, Real* values) noexcept {
   if constexpr (std::is_same_v<Real, float>) {

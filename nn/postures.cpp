@@ -80,7 +80,7 @@ Recogniser::Recogniser(const PostureNetwork& network)
 
 Recognition Recogniser::operator()(const Angles& value) const noexcept {
   Recognition r{0, {}, {}, 0};
-  float sum = 0;  // not finite if any value is not: one test instead of 23
+  float sum = 0;  // NaN if any value is not finite, so that one test suffices for all 23
   for (const float v : value) sum += v * 0;
   if (!(sum == 0)) {
     r.activation.fill(std::numeric_limits<float>::quiet_NaN());

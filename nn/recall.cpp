@@ -8,8 +8,8 @@
 namespace merlin::nn {
 namespace {
 
-// Adds up even inputs (with the bias) and odd inputs of a node separately, so that the two chains
-// of additions run in parallel.
+// Number of partial sums of a node: even inputs (with the bias) and odd inputs are added
+// separately, so that the two chains of additions run in parallel.
 constexpr std::size_t kApart = 2;
 
 MERLIN_INLINE auto join(const simd::Vector<float, 8>& a, const simd::Vector<float, 8>& b) {
@@ -19,7 +19,8 @@ MERLIN_INLINE auto join(const simd::Vector<float, 16>& a, const simd::Vector<flo
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-// Processes nodes in vectors of `bytes` bytes. The biases are in the row after the last input.
+// Computes the sums of a layer's `width` nodes from `rows` inputs, in vectors of `bytes` bytes. The
+// biases are in the row of weights after the last input.
 template <std::size_t bytes, std::size_t rows, std::size_t width>
 MERLIN_INLINE void sumRows(const double* w, const float* x, float* sums) noexcept {
   using Doubles = simd::Vector<double, bytes>;

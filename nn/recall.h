@@ -11,15 +11,16 @@ class Recall {
  public:
   Recall(Phi phi, const Weights& weights) noexcept;
 
-  // Returns the outputs of propagate() of network.h, within 1e-6 of a pass in double.
-  // Allocation-free.
+  // Returns the network's outputs for `x`, within 1e-6 of those of propagate() of network.h in
+  // double. Allocation-free.
   //
   // Sums are computed in double, Phi in float. The product of two floats is exact in a double, so
   // that a fused multiply-add gives the same bits as two instructions, and one hand gives the same
   // outputs on every processor.
   Output operator()(const Input& x) const noexcept;
 
-  // The same bits with baseline instructions only, in twice the time; for tests.
+  // Returns the same outputs bit by bit, but uses the processor's baseline instructions only and
+  // takes twice the time; for tests.
   Output portably(const Input& x) const noexcept;
 
  private:

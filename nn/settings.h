@@ -1,19 +1,23 @@
-// Settings of the minimum time and margin of a posture, and of following a glove's drift.
+// Settings of PostureHold (minimum times and margin of a posture) and of DriftFollower (a glove's
+// drift).
 #pragma once
 
 namespace merlin::nn {
 
 struct HoldSettings {
   double hold_s = 0.15;        // time that a posture has to last before it begins
-  double leave_s = 0.10;       // time that it has to be absent before it ends
-  double least_margin = 0.30;  // least margin of a record; half while a posture is held
+  double leave_s = 0.10;       // time that a posture has to be absent before it ends
+  double least_margin = 0.30;  // least margin of a record, 0..1; half of it for the held posture
 };
 
 struct DriftSettings {
-  double share = 0.05;         // share of a visit's mean deviation taken for drift; 0: off
-  double least_margin = 0.30;  // least margin of a hand to learn from
-  double most = 0.30;          // most drift that is followed, share of a sensor's range
-  double least_hands = 5;      // minimum of a visit: a moving hand passes other postures
+  // Share of a visit's mean deviation that is added to the drift; 0: off.
+  double share = 0.05;
+  double least_margin = 0.30;  // least margin of a hand from which drift is learned, 0..1
+  double most = 0.30;          // greatest drift that is followed, share of a sensor's range
+  // Least number of hands in a visit to a posture. Shorter visits are ignored, because a moving
+  // hand passes through other postures.
+  double least_hands = 5;
 };
 
 }  // namespace merlin::nn

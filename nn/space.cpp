@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kReach = 3.0;            // half width of a range, standard deviations
-constexpr double kLeastDeviation = 1e-6;  // least deviation of a measured slot, share of its size
+constexpr double kLeastDeviation = 1e-6;  // least deviation of a used slot, relative to 1 + |mean|
 // Share of the mean variance that is added to each variance, because the next hand may vary in a
 // direction in which no recorded hand did.
 constexpr double kShrinkage = 0.1;
@@ -124,7 +124,8 @@ Input WhitenedSpace::toSpace(const Input& x) const noexcept {
 }
 
 std::vector<std::vector<double>> WhitenedSpace::likeness() const {
-  // Limits the likeness of postures that are equal or nearly equal for all sensors.
+  // Least squared distance: it limits the likeness of postures that are equal or nearly equal for
+  // all sensors.
   constexpr double kNearest = 0.25;
   const std::size_t postures = means_.size();
   std::vector<std::vector<double>> like(postures, std::vector<double>(postures, 0.0));

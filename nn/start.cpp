@@ -17,7 +17,7 @@ constexpr double kHiddenJitter = 0.1, kOutputJitter = 0.15;
 constexpr double kOutputWeight = 3.0;
 constexpr float kEagerness = 1.5F;  // exponent of boosting's weights
 
-// tanh(y / 2) = 2 sigmoid(y) - 1, by arithmetic that gives the same bits on every machine.
+// Returns tanh(y / 2) = 2 sigmoid(y) - 1, by arithmetic that gives the same bits on every machine.
 double soft(double y) { return static_cast<double>(2 / (1 + expOf(static_cast<float>(-y))) - 1); }
 
 // Returns the means with a column of ones.
@@ -31,7 +31,8 @@ MatrixXd withOnes(std::span<const Input> means) {
   return m;
 }
 
-// Returns the least-squares hyperplane for the targets -1 and 1, scaled to the spread of a posture.
+// Returns the least-squares hyperplane for the targets -1 and 1, scaled so that the spread of a
+// posture has length 1.
 VectorXd plane(const MatrixXd& means, const VectorXd& target, const VectorXd& weight,
                double variance) {
   const MatrixXd weighted = weight.asDiagonal() * means;
@@ -39,7 +40,7 @@ VectorXd plane(const MatrixXd& means, const VectorXd& target, const VectorXd& we
   for (Eigen::Index i = 0; i + 1 < normal.rows(); ++i) normal(i, i) += weight.sum() * variance;
   VectorXd w = normal.ldlt().solve(weighted.transpose() * target);
   const double length = w.head(w.size() - 1).norm() * std::sqrt(variance);
-  // If one posture outweighs all others, there is no plane; the result is left unchanged.
+  // If one posture outweighs all others, the plane is not determined, and the result is not scaled.
   constexpr double kLeastLength = 1e-2;
   return length > kLeastLength ? VectorXd(w / length) : w;
 }

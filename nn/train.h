@@ -34,16 +34,16 @@ TrainingWeights initialWeights(std::uint64_t seed) noexcept;
 
 struct TrainSettings {
   Phi phi = Phi::kSigmoid;
-  double rate = 2.0;                  // step along -dE/dW, > 0
-  double momentum = 0.9;              // share of the last step that goes into the next, [0, 1)
+  double rate = 2.0;                  // learning rate: factor of -dE/dW in a step, > 0
+  double momentum = 0.9;              // share of the last step that is added to the next, [0, 1)
   std::size_t max_iterations = 2000;  // passes over the examples, >= 1
-  double mse_limit = 5e-4;            // training stops below it, >= 0
+  double mse_limit = 5e-4;            // training stops if the error is below this limit, >= 0
 };
 
 struct TrainReport {
   std::size_t iterations = 0;
   double mse = 0.0;       // mean squared error of the returned weights
-  double accuracy = 0.0;  // share of examples with all five bits right
+  double accuracy = 0.0;  // share of examples with all five bits right, 0..1
 };
 
 struct Training {
@@ -51,13 +51,13 @@ struct Training {
   TrainReport report;
 };
 
-// Called before each step with the number of steps done and the present error. Returning false
-// stops the training.
+// Called before each step with the number of steps done and the present mean squared error. If it
+// returns false, the training stops.
 using Progress = std::function<bool(std::size_t iteration, double mse)>;
 
 // Gradient descent with momentum from `start` ([GOU] A.5.3). It stops when the error is below its
-// limit, the iterations are used up, or `progress` returns false. None of these is an error: the
-// report says which it was.
+// limit, the iterations are used up, or `progress` returns false. None of these is an error; the
+// report's numbers show which it was.
 //
 // errors     kInvalidArgument: no examples, an input that is not finite, a code above 31, settings
 //            out of their ranges, signum (no slope), weights that diverged beyond a float.

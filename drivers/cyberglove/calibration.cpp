@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kThumbAbduction = 3;
 constexpr std::size_t kIndexAbduction = 7;
 constexpr std::size_t kMiddleIndexAbduction = 11;
-constexpr std::size_t kDip[] = {6, 10, 14, 18};  // each PIP is the slot before
+constexpr std::size_t kDip[] = {6, 10, 14, 18};  // the slot before a DIP is the finger's PIP
 
 float angle(float raw, std::size_t slot, const CybergloveSettings& settings) noexcept {
   return (raw - settings.offset[slot]) * settings.gain[slot];

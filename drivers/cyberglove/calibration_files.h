@@ -19,12 +19,13 @@ namespace merlin::cyberglove {
 
 struct ImportedCalibration {
   const char* format = "";
-  std::array<bool, 23> given{};  // slots that the file has; the others are not changed
+  std::array<bool, 23> given{};  // slots that the file contains
   std::array<float, 23> offset{}, gain{};
 };
 
-// Errors: kMalformed, naming the line or the joint: unknown format, an invalid number, two points
-// with the same raw value, a minimum that is not below its maximum.
+// Recognises the format of a calibration file and returns its offsets and gains. Errors: kMalformed
+// if the format is unknown, a number is invalid, two points have the same raw value, or a minimum
+// is not below its maximum; the message names the line or the joint.
 Result<ImportedCalibration> importCalibration(std::string_view text);
 
 }  // namespace merlin::cyberglove

@@ -20,7 +20,7 @@ constexpr Duration kLongestSilence = milliseconds(500);
 constexpr std::size_t kLongestText = 512;
 
 constexpr double kStampClock = 115200;  // clock of the time stamps [Hz]
-constexpr double kMostLost = 1000;      // records; a larger gap means that the unit was restarted
+constexpr double kMostLost = 1000;      // records; a larger gap shows that the unit was restarted
 
 constexpr std::string_view kStop = "\x03";
 constexpr const char* kUnplugged = "glove not plugged in";

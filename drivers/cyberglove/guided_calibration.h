@@ -14,6 +14,7 @@
 
 namespace merlin::cyberglove {
 
+// Returns the poses that the person has to hold, in this order.
 std::span<const GuidedStep> guidedPoses();
 
 // Statistics of each sensor while a pose is held, and over all poses.
@@ -22,8 +23,8 @@ class GuidedCalibration {
   void begin(std::size_t pose);  // starts or restarts a pose; later samples belong to it
   void add(const GloveSample& sample);
 
-  // Number of records of the current pose; smallest and largest raw value of a slot in all poses so
-  // far, 0 if there is none.
+  // count(): number of records in the current pose. low(), high(): smallest and largest raw value
+  // of a slot in all poses so far; 0 if there is none.
   int count() const noexcept { return poses_[pose_].count; }
   std::uint8_t low(std::size_t slot) const noexcept { return low_[slot]; }
   std::uint8_t high(std::size_t slot) const noexcept { return high_[slot]; }

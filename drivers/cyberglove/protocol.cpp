@@ -11,9 +11,10 @@ namespace merlin::cyberglove {
 namespace {
 
 constexpr std::size_t kStampLength = 5;
-constexpr double kRateClock = 115200;  // Hz; `T` divides it
+constexpr double kRateClock = 115200;  // [Hz] clock that the command `T` divides
 
-// Length of a record before its error letters: the letter, the values and the optional fields.
+// Returns the length of a record without its error letters: the letter, the values and the optional
+// fields.
 std::size_t bodyLength(const Layout& layout) noexcept {
   return 1 + layout.values + (layout.timestamp ? kStampLength : 0) + (layout.status ? 1 : 0);
 }

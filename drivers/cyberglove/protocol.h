@@ -1,5 +1,5 @@
-// CyberGlove wire format: bytes to records and back; the ASCII dialogue is text.h. No I/O, no
-// clock.
+// CyberGlove wire format: converts bytes to records and back; the ASCII dialogue is in text.h. No
+// I/O, no clock.
 //
 // A record is a letter, one byte per sensor, optional fields that can be switched on, and NUL:
 //   'G' or 'S'  v1 .. vN: u8 [raw, 1..255]  [time stamp: 5 bytes]  [status: u8, bit 7 set]
@@ -29,9 +29,11 @@ struct SlotList {
   std::array<std::uint8_t, kSlots> slot{};  // slot[i] is where value i of a record belongs
   std::size_t count = 0;
 };
+// Returns the slots whose bits are set in `mask`, in ascending order.
 SlotList slotsOf(std::uint32_t mask) noexcept;
 
-// A mask as `M` and `?K` carry it: 3 bytes, lowest first.
+// Encode and decode a sensor mask as in the command `M` and in the answer to `?K`: 3 bytes, lowest
+// first. REQUIRES: `bytes` has 3 bytes.
 std::string encodeMask(std::uint32_t mask);
 std::uint32_t decodeMask(const char* bytes) noexcept;
 
@@ -48,15 +50,17 @@ struct Record {
 
   std::array<std::uint8_t, kSlots> values{};  // in wire order; 0 beyond the layout's count
   std::uint32_t timestamp = 0;                // [1/115200 s]; 0 if the layout has none
-  std::uint8_t status = kAlways | kPlugged;   // this default if the layout has none
-  bool single = false;                        // answer to `G`
+  std::uint8_t status = kAlways | kPlugged;   // this default if the layout has no status
+  bool single = false;                        // whether the record answers a `G`
   bool too_fast = false;                      // "es": sampled faster than the glove can
   bool unplugged = false;                     // "eg": no glove on the interface unit
 };
 
+// An error reply.
 struct Refusal {
-  char code =
-      '?';  // '?' unknown command, 'n' number, 'y' sync too fast, 'g' no glove, 's' too fast
+  // '?' unknown command, 'n' invalid number, 'y' sync too fast, 'g' no glove, 's' record rate too
+  // high.
+  char code = '?';
 };
 
 using Packet = std::variant<Record, Refusal>;
@@ -72,11 +76,11 @@ class Parser {
   // resynchronises.
   std::optional<Packet> feed(std::byte byte) noexcept;
 
-  // Packets dropped since construction, and their bytes.
+  // Return the numbers of packets and of bytes that were dropped since construction.
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
   std::uint64_t badBytes() const noexcept { return bad_bytes_; }
 
-  // True in the middle of a packet.
+  // Returns whether a packet has begun and is not complete yet.
   bool inside() const noexcept { return length_ > 0; }
 
  private:
@@ -97,10 +101,12 @@ using Stamp = std::array<std::uint8_t, 5>;
 Stamp stuffTimestamp(std::uint32_t count) noexcept;
 std::uint32_t unstuffTimestamp(const std::uint8_t* stamp) noexcept;
 
-// Inverse of the parser, for the emulator. A value of 0 is sent as 1.
+// Returns the bytes of a record; inverse of the parser, for the emulator. A value of 0 is sent as
+// 1.
 std::string encode(const Record& record, const Layout& layout);
 
-// The command `T`, which requests `rate_hz` records per second. REQUIRES: 1 <= rate_hz <= 115200.
+// Returns the command `T`, which requests `rate_hz` records per second. REQUIRES: 1 <= rate_hz <=
+// 115200.
 std::string encodeRate(double rate_hz);
 
 }  // namespace merlin::cyberglove

@@ -20,8 +20,8 @@ enum class Slot7Rule {
   kSwitch,   // 1 while the wrist switch is on, else 0
 };
 
-// Linear calibration of a sensor by two points: at raw value `raw_a` the joint is at `rad_a` [rad],
-// at `raw_b` at `rad_b`.
+// Linear calibration of a sensor by two points: the joint's angle is `rad_a` at the raw value
+// `raw_a`, and `rad_b` at `raw_b`.
 struct GloveSpan {
   float raw_a, rad_a, raw_b, rad_b;
 
@@ -79,10 +79,11 @@ struct CybergloveSettings {
   bool time_stamps = false;      // requests time stamps, by which lost records are counted
 };
 
-// Finds a rate that the line cannot carry. Pointer: "/rate_hz".
+// Returns a fault if the line cannot carry `rate_hz` records per second. Its JSON pointer is
+// "/rate_hz".
 SettingFaults validate(const CybergloveSettings& glove, const LineSettings& line);
 
-// Calls `visitor` for every setting, in the order of written files.
+// Calls `visitor` for every setting, in the order in which MERLIN writes them to a file.
 void describe(CybergloveSettings& glove, SettingsVisitor& visitor);
 
 }  // namespace merlin

@@ -38,7 +38,7 @@ std::string_view withoutLineEnd(std::string_view text) noexcept {
   return text;
 }
 
-// Number of characters before the numbers: 2 for "?x", 1 for "x".
+// Returns the number of characters before the numbers: 2 for "?x", 1 for "x".
 std::size_t head(std::string_view binary) noexcept { return binary.starts_with('?') ? 2 : 1; }
 
 bool staysAsItIs(std::string_view binary) noexcept {

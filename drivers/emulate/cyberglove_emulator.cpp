@@ -34,7 +34,7 @@ constexpr const char* kInfo =
     "synthetic data, no glove";
 constexpr const char* kSummary = "B D F G J L M N P Q S T U W Y ^C ^I ^R ?";
 
-// Length of a command, including its letter [bytes].
+// Returns the length of a command, including its letter [bytes].
 std::size_t lengthOf(char letter) {
   switch (letter) {
     case 'T': return 5;
@@ -72,7 +72,7 @@ class CybergloveEmulator final : public Emulator {
 
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
     for (const std::byte b : bytes) {
-      if (restarting_ && now < ready_at_) return;  // ignores its input while it starts
+      if (restarting_ && now < ready_at_) return;  // a unit that starts ignores its input
       hear(static_cast<char>(b), now);
     }
   }
@@ -238,7 +238,7 @@ class CybergloveEmulator final : public Emulator {
     reply(std::string{'?', letter} + value);
   }
 
-  // The requested period; 0: as fast as possible.
+  // Returns the requested period; 0 means as fast as possible.
   Duration askedPeriod() const { return fromSeconds(kTick * state_.w1 * state_.w2); }
   Duration period() const { return std::max(askedPeriod(), kShortestPeriod); }
 
@@ -275,7 +275,7 @@ class CybergloveEmulator final : public Emulator {
   Timestamp start_;
   Wire wire_;
   Random noise_;
-  hand::Person person_;  // wears the glove
+  hand::Person person_;  // person who wears the glove
   CybergloveSettings calibration_;
   State state_;
   std::string command_;

@@ -7,7 +7,8 @@
 
 namespace merlin::emulate {
 
-// Models: "22" or "18" sensors.
+// Makes an emulated CyberGlove whose script begins at `start`. EmulatorSettings::model is the
+// number of sensors, "22" (default) or "18".
 std::unique_ptr<Emulator> makeCyberglove(const EmulatorSettings& settings,
                                          const MotionScript& script, Timestamp start);
 

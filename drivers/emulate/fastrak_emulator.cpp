@@ -27,10 +27,11 @@ constexpr float kStationDistance_m = 0.2F;
 
 constexpr char kSave = 0x0B, kReinitialise = 0x19, kSuspend = 0x13, kResume = 0x11;
 
-// Codes of command errors, MAN12.
+// Codes of command errors. Source: MAN12.
 constexpr int kMissing = -1, kNotNumeric = -2, kOutOfRange = -3, kUnknown = -99;
 
-// A setting that can be set and read back. Of these only the alignment, A, affects the records.
+// A setting that a program can set and read back. Of all settings, only the alignment (A) affects
+// the records.
 struct Parameter {
   char letter;
   bool of_station;
@@ -61,7 +62,8 @@ struct State {
   fastrak::Stations active{};
   std::array<std::vector<int>, kStations> list;
   std::array<std::array<std::array<float, 9>, kStations>, kParameterCount> parameters{};
-  std::array<std::array<float, 4>, kStations> ahead = {{{1}, {1}, {1}, {1}}};  // by boresight
+  // Orientation of each station that counts as straight ahead, set by the boresight command.
+  std::array<std::array<float, 4>, kStations> ahead = {{{1}, {1}, {1}, {1}}};
   std::string configuration = "OutputCompensat CPG2030-003-10";
 };
 
@@ -97,7 +99,7 @@ void align(const std::array<float, 9>& a, fastrak::Record& record) {
 
 using Fields = std::vector<std::optional<float>>;  // empty where a field is omitted
 
-// The comma-separated numbers of a command; nothing if one is not a number.
+// Returns the comma-separated numbers of a command; nothing if one of them is not a number.
 std::optional<Fields> split(std::string_view text) {
   Fields fields;
   for (;;) {
@@ -128,7 +130,7 @@ class FastrakEmulator final : public Emulator {
 
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
     for (const std::byte b : bytes) {
-      if (now < ready_at_) return;  // ignores its input while it starts
+      if (now < ready_at_) return;  // a unit that starts ignores its input
       const char c = static_cast<char>(b);
       if (executeControl(c, now) || c == '\n') continue;
       if (c == '\r') {
@@ -150,7 +152,7 @@ class FastrakEmulator final : public Emulator {
     // Uses the time of each cycle, so that late calls do not make the line busy for longer.
     for (; due_ <= now; due_ += kCycle) {
       nextStation();
-      if (wire_.free(due_)) wire_.record(record(station_, due_), due_, out);  // else dropped
+      if (wire_.free(due_)) wire_.record(record(station_, due_), due_, out);  // dropped if not
     }
   }
 
@@ -190,7 +192,7 @@ class FastrakEmulator final : public Emulator {
     }
   }
 
-  // Executes a letter that takes effect without CR.
+  // Executes a letter that takes effect without CR; returns false for any other letter.
   bool executeLetter(char c, Timestamp now) {
     switch (c) {
       case 'P': sendOnce(now); break;
@@ -259,7 +261,8 @@ class FastrakEmulator final : public Emulator {
     }
   }
 
-  // Index of the station that a command names; nothing if there is none, after an error reply.
+  // Returns the index of the station that a command names; if there is none, sends an error reply
+  // and returns nothing.
   std::optional<std::size_t> stationOf(const Fields& fields) {
     const float s = fields[0].value_or(1);
     if (s == 1 || s == 2 || s == 3 || s == 4) return static_cast<std::size_t>(s) - 1;
@@ -358,7 +361,7 @@ class FastrakEmulator final : public Emulator {
     return record;
   }
 
-  // `q`, rotated by a small random angle about each of its axes.
+  // Returns `q`, rotated by a small random angle about each of its axes.
   std::array<float, 4> shaken(const std::array<float, 4>& q) {
     std::array<float, 3> h{};  // half angles, small
     for (float& half : h) half = static_cast<float>(kAngleNoise_rad / 2 * noise_.normal());

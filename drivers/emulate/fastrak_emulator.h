@@ -7,8 +7,9 @@
 
 namespace merlin::emulate {
 
-// Models: "1".."4" receivers. The first is on the script's hand, each further one 0.2 m to its
-// right.
+// Makes an emulated Fastrak whose script begins at `start`. EmulatorSettings::model is the number
+// of receivers, "1" (default) to "4". The first receiver is on the script's hand; each further one
+// is 0.2 m to the right of the one before.
 std::unique_ptr<Emulator> makeFastrak(const EmulatorSettings& settings, const MotionScript& script,
                                       Timestamp start);
 

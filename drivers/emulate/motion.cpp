@@ -80,7 +80,7 @@ constexpr MotionScript kScripts[] = {
 
 float mix(float a, float b, double share) { return a + (b - a) * static_cast<float>(share); }
 
-// Smoothstep: 0..1, with slope 0 at both ends.
+// Returns the smoothstep function of `x`: it rises from 0 to 1, with slope 0 at both ends.
 double smooth(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * (3 - 2 * x);

@@ -1,5 +1,5 @@
-// MotionScript: what the emulated person does with glove, tracker and ball, as a function of time.
-// Synthetic by design; pure.
+// MotionScript: defines what the emulated person does with glove, tracker and ball, as a function
+// of time. The motion is synthetic, not recorded. Pure.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct HandPlace {
 };
 
 // Behaviour of the person during one phase. It begins with a transition from the phase before,
-// which takes kTransition.
+// which takes 0.35 s, or the whole phase if this is shorter.
 struct Phase {
   double seconds = 0;           // duration
   const char* shape = "";       // shape of the hand: a name from drivers/hand/shapes
@@ -43,10 +43,12 @@ struct MotionScript {
   const char* name;
   const char* help;
   std::span<const Phase> phases;  // repeated for ever
-  // If not null, the caller chooses the phase: *held is its number. Null: phases follow by time.
+  // If not null, the caller chooses the phase: *held is its index in `phases`. If null, the time
+  // determines the phase.
   const std::size_t* held = nullptr;
 
-  // The motion at time `t` after the start of the script, without noise; the emulators add noise.
+  // Returns the motion at time `t` after the start of the script, without noise; the emulators add
+  // noise.
   Motion at(Duration t) const;
 };
 

@@ -42,7 +42,7 @@ class SpaceballEmulator final : public Emulator {
         wire_(settings.baud, settings.garbage_every, settings.seed) {}
 
   void receive(std::span<const std::byte> bytes, Timestamp now) override {
-    if (now < banner_at_ && resetting_) return;  // ignores its input while it starts
+    if (now < banner_at_ && resetting_) return;  // a ball that starts ignores its input
     for (const std::byte b : bytes) {
       const char c = static_cast<char>(b);
       if (c == '\n') continue;

@@ -7,7 +7,8 @@
 
 namespace merlin::emulate {
 
-// Models: "2003", "1003", "3003", "4000".
+// Makes an emulated Spaceball whose script begins at `start`. EmulatorSettings::model is "2003"
+// (default), "1003", "3003" or "4000".
 std::unique_ptr<Emulator> makeSpaceball(const EmulatorSettings& settings,
                                         const MotionScript& script, Timestamp start);
 

@@ -11,14 +11,14 @@
 
 namespace merlin::emulate {
 
-// If the process wakes late, it sends the records that the device would have sent meanwhile, but
-// only those of this last period, which fit into the buffer of a serial port.
+// If the process wakes up late, the emulator sends the records that the device would have sent
+// meanwhile, but at most those of this last period, which fit into the buffer of a serial port.
 inline constexpr Duration kLongestDelay = std::chrono::seconds(1);
 
 class Wire {
  public:
-  // 8N1: ten bits per byte. Before every `garbage_every`-th record a burst of 1..12 random bytes is
-  // sent; 0: never.
+  // A byte takes ten bits on the line (8N1). Before every `garbage_every`-th record, a burst of 1
+  // to 12 random bytes is sent; 0: never.
   Wire(int baud, int garbage_every, std::uint64_t seed)
       : byte_time_(std::chrono::nanoseconds(10'000'000'000 / baud)),
         garbage_every_(garbage_every),

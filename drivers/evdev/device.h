@@ -26,7 +26,7 @@ class EvdevDevice final : public Device {
   DeviceCounters counters() const noexcept override;
   const char* complaint() const noexcept override { return complaint_.c_str(); }
 
-  // What the device is and which of its parts are used, after open().
+  // Returns the device's axes and keys, and which of them are used. Valid after open().
   const InputDevice& input() const noexcept { return input_; }
 
  private:

@@ -122,8 +122,8 @@ std::string InputDevice::choose(const EvdevSettings& settings) {
   return fmt::format("it has no {}, which the configuration names", fmt::join(lacking, ", no "));
 }
 
-// In the kernel, positive x is to the right, and positive y is down or towards the person; the
-// README has the table.
+// Returns the axes that suit the kind of device. In the kernel, positive x is to the right, and
+// positive y is down or towards the person; README.md has the table.
 AxisSources InputDevice::usualSources() const {
   const bool six =
       has(ABS_X) && has(ABS_Y) && has(ABS_Z) && has(ABS_RX) && has(ABS_RY) && has(ABS_RZ);
@@ -147,8 +147,8 @@ AxisSources InputDevice::usualSources() const {
           plain(ABS_Z), hat_x};
 }
 
-// Returns the missing axes, as "axis throttle"; the ball's axes that they should control stay at
-// rest.
+// Chooses the axes. Returns the missing ones, as "axis throttle"; the ball's axes that they should
+// control stay at rest.
 std::vector<std::string> InputDevice::chooseAxes(const std::vector<std::string>& names) {
   std::vector<std::string> lacking;
   sources_ = names.empty() ? usualSources() : AxisSources{};
@@ -166,8 +166,8 @@ std::vector<std::string> InputDevice::chooseAxes(const std::vector<std::string>&
   return lacking;
 }
 
-// Returns the missing keys, as "key \"thumbr\""; the buttons after a missing one keep their
-// numbers.
+// Chooses the buttons. Returns the missing keys, as "key \"thumbr\""; the buttons after a missing
+// key keep their numbers.
 std::vector<std::string> InputDevice::chooseButtons(const std::vector<std::string>& names) {
   buttons_.fill(0);
   if (names.empty()) chooseUsualButtons();

@@ -39,15 +39,16 @@ class InputDevice {
   const std::string& name() const noexcept { return name_; }
   std::size_t axes() const noexcept;
   std::size_t keys() const noexcept { return keys_.size(); }
-  // All axes, or all keys, by the names that settings use, in the order of the kernel's numbers. An
-  // axis that settings cannot name is left out.
+  // Return the names of all axes, or of all keys, as used in the settings and in the order of the
+  // kernel's numbers. An axis that settings cannot name is left out.
   std::vector<std::string> axisNames() const;
   std::vector<std::string> keyNames() const;
-  // Deflections of the axes of axisNames(). Allocates; for calibration.
+  // Returns the present deflections of the axes in axisNames(). Allocates; for calibration.
   std::vector<AxisReading> readings() const;
-  // The axes and keys that choose() selected.
+  // Returns the axes that choose() selected.
   const AxisSources& sources() const noexcept { return sources_; }
-  // "axes x, rz-z, y, ry, rx, -hat0x; buttons south, east" for a person.
+  // Describes the axes and buttons that choose() selected, for a person: "axes x, rz-z, y, ry, rx,
+  // -hat0x; buttons south, east".
   std::string chosen() const;
 
  private:
@@ -61,7 +62,7 @@ class InputDevice {
     std::string name;
     bool pressed = false;
   };
-  static constexpr std::size_t kAxes = 0x18;  // axes in kAxisForms have lower numbers
+  static constexpr std::size_t kAxes = 0x18;  // the axes in kAxisForms have lower numbers
   static constexpr std::size_t kButtons = 12;
 
   Axis* axis(std::uint16_t code) noexcept;

@@ -14,12 +14,14 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr Duration kPollTime = milliseconds(250);
-constexpr Duration kQuiet = milliseconds(200);  // without a byte: then no record is being sent
+// If no byte arrives for this time, no record is being sent.
+constexpr Duration kQuiet = milliseconds(200);
 constexpr Duration kReplyTime = milliseconds(400);
 constexpr Duration kMostDrain = seconds(1);
 constexpr Duration kPatience = milliseconds(1200);  // time for which open() repeats its query
-constexpr Duration kStartTime = seconds(10);        // the same, after a reinitialisation
-constexpr Duration kSettleTime = milliseconds(50);  // after each output list, as in VRPN
+// Time for which open() repeats its query after a reinitialisation.
+constexpr Duration kStartTime = seconds(10);
+constexpr Duration kSettleTime = milliseconds(50);  // wait after each output list, as in VRPN
 // Longer than five periods of a slow stream, 30 records per second at 9600 baud.
 constexpr Duration kLongestSilence = milliseconds(500);
 
@@ -40,8 +42,9 @@ std::array<float, 4> ofBoresight(const std::array<float, 4>& q, const std::array
           -q[0] * a[3] - q[1] * a[2] + q[2] * a[1] + q[3] * a[0]};
 }
 
-// Largest coordinate that a record can have, in its unit: the reach of a receiver, plus the
-// distance of the farthest configured origin from the transmitter, plus the length of a stylus.
+// Returns the largest coordinate that a record can have, in the unit of the line: the reach of a
+// receiver, plus the distance of the farthest configured origin from the transmitter, plus the
+// length of a stylus.
 float furthestOf(const FastrakSettings& settings) {
   float origin_cm = 0, tip_cm = 0;
   for (const auto& a : settings.alignment_cm)
@@ -52,7 +55,8 @@ float furthestOf(const FastrakSettings& settings) {
   return settings.centimetres ? cm : cm * kMetresPerCentimetre / kMetresPerInch;
 }
 
-// Whether the fault lies in the unit, not in the line: no answer, or not that of a Fastrak.
+// Returns whether the fault lies in the unit and not in the line, that is, whether there was no
+// answer or not that of a Fastrak.
 bool isOfTheBox(const Error& error) noexcept {
   return error.code == Errc::kTimeout || error.code == Errc::kMalformed;
 }
@@ -125,7 +129,8 @@ Result<Stations> FastrakDevice::askStations(Dialogue& dialogue) {
                  fmt::format("unexpected answer \"{}\" to l1", quoteBytes(*reply))};
   }
   if (*stations == Stations{}) {
-    failures_ = kFailuresBeforeRestart - 1;  // restart it: it detects receivers when it starts
+    // Restart the unit, which detects receivers when it starts.
+    failures_ = kFailuresBeforeRestart - 1;
     return Error{Errc::kMalformed, "no station is active: is a receiver plugged in?"};
   }
   return *stations;

@@ -70,7 +70,8 @@ HeldPose meanOf(std::span<const TrackerSample> samples) {
   for (const TrackerSample& s : samples) {
     place += position(s) / static_cast<double>(samples.size());
     const Quaterniond q = quaternion(s.orientation_wxyz);
-    turn += q.dot(first) < 0 ? Eigen::Vector4d(-q.coeffs()) : q.coeffs();  // same rotation
+    // -q is the same rotation.
+    turn += q.dot(first) < 0 ? Eigen::Vector4d(-q.coeffs()) : q.coeffs();
   }
   const Quaterniond mean(turn.normalized());
   HeldPose held;
@@ -168,7 +169,7 @@ StationFrame GuidedAlignment::solve() const {
   if (held_[kOnY]) {
     for (std::size_t i = 0; i < 9; ++i) {
       const double cm = 100 * held_[i / 3]->position_m[i % 3];
-      solved.alignment_cm[i] = static_cast<float>(std::round(100 * cm) / 100);  // as sent
+      solved.alignment_cm[i] = static_cast<float>(std::round(100 * cm) / 100);  // as it is sent
     }
   }
   if (!held_[kAhead] && present_.boresight_wxyz == FastrakSettings::kAhead) return solved;

@@ -13,7 +13,7 @@
 
 namespace merlin::fastrak {
 
-// Frame in which the samples of one station are given, in the form of FastrakSettings.
+// Frame in which the samples of one station are given, described as in FastrakSettings.
 struct StationFrame {
   std::array<float, 9> alignment_cm = FastrakSettings::kAligned;
   std::array<float, 4> boresight_wxyz = FastrakSettings::kAhead;

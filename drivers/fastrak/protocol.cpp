@@ -12,9 +12,10 @@
 namespace merlin::fastrak {
 namespace {
 
-constexpr std::size_t kPosition = 3;  // after '0', station and error
+constexpr std::size_t kPosition = 3;  // index of the position, after '0', station and error
 constexpr std::size_t kTextWidth = 7;
-constexpr float kWidest_deg = 180.5F;  // of az, el and roll; rounding included
+// Greatest accepted azimuth, elevation or roll, with a margin for rounding.
+constexpr float kWidest_deg = 180.5F;
 
 bool isErrorLetter(std::uint8_t c) noexcept {
   return c == ' ' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -77,7 +78,7 @@ void append14(std::string& out, std::span<const float> values, float full) {
   }
 }
 
-// Column `i` of the rotation matrix: the direction of the receiver's axis i.
+// Returns column `i` of the rotation matrix, which is the direction of the receiver's axis i.
 std::array<float, 3> axisOf(const std::array<float, 4>& q, int i) noexcept {
   const auto [w, x, y, z] = q;
   if (i == 0) return {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
@@ -139,7 +140,7 @@ std::optional<Record> Parser::feed(std::byte byte, std::int64_t received_ns) noe
   return take();
 }
 
-// Whether the window is a record or can be the beginning of one; true if it is empty.
+// Returns whether the window is a record or may be the beginning of one; true if it is empty.
 bool Parser::plausible() const noexcept {
   if (length_ > 0 && window_[0] != '0') return false;
   if (length_ > 1 && !isStation(static_cast<char>(window_[1]))) return false;

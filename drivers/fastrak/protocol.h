@@ -1,4 +1,4 @@
-// Polhemus Fastrak wire format: bytes to records and back. No I/O, no clock.
+// Polhemus Fastrak wire format: converts bytes to records and back. No I/O, no clock.
 //
 // A data record with the output list 2,11,0 in binary has 32 bytes and no length or terminator:
 //   '0'  station '1'..'4'  error ' ' or letter  x y z  q0 q1 q2 q3: 7 x f32le  ' '
@@ -31,7 +31,7 @@ struct Record {
   std::array<float, 3> position{};                    // [inches], or [cm] after the command `u`
   std::array<float, 4> orientation_wxyz{1, 0, 0, 0};  // as received: norm 0.98..1.02
   bool stylus = false;                                // the stylus's button is pressed
-  std::int64_t received_ns = 0;  // passed to feed() with the record's first byte
+  std::int64_t received_ns = 0;                       // arrival of the record's first byte
 };
 
 // Contents and format of a record.
@@ -46,13 +46,14 @@ struct Layout {
   std::string items() const;            // text of the output list: "2,11,0"
 };
 
-// A window slides over the stream. Its content is a record if the fixed bytes are right, the
-// coordinates are within the layout's `furthest`, angles within 180 degrees, and the norm of the
-// quaternion is 0.98 to 1.02; out of synchronisation, the '0' of the next record must follow as
+// The parser slides a window over the stream. Its content is a record if the fixed bytes are right,
+// the coordinates are within the layout's `furthest`, angles within 180 degrees, and the norm of
+// the quaternion is 0.98 to 1.02; out of synchronisation, the '0' of the next record must follow as
 // well. Otherwise one byte is dropped and the content is checked again.
 class Parser {
  public:
-  // Empties the window, keeps the counters; the next byte is expected to be a record's first.
+  // Empties the window and keeps the counters. The next byte is expected to be the first of a
+  // record.
   void reset() noexcept;
   void expect(const Layout& layout) noexcept;  // sets the layout, then calls reset()
 
@@ -61,7 +62,8 @@ class Parser {
   // first byte may be found among bytes that arrived earlier.
   std::optional<Record> feed(std::byte byte, std::int64_t received_ns) noexcept;
 
-  // Since construction: how often synchronisation was lost, and bytes dropped to regain it.
+  // badPackets(): how often synchronisation was lost since construction. badBytes(): number of
+  // bytes that were dropped to regain it.
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
   std::uint64_t badBytes() const noexcept { return bad_bytes_; }
 
@@ -84,7 +86,7 @@ class Parser {
   std::uint64_t bad_bytes_ = 0;
 };
 
-// The answer to `S`.
+// The unit's answer to the command `S`.
 struct Status {
   bool binary = false;
   bool centimetres = false;
@@ -94,18 +96,17 @@ struct Status {
   std::string firmware = "3.00";  // at most 6 characters
   std::string configuration;      // at most 32 characters
 };
-// Nothing unless `reply` is a status record, 55 bytes with its CR LF.
+// Parses a status record, 55 bytes with its CR LF; nothing if `reply` is not one.
 std::optional<Status> parseStatus(std::string_view reply);
 
-// The answer to `l`: element i tells whether station i + 1 is active. Nothing unless `reply` is
-// such an answer, 9 bytes with its CR LF.
+// The unit's answer to the command `l`: element i tells whether station i + 1 is active.
+// parseStations() returns nothing if `reply` is not such an answer, 9 bytes with its CR LF.
 using Stations = std::array<bool, kStations>;
 std::optional<Stations> parseStations(std::string_view reply) noexcept;
 
-// Inverse of the parser, for the emulator; supports more forms than the driver requests. Items of
-// an output list: 0 blank, 1 CR LF, 2 position, 4 azimuth, elevation and roll, 5 to 7 direction
-// cosines of the axes, 11 quaternion, 16 stylus switch; 18, 19 and 20: 2, 4 and 11 as 14-bit
-// numbers.
+// Returns whether `item` may occur in an output list: 0 blank, 1 CR LF, 2 position, 4 azimuth,
+// elevation and roll, 5 to 7 direction cosines of the axes, 11 quaternion, 16 stylus switch; 18, 19
+// and 20: 2, 4 and 11 as 14-bit numbers.
 bool isItem(int item) noexcept;
 
 inline constexpr std::array<int, 3> kDefaultList = {2, 4, 1};  // default of the unit
@@ -113,20 +114,23 @@ inline constexpr std::array<int, 3> kDriverList = {2, 11, 0};
 
 struct Form {
   bool binary = true;
-  bool centimetres =
-      true;  // positions are in centimetres, otherwise in inches; item 18 is scaled accordingly
+  // Whether positions are in centimetres instead of inches; item 18 is scaled accordingly.
+  bool centimetres = true;
 };
 
-// REQUIRES: isItem() is true of each item.
+// Return the bytes of a record and of replies; inverse of the parser, for the emulator. They
+// support more forms than the driver requests. REQUIRES: isItem() is true for each item.
 std::string encode(const Record& record, std::span<const int> items, const Form& form);
 std::string encode(const Status& status);
 std::string encode(const Stations& stations, int asked_station);
 
-// Azimuth, elevation and roll [degrees]: R = Rz(az) Ry(el) Rx(roll). REQUIRES: a unit quaternion.
+// Convert an orientation to azimuth, elevation and roll [degrees], R = Rz(az) Ry(el) Rx(roll), and
+// back. REQUIRES: the quaternion is a unit quaternion.
 std::array<float, 3> anglesOf(const std::array<float, 4>& orientation_wxyz) noexcept;
 std::array<float, 4> quaternionOf(const std::array<float, 3>& angles_deg) noexcept;
 
-// Meaning of a letter of the built-in test; "" for one that is not listed. Source: MAN12, p. 76.
+// Returns the meaning of a letter of the built-in test; "" if the letter is not listed. Source:
+// MAN12, p. 76.
 std::string_view meaningOf(char error) noexcept;
 
 }  // namespace merlin::fastrak

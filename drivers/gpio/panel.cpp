@@ -9,7 +9,7 @@
 namespace merlin::gpio {
 namespace {
 
-constexpr Duration kSlow = std::chrono::seconds(1);  // half periods of the lamp
+constexpr Duration kSlow = std::chrono::seconds(1);  // half periods of the blinking lamp
 constexpr Duration kFast = std::chrono::milliseconds(125);
 
 Duration halfPeriod(GpioSample::Lamp lamp) { return lamp == GpioSample::kLampSlow ? kSlow : kFast; }

@@ -12,6 +12,7 @@
 
 namespace merlin::gpio {
 
+// Levels of the output lines; true is high.
 struct Outputs {
   bool projector = false, video = false, lamp = false;
   friend bool operator==(const Outputs&, const Outputs&) = default;
@@ -22,11 +23,12 @@ class Panel {
  public:
   Panel(const GpioSettings& settings, Timestamp now);
 
-  // "projector_on", "projector_off", "video_a", "video_b", "lamp_off", "lamp_slow", "lamp_fast",
-  // "lamp_on". Errors: kInvalidArgument (no such command), kBusy (the projectors cool down or were
-  // just switched), with the seconds to wait.
+  // Executes one of the commands "projector_on", "projector_off", "video_a", "video_b", "lamp_off",
+  // "lamp_slow", "lamp_fast" and "lamp_on". Errors: kInvalidArgument (no such command), kBusy (the
+  // projectors cool down or were just switched; the message gives the seconds to wait).
   Result<Ok> execute(std::string_view command, Timestamp now);
-  // While the warning is on, the lamp blinks fast, whatever its switched state.
+  // Switches the warning on or off. While it is on, the lamp blinks fast, whatever the last lamp
+  // command was.
   void warn(bool on, Timestamp now);
 
   // Advances the state to `now`; `pressed` is the level of the button's line. Returns true once for
@@ -34,11 +36,11 @@ class Panel {
   bool step(bool pressed, Timestamp now);
 
   Outputs outputs(Timestamp now) const;
-  // Time until the projectors have warmed up or cooled down; 0 if they do neither.
+  // Returns the time until the projectors have warmed up or cooled down; 0 if they do neither.
   Duration phaseLeft(Timestamp now) const;
   GpioSample sample(Timestamp now) const;
 
-  // When the state will next change by itself; Timestamp::max(): never.
+  // Returns when the state will next change by itself; Timestamp::max() if never.
   Timestamp nextDue(Timestamp now) const;
 
  private:

@@ -14,7 +14,7 @@
 
 namespace merlin::gpio {
 
-// Receives the panel's state.
+// Receives the panel's state; called on the loop's thread.
 using GpioSink = std::function<void(const GpioSample&)>;
 
 class PanelLoop {
@@ -28,8 +28,8 @@ class PanelLoop {
   void run(
       const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
-  // Like Panel::execute(); thread-safe. The lines follow within 50 ms. Errors also: kIo (the chip
-  // is not open).
+  // Executes a command as Panel::execute() does; the lines change within 50 ms. Thread-safe.
+  // Errors: those of Panel::execute(), and kIo (the chip is not open).
   Result<Ok> execute(const std::string& command);
   void warn(bool on);    // like Panel::warn(); thread-safe
   Duration phaseLeft();  // like Panel::phaseLeft(); thread-safe

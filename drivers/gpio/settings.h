@@ -9,8 +9,8 @@ namespace merlin {
 
 struct GpioSettings {
   std::string chip;  // "gpiochip0", "/dev/gpiochip0" or a label; empty: there is no panel
-  // Numbers of the chip's lines; -1: there is none.
-  int projector_line = -1;  // high: power
+  // Numbers of the chip's lines; -1: no line has this purpose.
+  int projector_line = -1;  // high: the projectors are on
   int video_line = -1;      // low: A, high: B
   int lamp_line = -1;       // high: lit
   bool lamp_warns = true;   // the lamp blinks fast while the wall needs attention
@@ -21,7 +21,7 @@ struct GpioSettings {
   double debounce_s = 0.02;
 };
 
-// Finds a line that has two purposes. Pointer: "".
+// Returns a fault for each line that has two purposes. Its JSON pointer is "".
 SettingFaults validate(const GpioSettings& gpio);
 
 }  // namespace merlin

@@ -12,7 +12,7 @@ constexpr double kLongestGap_s = 0.25;
 constexpr double kSway_m = 0.006, kSway_hz[] = {0.19, 0.27, 0.34}, kTremor_hz[] = {8.3, 9.1, 10.2};
 constexpr Vector3 kDown{0.18, -0.40, -0.08};  // hand relative to the middle of the shoulders [m]
 constexpr Vector3 kReady{0.15, -0.05, -0.38};
-// Duration of an unhurried reach.
+// Duration of an unhurried reach: a constant, plus shares for its length and its roll.
 constexpr double kReach_s = 0.40, kReach_s_per_m = 0.6, kReach_s_per_rad = 0.15;
 constexpr double kStand_m = 1.2, kFar_m = 1.5;  // distances from the transmitter
 constexpr std::int64_t kStart_ns = 1'000'000'000;
@@ -176,7 +176,7 @@ void Actor::scratch() {
   wait(random_.uniform(0.3, 2));
 }
 
-// A step takes half a second or so; the arm swings the other way with each.
+// A step takes half a second or so; the arm swings the other way with each step.
 void Actor::walk() {
   goTo(about(kDown, 0.03), 0, 0.02);
   const double step_s = pace(0.48, 0.62), swing = random_.uniform(0.05, 0.22);
@@ -204,7 +204,7 @@ void Actor::rest() {
   wait(random_.uniform(2, 8));
 }
 
-// The gestures of a speaker's hand: small and brisk, seldom large.
+// Moves the hand as a speaker does: with small and brisk movements, seldom with large ones.
 void Actor::talk() {
   goTo(about({0.15, -0.12, -0.28}, 0.05), 0.3 * random_.normal(), 0.03);
   for (std::uint64_t n = 4 + random_.below(8); n > 0; --n) {

@@ -11,16 +11,21 @@ class Actor {
  public:
   Actor(const MovingPerson& person, std::uint64_t seed);
 
+  // Plans one take of a gesture, with the way to its start and the movement after it.
   void makeGesture(const MovingGesture& gesture);
+  // Plans one piece of ordinary motion.
   void goAbout(Ordinary kind);
 
+  // Duration of the plan so far.
   double seconds() const { return planned_s_; }
-  Performance finish();  // samples the rest of the plan; the actor must not be used again
+  // Samples the rest of the plan and returns the recording; the actor must not be used afterwards.
+  Performance finish();
 
  private:
-  void wait(double seconds);  // negative: the next move begins before the last one has ended
+  void wait(double seconds);  // if negative, the next move begins before the last one has ended
   void move(const HandState& way, double seconds, double bow = 0);
-  // `seconds`: 0 chooses the time of an unhurried reach over this distance.
+  // Moves the hand to `place`. If `seconds` is 0, the move takes as long as an unhurried reach over
+  // this distance.
   void goTo(const Vector3& place, double roll_rad, double bow, double seconds = 0);
   double pace(double low_s, double high_s);  // a random duration, scaled by the person's tempo
   Vector3 about(const Vector3& place, double deviation);
@@ -33,7 +38,8 @@ class Actor {
   void rest();
   void talk();
 
-  // Samples up to planned_s_ - kAhead_s: later moves may begin before that.
+  // Takes the samples up to `until_s`. This is kAhead_s before the end of the plan until finish(),
+  // because a later move may begin that much earlier.
   void sample(double until_s);
   void take(double t_s);
 

@@ -7,9 +7,9 @@
 namespace merlin::hand {
 namespace {
 
-constexpr float kLongestGap_s = 0.2F;  // between records; after it the filter restarts
+constexpr float kLongestGap_s = 0.2F;  // the filter restarts after a longer gap between records
 constexpr float kSpeedCutoff_hz = 4;   // low-pass on the velocities
-constexpr float kReach_m = 0.3F;       // in the speed, 1 rad/s counts as 0.3 m/s
+constexpr float kReach_m = 0.3F;       // for the cut-off, 1 rad/s counts as a speed of 0.3 m/s
 constexpr std::int64_t kOldestGlove_ns = 500'000'000;
 constexpr float kFurthest_s = 0.1F;
 
@@ -25,7 +25,7 @@ Quaternion product(const Quaternion& a, const Quaternion& b) {
 
 Quaternion load(const float (&q)[4]) { return {q[0], q[1], q[2], q[3]}; }
 
-// Rotation vector from `from` to `to` in the frame's axes [rad], the short way round.
+// Returns the rotation vector from `from` to `to` in the frame's axes [rad], the short way round.
 Vector turnBetween(const Quaternion& from, const Quaternion& to) {
   Quaternion d = product(to, {from[0], -from[1], -from[2], -from[3]});
   if (d[0] < 0) {
@@ -50,7 +50,7 @@ Quaternion turned(const Quaternion& q, const Vector& turn) {
 
 float norm(const float (&v)[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-// Share of the remaining difference that a first-order low-pass covers in dt.
+// Returns the share of the remaining difference that a first-order low-pass covers within dt.
 float share(float cutoff_hz, float dt_s) {
   return 1 - std::exp(-2 * std::numbers::pi_v<float> * cutoff_hz * dt_s);
 }

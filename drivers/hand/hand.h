@@ -1,5 +1,5 @@
-// Hand: combines a glove and a tracker: joints by name, and a smoothed pose that can be
-// extrapolated to another moment. Pure.
+// Hand: combines the samples of a glove and a tracker into named joints and a smoothed pose, which
+// can be extrapolated to another moment. Pure.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace merlin::hand {
 
 // Names of slots 0 to 22: "thumb_roll", "thumb_mcp", ... "wrist_yaw".
 extern const std::array<std::string_view, kGloveSlots> kJointNames;
-// The slot of that name, or nothing.
+// Returns the slot with this joint name; nothing if there is none.
 std::optional<std::size_t> jointNamed(std::string_view name);
 
 // Smooths with a low-pass filter whose cut-off rises with the hand's speed, so that a hand at rest
@@ -26,8 +26,8 @@ class Hand {
  public:
   explicit Hand(const HandSettings& settings) : settings_(settings) {}
 
-  // Processes a record of the hand's station. `glove`: the glove's newest record; it is used if it
-  // is less than half a second old.
+  // Processes a record of the tracker's station on the hand, and returns the hand. `glove`: the
+  // glove's newest record, which is used if it is less than half a second old.
   HandSample update(const TrackerSample& tracker, const std::optional<GloveSample>& glove);
 
  private:
@@ -44,8 +44,9 @@ struct Pose {
   std::array<float, 4> orientation_wxyz;
 };
 
-// Pose of the hand at `when`, extrapolated with its present velocity; compensates the delay of the
-// smoothing. At most 0.1 s from the sample, because a hand does not keep its velocity for long.
+// Returns the pose of the hand at `when`, extrapolated with the velocities of the sample; the delay
+// of the smoothing is compensated. The extrapolation covers at most 0.1 s, because a hand does not
+// keep its velocity for long.
 Pose poseAt(const HandSample& hand, Timestamp when);
 
 }  // namespace merlin::hand

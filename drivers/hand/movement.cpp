@@ -18,8 +18,8 @@ void addShare(HandState& to, const HandState& what, double share = 1) {
   addShare(to.turn_rad, what.turn_rad, share);
 }
 
-// Share of a circle that is done at `share` of its time: the speed rises, stays constant, and
-// falls.
+// Returns the share of a circle that is done after `share` of its time: the speed rises, stays
+// constant, and falls.
 double evenly(double share) {
   const double x = std::clamp(share, 0.0, 1.0), a = kSpeedUp, top = 1 / (1 - a);
   if (x < a) return top * x * x / (2 * a);
@@ -27,14 +27,15 @@ double evenly(double share) {
   return top * (x - a / 2);
 }
 
-// Point of the ellipse at an angle: 0 at the top, clockwise as the person sees it.
+// Returns the point of the ellipse at an angle, which is 0 at the top and increases clockwise, as
+// the person sees it.
 Vector3 onEllipse(const Move& move, double angle) {
   const double right = move.radius_m[0] * std::sin(angle);
   return {right * std::cos(move.plane_rad), move.radius_m[1] * std::cos(angle),
           right * std::sin(move.plane_rad)};
 }
 
-// Contribution of `move` at `share` of its time.
+// Returns the contribution of `move` to the hand's state after `share` of its time.
 HandState partOf(const Move& move, double share) {
   const double s = minimumJerk(std::pow(std::clamp(share, 0.0, 1.0), move.skew));
   HandState part{};

@@ -1,6 +1,7 @@
-// Movement: the path of a hand as a sum of single moves, each with a bell-shaped speed. Pure.
+// Movement: describes the path of a hand as a sum of single moves, each with a bell-shaped speed.
+// Pure.
 //
-// Moves that overlap in time add up, so that one runs into the next as with people.
+// Moves that overlap in time are added up, so that one blends into the next, as in human movement.
 // Sources: T. Flash, N. Hogan, "The coordination of arm movements: an experimentally confirmed
 // mathematical model", J. Neuroscience 5, 1985 (minimum jerk); T. Flash, E. Henis, "Arm trajectory
 // modifications during reaching towards visual targets", J. Cognitive Neuroscience 3, 1991 (sums).
@@ -23,19 +24,20 @@ struct HandState {
   Vector3 turn_rad{};
 };
 
-// Rotation of the hand: q_person_hand.
+// Returns the rotation of the hand, q_person_hand.
 Quaternion orientationOf(const HandState& state);
 Quaternion product(const Quaternion& a, const Quaternion& b);
 Quaternion aboutAxis(std::size_t axis, double angle_rad);
 Vector3 rotated(const Quaternion& q, const Vector3& v);
 
-// From begin_s on, for `seconds`, position and turn change by `way`. To this the path adds a bend,
-// of `bow_m` in the middle of the way, and an ellipse that returns to its beginning.
+// One move: from begin_s on, for `seconds`, position and turn change by `way`. In addition, the
+// path is bent, by `bow_m` in the middle of the way, and if `turns` is not 0, the hand moves along
+// an ellipse.
 struct Move {
   double begin_s = 0, seconds = 1;
   HandState way{};
   Vector3 bow_m{};
-  double skew = 1;  // above 1: the greatest speed comes later; 1: in the middle
+  double skew = 1;  // 1: the greatest speed is in the middle; above 1: later
   // The ellipse: radii to the right and up, number of times around (clockwise positive), the angle
   // at which it begins (0 is the top; clockwise positive), and the rotation of its plane about the
   // vertical axis.
@@ -43,7 +45,8 @@ struct Move {
   double turns = 0, start_rad = 0, plane_rad = 0;
 };
 
-// Share of a move, 0..1, that is done at `share` of its time; the speed is bell-shaped.
+// Returns the share of a move, 0..1, that is done after `share` of its time. The speed is
+// bell-shaped.
 double minimumJerk(double share);
 
 // Thread-bound.
@@ -52,10 +55,10 @@ class Movement {
   explicit Movement(const HandState& at) : base_(at) {}
 
   void add(const Move& move) { moves_.push_back(move); }
-  // State of the hand at `t_s`. REQUIRES: t_s is not below that of an earlier call. Cost: linear in
-  // the moves that have not ended.
+  // Returns the state of the hand at time `t_s`. REQUIRES: t_s is not below that of an earlier
+  // call. Cost: linear in the moves that have not ended.
   HandState at(double t_s);
-  // State of the hand after the end of all moves.
+  // Returns the state of the hand after the end of all moves.
   HandState end() const;
 
  private:

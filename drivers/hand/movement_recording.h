@@ -12,19 +12,19 @@ namespace merlin::hand {
 
 // What people do before a wall without making a gesture.
 enum class Ordinary : std::uint8_t {
-  kPointing,    // to one place of the wall after another
-  kReaching,    // for something in front, and back
+  kPointing,    // points at one place of the wall after another
+  kReaching,    // reaches for something in front and draws the hand back
   kTurning,     // moves and turns the model while the hand holds it
-  kScratching,  // the head
-  kWalking,     // by, with swinging arms
-  kResting,     // stands, the hand down or before the chest
-  kTalking,     // with the hands
+  kScratching,  // scratches the head
+  kWalking,     // walks by with swinging arms
+  kResting,     // stands with the hand down or before the chest
+  kTalking,     // talks and moves the hand
 };
 inline constexpr const char* kOrdinaryNames[] = {"pointing", "reaching", "turning", "scratching",
                                                  "walking",  "resting",  "talking"};
 inline constexpr std::size_t kOrdinaryKinds = std::size(kOrdinaryNames);
 
-// A gesture that was made, from its first motion to its last.
+// A gesture that was made; the times of its first and last motion are by the clock of the samples.
 struct MadeGesture {
   const char* name;
   std::int64_t began_ns, ended_ns;
@@ -37,8 +37,9 @@ struct Performance {
   std::vector<MadeGesture> made;
 };
 
-// The person makes each gesture `times` times, all in random order. Around each of them the hand is
-// raised to the place where the gesture begins, rests a moment, and is taken back.
+// Records a person who makes each gesture `times` times, all in random order. Before each gesture,
+// the hand is raised to the place where the gesture begins and rests for a moment; after it, the
+// hand moves on.
 Performance makeGestures(const MovingPerson& person, std::size_t times, std::uint64_t seed);
 
 // Records at least `seconds` of ordinary motion: of one kind, or of all kinds in turn.

@@ -20,7 +20,7 @@ constexpr MovingGesture kGestures[] = {
 };
 
 constexpr double kRates_hz[] = {30, 60, 90, 120};
-constexpr double kLeastTurns = 0.95;  // minimum, of a circle
+constexpr double kLeastTurns = 0.95;  // least number of turns of a circle
 constexpr double kWindUp = 0.25;      // share of people who swing back before a stroke
 
 std::uint64_t hash(std::string_view text) {
@@ -46,13 +46,13 @@ TrackerTraits drawTracker(Random& random) {
 
 }  // namespace
 
-// The constant peculiarities of one person in one gesture.
+// The constant deviations of one person from the average in one gesture.
 struct MovingPerson::Habit {
   double size = 1, time = 1, skew = 1;
   Vector3 slant_rad{}, bow{};
   double start_rad = 0, turns = 1, aspect = 1, plane_rad = 0, roll_rad = 0;
   bool winds_up = false;
-  double windup = 0.3;  // share of the stroke
+  double windup = 0.3;  // length of the swing back, share of the stroke
 };
 
 std::span<const MovingGesture> movingGestures() { return kGestures; }

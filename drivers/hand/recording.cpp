@@ -8,7 +8,7 @@ namespace {
 constexpr double kLag = 0.06;  // delay of a finger after its neighbour, share of the transition
 constexpr std::size_t kFingers = 5, kSlotsOfAFinger = 4;
 
-// Smoothstep: 0..1, with slope 0 at both ends.
+// Returns the smoothstep function of `x`: it rises from 0 to 1, with slope 0 at both ends.
 double smooth(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * (3 - 2 * x);

@@ -3,7 +3,7 @@
 namespace merlin::hand {
 namespace {
 
-// How far each finger is bent: MCP, PIP, DIP [rad].
+// Flexion angles of a finger's joints MCP, PIP and DIP [rad].
 struct Finger {
   float mcp, pip, dip;
 };
@@ -30,7 +30,7 @@ constexpr Thumb kThumbToRing{0.40F, 0.60F, 0.40F, 0.40F};
 constexpr Thumb kThumbToPinky{0.40F, 0.80F, 0.55F, 0.45F};
 constexpr Thumb kThumbTucked{0.40F, 0.85F, 0.15F, 0.22F};
 
-// Abductions: middle-index, ring-middle, pinky-ring.
+// Abductions between neighbouring fingers [rad]: middle-index, ring-middle, pinky-ring.
 struct Spread {
   float mi, rm, pr;
 };

@@ -21,8 +21,8 @@ namespace {
 
 using Handle = std::unique_ptr<libevdev, decltype(&libevdev_free)>;
 
-// Whether the kernel's answer, a negative errno value, means that a device file is left whose
-// device is gone: the file vanishes a moment after the device does.
+// Returns whether the kernel's answer, a negative errno value, means that the device was unplugged
+// but its file still exists. The file vanishes a moment after the device.
 bool isUnplugged(int answer) noexcept { return answer == -ENODEV || answer == -ENXIO; }
 
 Error unplugged(const std::string& path) {

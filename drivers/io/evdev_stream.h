@@ -24,14 +24,15 @@ namespace merlin::io {
 // fails with kClosed once the device is unplugged.
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path);
 
-// What openEvdev() asks of the kernel about a file that is open. Each call returns 0 or a negative
-// errno value.
+// The requests that openEvdev() makes to the kernel for an open file. Each call returns 0 or a
+// negative errno value.
 struct EvdevRequests {
   std::function<int(int fd, libevdev** device)> describe;  // makes `device` if it returns 0
   std::function<int(libevdev* device)> grab;
 };
 
-// The same with other requests, for tests: no test can unplug a device at a chosen moment.
+// Opens the device with other requests to the kernel; for tests, which cannot unplug a device at a
+// chosen moment.
 Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path,
                                               const EvdevRequests& requests);
 
@@ -39,10 +40,10 @@ Result<std::unique_ptr<ByteStream>> openEvdev(const std::string& path,
 // it includes the key's name.
 EvdevRecord keyRecord(std::uint16_t code);
 
-// The kernel's numbers of keys and buttons are below this.
+// All numbers of keys and buttons in the kernel are below this.
 inline constexpr std::uint16_t kKeyCodes = 0x300;
-// The kernel's number of the key or button with this name in lower case, "key_space" or
-// "btn_south"; nothing if there is none.
+// Returns the kernel's number of the key or button with this name in lower case, such as
+// "key_space" or "btn_south"; nothing if there is none.
 std::optional<std::uint16_t> keyCode(std::string_view name);
 // Inverse of keyCode(); empty if the number has no name.
 std::string keyNameOf(std::uint16_t code);

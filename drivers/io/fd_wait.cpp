@@ -31,7 +31,8 @@ Result<Ok> FdWait::await(int fd, short events, Duration timeout) {
   const int ready = ::ppoll(fds, 2, &limit, nullptr);
   if (ready < 0 && errno == EINTR) return Error{Errc::kTimeout, "signal"};
   if (ready < 0) return ioError("poll");
-  if (ready == 0) return Error{Errc::kTimeout, "time-out"};  // short: no allocation
+  // The text is so short that it needs no allocation.
+  if (ready == 0) return Error{Errc::kTimeout, "time-out"};
   if (fds[1].revents != 0) return Error{Errc::kClosed, "interrupted"};
   if ((fds[0].revents & events) != 0) return Ok{};
   return hungUp();

@@ -24,11 +24,11 @@ class FdWait {
   UniqueFd wake_;  // eventfd that interrupt() signals; it is never cleared
 };
 
-// Error for a line whose other end was closed or unplugged: kClosed.
+// Returns the error kClosed of a line whose other end was closed or unplugged.
 Error hungUp();
 
-// Error for a call that has just failed and set errno: kClosed, as hungUp() says it, if the device
-// or the peer is gone, otherwise kIo.
+// Returns the error of a system call that has just failed and set errno: kClosed with the text of
+// hungUp() if the device or the peer is gone, otherwise kIo. `call`: its name, for the message.
 Error ioError(const char* call);
 
 }  // namespace merlin::io

@@ -10,7 +10,8 @@
 namespace merlin::io {
 namespace {
 
-// " (its group is dialout: usermod -aG dialout USER)"; empty if that would not help.
+// Returns a hint such as " (its group is dialout: usermod -aG dialout USER)"; empty if this would
+// not help.
 std::string groupHint(const std::string& path, int error) {
   struct stat status {};
   if (error != EACCES || ::stat(path.c_str(), &status) != 0) return {};

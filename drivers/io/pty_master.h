@@ -24,7 +24,8 @@ class PtyMaster {
   int fd() const noexcept { return master_.get(); }  // non-blocking
   const std::string& slavePath() const noexcept { return slave_path_; }
 
-  // Speed that the program on the slave side has set [baud]; 0 if it is not a supported one.
+  // Returns the speed [baud] that the program on the slave side has set; 0 if this speed is not
+  // supported.
   int baud() const noexcept;
 
  private:

@@ -10,7 +10,7 @@
 namespace merlin::io {
 
 struct ReadAhead {
-  std::string bytes;  // the ones from `next` on have not been returned yet
+  std::string bytes;  // those from index `next` on have not been returned yet
   std::size_t next = 0;
 
   bool empty() const noexcept { return next == bytes.size(); }

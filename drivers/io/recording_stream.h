@@ -11,7 +11,7 @@ namespace merlin::io {
 // Thread-bound, except interrupt(), like the inner stream.
 class RecordingStream final : public ByteStream {
  public:
-  // `tap` and `clock` must outlive this.
+  // `tap` and `clock` must outlive this object.
   RecordingStream(std::unique_ptr<ByteStream> inner, ByteTap& tap, const Clock& clock)
       : inner_(std::move(inner)), tap_(tap), clock_(clock) {
     tap_.opened(clock_.now());

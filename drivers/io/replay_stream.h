@@ -8,20 +8,20 @@
 
 namespace merlin::io {
 
-// Order and timing of a replay: when each byte of the device is due, and after which bytes of the
-// host. Device bytes that followed host bytes in the recording follow them with the same delay. If
-// the host sends fewer bytes than in the recording, the player waits two seconds for them, then
-// continues. Pure: the time is passed in. Thread-bound.
+// Player: determines order and timing of a replay, that is, when each byte of the device is due and
+// after which bytes of the host. Device bytes that followed host bytes in the recording follow them
+// with the same delay. If the host sends fewer bytes than in the recording, the player waits two
+// seconds for them, then continues. Pure: the time is passed in. Thread-bound.
 class Player {
  public:
   Player(Transcript transcript, Timestamp start);
 
-  // To be called when the host has sent this number of bytes.
+  // To be called when the host has sent `bytes` further bytes.
   void hostSaid(std::size_t bytes, Timestamp now);
 
   // Appends the device's bytes that are due at `now`.
   void advance(Timestamp now, std::string& out);
-  // When the next bytes are due if the host sends nothing; Timestamp::max() after the end.
+  // Returns when the next bytes are due if the host sends nothing; Timestamp::max() after the end.
   Timestamp nextDue() const;
   bool ended() const { return next_ == transcript_.chunks.size(); }
 
@@ -34,7 +34,8 @@ class Player {
   std::size_t host_owes_ = 0;  // bytes of chunk `next_` that the host has not sent yet
 };
 
-// `clock` must outlive this. After the last byte, read() returns kClosed.
+// A ByteStream that replays a transcript by `clock`, which must outlive this object. After the last
+// byte, read() returns kClosed.
 class ReplayStream final : public ByteStream {
  public:
   ReplayStream(Transcript transcript, Clock& clock)

@@ -26,11 +26,12 @@ void setOption(int fd, int level, int option, int value) {
   (void)::setsockopt(fd, level, option, &value, sizeof value);
 }
 
-// Returns 0 or an errno value.
+// Connects a new socket `fd` to the address. Returns 0 or an errno value.
 int connectTo(const addrinfo& address, UniqueFd& fd) {
   fd.reset(::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!fd.valid()) return errno;
-  setOption(fd.get(), SOL_SOCKET, SO_RCVBUF, kReceiveBuffer);  // before the window is set
+  // The buffer's size must be set before connect(), which determines the window.
+  setOption(fd.get(), SOL_SOCKET, SO_RCVBUF, kReceiveBuffer);
   if (::connect(fd.get(), address.ai_addr, address.ai_addrlen) == 0) return 0;
   if (errno != EINPROGRESS) return errno;
   pollfd item{fd.get(), POLLOUT, 0};

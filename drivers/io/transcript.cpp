@@ -64,7 +64,7 @@ class Reader {
     return {Errc::kMalformed, fmt::format("line {} {}", line_, what)};
   }
 
-  // One or more "# key: value" on a line.
+  // Reads a line with one or more entries "# key: value".
   void readHeader(std::string_view line) {
     while (!line.empty()) {
       line.remove_prefix(1);  // '#'
@@ -121,7 +121,8 @@ class Reader {
     return Ok{};
   }
 
-  // Baud rate of the header, which is complete when the first chunk is read; cached.
+  // Returns the baud rate of the header, which is complete when the first chunk is read. The rate
+  // is cached.
   int baud() {
     if (baud_ == 0) baud_ = transcript_.baud();
     return baud_;

@@ -23,7 +23,7 @@
 namespace merlin::io {
 
 struct TranscriptChunk {
-  Duration at{};           // since the start; not before the previous chunk
+  Duration at{};           // time since the start; not before the previous chunk
   bool to_device = false;  // written by the host
   std::string bytes;
 };
@@ -32,17 +32,19 @@ struct Transcript {
   std::vector<std::pair<std::string, std::string>> header;  // key and value, in the file's order
   std::vector<TranscriptChunk> chunks;
 
-  // Value of a key of the header; empty if the header has no such key.
+  // Returns the value of a key of the header; empty if the header has no such key.
   std::string_view operator[](std::string_view key) const;
   int baud() const;  // from the key "serial"; 9600 if it has no number
 };
 
-// Errors: kMalformed, naming the line: not hexadecimal, half a byte, a time before that of the
-// previous chunk, no "# end".
+// Parse and format the text of a transcript. Errors: kMalformed if a chunk is not hexadecimal or
+// ends in half a byte, a time is before that of the previous chunk, or "# end" is missing; the
+// message names the line.
 Result<Transcript> parseTranscript(std::string_view text);
 std::string formatTranscript(const Transcript& transcript);
 
-// Errors: kNotFound, kIo, and those of parseTranscript() with the file's name.
+// Reads a transcript from a file. Errors: kNotFound, kIo, and those of parseTranscript(), with the
+// file's name in the message.
 Result<Transcript> readTranscript(const std::string& path);
 
 }  // namespace merlin::io

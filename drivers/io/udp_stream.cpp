@@ -19,7 +19,8 @@
 namespace merlin::io {
 namespace {
 
-// Hash of an address and port (FNV-1a); recordings contain it instead of the address.
+// Returns a hash (FNV-1a) of a sender's address and port; recordings contain the hash instead of
+// the address.
 std::uint32_t numberOf(const sockaddr_storage& from) noexcept {
   std::uint32_t number = 0x811C9DC5;
   const auto add = [&](const void* data, std::size_t size) {

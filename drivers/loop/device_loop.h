@@ -17,7 +17,7 @@ namespace merlin {
 
 struct DeviceLoopSettings {
   std::string port;  // as in the configuration, for the health record
-  int baud = 0;      // for a hint in the message about malformed bytes; 0: no hint
+  int baud = 0;      // named in the hint about malformed bytes; 0: no hint
   // Maximum rate at which the line is read; 0: no limit. Further bytes wait in the system's
   // buffers; when these are full, the sender blocks or bytes are lost.
   double max_bytes_s = 0;
@@ -47,13 +47,14 @@ class DeviceLoop {
       const std::stop_token& stop, const std::function<void()>& alive = [] {});
 
  private:
-  // One connection, from opening the port to losing it; returns why it ended.
+  // Serves one connection, from opening the port to losing it; returns why the connection ended.
   Error serve(const std::stop_token& stop);
   Error pollUntilLost(ByteStream& stream, const std::stop_token& stop);
 
   std::unique_ptr<ByteStream> paced(std::unique_ptr<ByteStream> stream);
   void paceChanged();
-  // Text for the health record: a warning if the line sends too much, then `reason`.
+  // Returns the text for the health record: a warning if the line sends too much, followed by
+  // `reason`.
   std::string withPace(const std::string& reason);
   std::string hintFor(const Error& end) const;
   void enter(HealthState state, std::string_view reason) noexcept;

@@ -68,7 +68,8 @@ Result<Ok> PacedStream::fill(Duration timeout) {
   std::size_t allowed = pace_.allowed(clock_.now());
   while (allowed == 0) {
     const Timestamp now = clock_.now();
-    if (now >= deadline) return Error{Errc::kTimeout, "time-out"};  // short: no allocation
+    // The text is so short that it needs no allocation.
+    if (now >= deadline) return Error{Errc::kTimeout, "time-out"};
     if (!clock_.sleepUntil(std::min(now + ReadPace::kPause, deadline), interrupted_.get_token()))
       return Error{Errc::kClosed, "interrupted"};
     allowed = pace_.allowed(clock_.now());

@@ -24,13 +24,14 @@ class ReadPace {
   // above() changes. REQUIRES: bytes_s > 0.
   ReadPace(double bytes_s, std::function<void()> changed);
 
-  // Whether the line sends more than the limit: true from the moment when bytes have to wait until
-  // half of a burst is available again.
+  // Returns whether the line sends more than the limit: true from the moment when bytes have to
+  // wait, until half of a burst is available again.
   bool above() const noexcept { return above_; }
-  // "sends more than 15.4 kB/s, the limit at which it is read".
+  // Returns the text for messages, such as "sends more than 15.4 kB/s, the limit at which it is
+  // read".
   const std::string& sentence() const noexcept { return sentence_; }
 
-  // Number of bytes that may be read at `now`; updates above().
+  // Returns the number of bytes that may be read at `now`; updates above().
   std::size_t allowed(Timestamp now);
   // How long read() sleeps while no byte may be read, before it tries again. Bytes collect in the
   // meantime, and one call for several bytes costs less than one for each.
@@ -41,9 +42,9 @@ class ReadPace {
  private:
   void setAbove(bool above);
 
-  // burst_: capacity of a burst. step_: number of bytes (the limit over kPause) that must be
-  // available before a line that waits is read again; otherwise each byte would need its own system
-  // call.
+  // burst_: greatest number of bytes of a burst. step_: number of bytes (the limit times kPause)
+  // that must be available before a line that waits is read again; otherwise each byte would need
+  // its own system call.
   double burst_, step_;
   bool waits_ = false;
   TokenBucket bucket_;
@@ -52,8 +53,9 @@ class ReadPace {
   bool above_ = false;
 };
 
-// Reads ahead, at most 1 KiB, so that a dialogue that takes single bytes needs few system calls.
-// Bytes that were read ahead are lost with the stream. Thread-bound, except interrupt().
+// A ByteStream that reads another one within a ReadPace. It reads up to 1 KiB ahead, so that a
+// dialogue that takes single bytes needs few system calls. Bytes that were read ahead are lost with
+// the stream. Thread-bound, except interrupt().
 class PacedStream final : public ByteStream {
  public:
   // `pace` and `clock` must outlive this.
@@ -71,7 +73,7 @@ class PacedStream final : public ByteStream {
   Clock& clock_;
   std::stop_source interrupted_;
   std::array<std::byte, 1024> ahead_;  // NOLINT(*-member-init): filled by read
-  std::size_t next_ = 0, end_ = 0;     // range of ahead_ that is not returned yet
+  std::size_t next_ = 0, end_ = 0;     // range of ahead_ that read() has not returned yet
 };
 
 }  // namespace merlin

@@ -24,8 +24,9 @@ bool isNumber(const OscArgument& argument) noexcept {
   return argument.kind == OscArgument::kReal || argument.kind == OscArgument::kInteger;
 }
 
-// Whether an argument is this name: a text, or a whole number whose digits are the name. The number
-// may be an integer or a real, because some senders use one type for all numbers.
+// Returns whether an argument equals this name: it is a text, or a whole number whose digits are
+// the name. The number may be an integer or a real, because some senders use one type for all
+// numbers.
 bool names(const OscArgument& argument, std::string_view name) noexcept {
   if (argument.kind == OscArgument::kText) return argument.text == name;
   if (!isNumber(argument)) return false;

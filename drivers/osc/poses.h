@@ -33,20 +33,22 @@ class Poses final : public OscSink {
 
   std::uint64_t samples() const noexcept { return samples_; }
   std::uint64_t badPoses() const noexcept { return bad_poses_; }
-  // Why the newest message gave no sample; empty: it gave one, or there was none.
+  // Returns why the newest message gave no sample; empty if it gave one, or if no message has
+  // arrived.
   const char* silence() const noexcept { return silence_; }
   void forgetSilence() noexcept { silence_ = ""; }
-  // The address of the first station's messages, for a person.
+  // Returns the address at which the poses of the first used station are expected, for messages to
+  // a person.
   std::string expected() const;
 
  private:
   struct Station {
     bool used = false;
-    std::string name, address;  // address: only if it contains the name
+    std::string name, address;  // `address`: of its messages
   };
 
-  // Returns the station of the message, or kStations if it has none; `names` is set to the number
-  // of arguments that name the station.
+  // Returns the index of the message's station, or kStations if it has none; `names` is set to the
+  // number of arguments that name the station.
   std::size_t stationOf(const OscMessage& message, std::size_t& names) const noexcept;
   void other(const OscMessage& message) noexcept;
   void bad(const char* why) noexcept;

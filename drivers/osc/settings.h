@@ -15,8 +15,9 @@ class SettingsVisitor;
 struct OscSettings {
   enum class Quaternion { kXyzw, kWxyz };
 
-  // Address of the messages. kStation in it stands for the station's name; without it, the first
-  // argument is the name; if that is no name, every message belongs to the first station.
+  // Address of the messages with poses. In it, kStation stands for the station's name. An address
+  // without kStation is that of all stations: the first argument of a message is then the station's
+  // name, or, if the message has no name, it belongs to the first used station.
   std::string address = "/tracker/{station}/pose";
   // Names that the sender gives to stations 1, 2 and so on; empty: the station is not used.
   std::vector<std::string> stations = {"1", "2", "3", "4"};
@@ -27,12 +28,12 @@ struct OscSettings {
   static constexpr const char* kStation = "{station}";
 };
 
-// Finds an address that is not valid in OSC, names of stations that are invalid, repeated or all
-// empty, and a port of the wrong kind. Pointers, relative to the tracker: "/port", "/osc/address",
-// "/osc/stations", "/osc/axes".
+// Returns faults for an address that is not valid in OSC, names of stations that are invalid,
+// repeated or all empty, invalid axes, and a port of the wrong kind. Their JSON pointers, relative
+// to the tracker, are "/port", "/osc/address", "/osc/stations", "/osc/axes".
 SettingFaults validate(const OscSettings& settings, const LineSettings& line);
 
-// Calls `visitor` for every setting, in the order of written files.
+// Calls `visitor` for every setting, in the order in which MERLIN writes them to a file.
 void describe(OscSettings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

@@ -6,7 +6,7 @@
 
 namespace merlin::pjlink {
 
-// The MD5 digest (RFC 1321) of the bytes, as 32 hexadecimal digits in lower case.
+// Returns the MD5 digest (RFC 1321) of the bytes, as 32 hexadecimal digits in lower case.
 std::string md5Hex(std::string_view bytes);
 
 }  // namespace merlin::pjlink

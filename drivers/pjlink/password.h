@@ -8,7 +8,7 @@
 namespace merlin::pjlink {
 
 // Returns the first line of the file, 1 to 64 printable ASCII characters; empty if `path` is empty.
-// Error messages name the file, but never its content: kNotFound, kIo, kMalformed.
+// Errors: kNotFound, kIo, kMalformed; the messages name the file, but never its content.
 Result<std::string> readPassword(const std::string& path);
 
 }  // namespace merlin::pjlink

@@ -12,10 +12,10 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr Duration kPoll = seconds(10);        // between queries of the power, at rest
-constexpr Duration kPollBusy = seconds(2);     // while it changes or is to change
-constexpr Duration kRepeat = seconds(10);      // before a command without effect is repeated
-constexpr Duration kUnavailable = seconds(3);  // the same, after ERR3
+constexpr Duration kPoll = seconds(10);        // period of the power queries at rest
+constexpr Duration kPollBusy = seconds(2);     // period while the power changes or is to change
+constexpr Duration kRepeat = seconds(10);      // time until a command without effect is repeated
+constexpr Duration kUnavailable = seconds(3);  // time until a command is repeated after ERR3
 constexpr Duration kReconnect = seconds(5);
 constexpr Duration kPasswordRetry = seconds(30);
 constexpr Duration kErrorPeriod = seconds(30);
@@ -199,7 +199,7 @@ void Projector::errors(const Answer& answer) {
   const std::string& value = answer.value;
   const bool good = answer.code == Answer::Code::kValue && value.size() == std::size(kParts) &&
                     value.find_first_not_of("012") == std::string::npos;
-  if (!good) return;  // some do not report it in standby: keeps the last report
+  if (!good) return;  // some projectors do not answer in standby; the last report is kept
   warnings_.clear();
   faulty_ = false;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -211,7 +211,8 @@ void Projector::errors(const Answer& answer) {
 }
 
 void Projector::lamps(const Answer& answer) {
-  if (answer.code == Answer::Code::kUndefined) asks_for_lamps_ = false;  // it has no lamp
+  // The projector has no lamp.
+  if (answer.code == Answer::Code::kUndefined) asks_for_lamps_ = false;
   if (answer.code != Answer::Code::kValue) return;
   lamp_hours_ = parseLamps(answer.value);
 }

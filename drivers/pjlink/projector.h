@@ -1,10 +1,11 @@
 // Projector: keeps the known state of one projector, and determines what is to be sent to it next.
 // Pure: time and answers are passed in.
 //
-// The state is what the projector reports, not what it was told: it is asked for its power before
-// each switching, and afterwards until it has reached the wanted state. A projector that cools down
-// is switched on once it reports that it is off; one that warms up is switched off once it reports
-// that it is on. A refused command is repeated until it is accepted or another state is wanted.
+// The state is the one that the projector reports, not the one that was last commanded: the
+// projector is asked for its power before each switching, and afterwards until it has reached the
+// wanted state. A projector that is cooling down is switched on once it reports that it is off; a
+// projector that is warming up is switched off once it reports that it is on. A refused command is
+// repeated until it is accepted or another state is wanted.
 #pragma once
 
 #include <optional>
@@ -28,41 +29,43 @@ enum class Health {
   kFailed,       // reports a fault, does not do what it accepted, or does not speak PJLink
 };
 
-// Words for status and messages: "on", "unknown"; "ok", "wrong_password".
+// Return words for status and messages, such as "on" or "unknown", and "ok" or "wrong_password".
 const char* powerName(Power power);
 const char* healthName(Health health);
 
 struct ProjectorState {
   std::string name, address;
-  std::string identity;  // as the projector calls itself; empty: unknown
+  std::string identity;  // the projector's own name; empty: unknown
   Power power = Power::kUnknown;
   std::optional<bool> wanted;  // requested state, until it is reached
-  // Time left to reach `wanted`; PJLink reports no progress. Nothing: unknown.
+  // Time left in which `wanted` must be reached, by the settings, since PJLink reports no progress.
+  // Nothing if no state is wanted or the time is over.
   std::optional<Duration> within{};
   Health health = Health::kOpening;
-  std::string reason;           // what is wrong; empty: nothing
-  bool answers = false;         // whether the last connection served its purpose
+  std::string reason;           // fault or warning; empty: none
+  bool answers = false;         // whether it answered in the newest connection
   std::vector<int> lamp_hours;  // for each lamp; empty: unknown
 };
 
 // Thread-bound.
 class Projector {
  public:
-  // The projector is asked for its power at once; no state is wanted yet.
+  // The first command asks for the projector's power, at once; no state is wanted yet.
   Projector(const PjlinkSettings& settings, Timestamp now);
 
   // Sets the wanted state. Once the projector has reached it, later changes by itself or its remote
   // control are left alone.
   void want(bool on, Timestamp now);
 
-  // What is to be sent now; nothing before due().
+  // Returns the command that is to be sent now; nothing before due().
   std::optional<Command> next(Timestamp now) const;
   Timestamp due() const;
 
-  // The projector has answered `command`.
+  // To be called when the projector has answered `command`.
   void answered(Command command, const Answer& answer, Timestamp now);
-  // The projector was not reached, or the connection broke: its power is unknown. `error`:
-  // kInvalidArgument (the password), kMalformed (it does not speak PJLink), others (unreachable).
+  // To be called when the projector was not reached, or the connection broke; its power is unknown
+  // from then on. `error` determines the health: kInvalidArgument gives Health::kPassword,
+  // kMalformed gives Health::kFailed, any other code gives Health::kUnreachable.
   void lost(const Error& error, Timestamp now);
 
   ProjectorState state(Timestamp now) const;
@@ -81,14 +84,14 @@ class Projector {
   Power power_ = Power::kUnknown;
   std::optional<bool> wanted_;
   bool input_wanted_ = false;
-  bool asked_ = false;  // has answered since the last connection was lost
+  bool asked_ = false;  // has ever answered a command
   bool asks_for_lamps_ = true;
-  std::optional<bool> accepted_;  // last command to switch that it accepted
+  std::optional<bool> accepted_;  // last power command that it accepted: on or off
   Timestamp accepted_at_;
-  Timestamp quiet_until_;  // nothing is sent before
+  Timestamp quiet_until_;  // nothing is sent before this time
   Timestamp power_due_, switch_due_, input_due_, errors_due_, lamps_due_, name_due_;
-  Timestamp deadline_;             // by which `wanted_` must be reached
-  std::optional<Health> trouble_;  // trouble of the connection
+  Timestamp deadline_;             // time by which `wanted_` must be reached
+  std::optional<Health> trouble_;  // fault of the connection
   std::string trouble_reason_, refusal_, power_fault_, input_refusal_;
   std::string identity_, warnings_;
   bool faulty_ = false;  // one of `warnings_` is an error

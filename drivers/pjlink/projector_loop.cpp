@@ -11,8 +11,9 @@
 namespace merlin::pjlink {
 namespace {
 
-constexpr Duration kSlice = std::chrono::milliseconds(100);  // between checks of `stop` and want()
-constexpr int kMostCommands = 16;                            // over one connection
+// Time between checks of `stop` and want().
+constexpr Duration kSlice = std::chrono::milliseconds(100);
+constexpr int kMostCommands = 16;  // greatest number in one connection
 
 // kIo is included because a peer that closes a connection with unread bytes resets it.
 bool isClosed(const Error& error) { return error.code == Errc::kClosed || error.code == Errc::kIo; }
@@ -103,8 +104,8 @@ Result<Answer> ProjectorLoop::ask(ByteStream& stream, Session& session, Command 
   }
 }
 
-// Reads what arrives within one kSlice; returns the answer that it completes, or nothing. Errors
-// also: kTimeout (the deadline has passed).
+// Reads the bytes that arrive within one kSlice; returns the answer that they complete, or nothing.
+// Errors: kTimeout (the deadline has passed), those of the stream and of Session::feed().
 Result<std::optional<Answer>> ProjectorLoop::receive(ByteStream& stream, Session& session,
                                                      Timestamp deadline, const Waiting& waiting) {
   waiting.alive();

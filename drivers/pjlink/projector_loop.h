@@ -1,5 +1,5 @@
-// ProjectorLoop: connects to one projector, asks it and sends it commands; run() is the body of its
-// thread. A connection is closed when nothing is left to send: some projectors serve only one
+// ProjectorLoop: connects to one projector and sends it queries and commands; run() is the body of
+// its thread. A connection is closed when nothing is left to send: some projectors serve only one
 // client at a time, and some close the connection after each answer.
 #pragma once
 
@@ -15,20 +15,20 @@ namespace merlin::pjlink {
 
 class ProjectorLoop {
  public:
-  // `open` connects to the projector; it may block for seconds. `answer_time`: until the greeting,
-  // or the whole answer to a command, must have arrived. `clock` must outlive this object.
+  // `open` connects to the projector; it may block for seconds. `answer_time`: time within which
+  // the greeting, or the whole answer to a command, must arrive. `clock` must outlive this object.
   ProjectorLoop(const PjlinkSettings& settings, StreamOpener open, Clock& clock,
                 Duration answer_time = std::chrono::seconds(5));
 
   // Runs until `stop`. `alive` is called several times a second, except while `open` blocks.
   void run(
       const std::stop_token& stop, const std::function<void()>& alive = [] {});
-  // One connection, if anything is due. For run(), and for tests without a thread.
+  // Makes one connection, if a command is due. Called by run(), and by tests without a thread.
   void round(
       const std::stop_token& stop = {}, const std::function<void()>& alive = [] {});
 
-  // Like Projector::want() and state(); thread-safe. The projector is asked within 100 ms, if it is
-  // not being talked to.
+  // The same as Projector::want() and Projector::state(), but thread-safe. After want(), the
+  // projector is contacted within 100 ms, unless a connection is already in progress.
   void want(bool on);
   ProjectorState state() const;
 

@@ -1,5 +1,5 @@
-// PJLink class 1, the protocol by which projectors are controlled over TCP (port 4352): bytes in,
-// answers out. No I/O, no clock.
+// PJLink class 1, the protocol by which projectors are controlled over TCP (port 4352): converts
+// commands to bytes, and received bytes to answers. No I/O, no clock.
 //
 // Lines end with CR. The projector speaks first:
 //   "PJLINK 0"       it asks for no password
@@ -25,7 +25,8 @@ inline constexpr std::size_t kMostLine = 136;  // bytes of a line, with its end
 
 enum class Command { kPowerOn, kPowerOff, kInput, kAskPower, kAskErrors, kAskLamps, kAskName };
 
-// The command as it is sent, without its end: "%1POWR ?". `input`: that of kInput.
+// Returns a command as it is sent, without the final CR, for example "%1POWR ?". `input`: the input
+// that kInput selects, such as "31".
 std::string commandText(Command command, std::string_view input);
 
 struct Answer {
@@ -35,7 +36,8 @@ struct Answer {
   std::string value;  // "OK", "0"
 };
 
-// Text for a message: "ERR3, not available at this time". REQUIRES: code is not kValue.
+// Returns a text for messages, such as "ERR3, not available at this time". REQUIRES: code is not
+// kValue.
 const char* errorText(Answer::Code code);
 
 // The dialogue of one connection. Thread-bound.
@@ -44,12 +46,13 @@ class Session {
   // `password`: empty if there is none.
   explicit Session(std::string password) : password_(std::move(password)) {}
 
-  // Whether the projector has greeted, so that commands may be sent.
+  // Returns whether the projector has sent its greeting, so that commands may be sent.
   bool isOpen() const { return open_; }
-  // Whether nothing arrived after the last complete line.
+  // Returns whether nothing has arrived after the last complete line.
   bool isAtLineStart() const { return line_.empty(); }
 
-  // The bytes to send. REQUIRES: isOpen(), and the last command has been answered.
+  // Returns the bytes to send for a command. REQUIRES: isOpen(), and the last command has been
+  // answered.
   std::string request(Command command, std::string_view input);
 
   // Takes received bytes; returns the answer that they complete, nothing if they complete none.
@@ -63,9 +66,9 @@ class Session {
   Result<Ok> greet(std::string_view line);
 
   std::string password_;
-  std::string line_;      // the incomplete line
+  std::string line_;      // beginning of the line that is incomplete
   std::string expected_;  // "%1POWR=" while the answer to POWR is awaited
-  std::string digest_;    // precedes the first command
+  std::string digest_;    // digest that precedes the first command
   bool open_ = false;
 };
 

@@ -20,12 +20,13 @@ class Schedule {
   // REQUIRES: validate(times) finds no fault. Without times, nothing is ever switched.
   explicit Schedule(const std::vector<SwitchingTimes>& times);
 
-  // Whether projectors are to be on: at least one entry says so. O(entries).
+  // Returns whether the projectors are to be on, that is, whether at least one entry says so.
+  // O(entries).
   bool isOn(LocalMinute now) const;
 
-  // The next minute after `now` in which the scheduled state changes, and the state from then on;
-  // nothing if it does not change within a week. O(entries^2). May be called while another thread
-  // calls step().
+  // Returns the next minute after `now` in which the scheduled state changes, and the state from
+  // then on; nothing if the state does not change within a week. O(entries^2). May be called while
+  // another thread calls step().
   struct Switching {
     LocalMinute at = 0;
     bool on = false;
@@ -46,7 +47,7 @@ class Schedule {
   };
   std::vector<Times> times_;
   std::optional<bool> last_;
-  LocalMinute latest_ = 0;  // latest time of a call
+  LocalMinute latest_ = 0;  // latest time at which step() was called
 };
 
 }  // namespace merlin::pjlink

@@ -21,7 +21,8 @@ bool isName(std::string_view name) {
   });
 }
 
-// Class 1: 1 RGB, 2 VIDEO, 3 DIGITAL, 4 STORAGE, 5 NETWORK, each with a number from 1 to 9.
+// Returns whether `input` is valid in PJLink class 1: a kind (1 RGB, 2 VIDEO, 3 DIGITAL, 4 STORAGE,
+// 5 NETWORK) and a number from 1 to 9.
 bool isInput(std::string_view input) {
   return input.size() == 2 && input[0] >= '1' && input[0] <= '5' && input[1] >= '1' &&
          input[1] <= '9';

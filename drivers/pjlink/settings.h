@@ -17,8 +17,8 @@ struct PjlinkSettings {
   std::string name;
   std::string address;             // "HOST", "HOST:PORT" or "[::1]:PORT"
   std::string password_file = {};  // empty: the projector asks for no password
-  std::string input = {};  // "31": selected each time the projector is switched on; empty: none
-  // Longest times from a command until the projector must say that it is on, or off.
+  std::string input = {};          // selected after each switching on, such as "31"; empty: none
+  // Longest times from a power command until the projector must report that it is on, or off.
   double warm_up_s = 120;
   double cool_down_s = 300;
 };
@@ -26,7 +26,7 @@ struct PjlinkSettings {
 inline constexpr const char* kWeekdays[] = {"mon", "tue", "wed", "thu", "fri", "sat", "sun"};
 
 // Days on which projectors are switched on, and the local times "HH:MM". If `off` is not later than
-// `on`, it is that of the next day.
+// `on`, it is a time of the next day.
 struct SwitchingTimes {
   std::vector<std::string> days{std::begin(kWeekdays), std::end(kWeekdays)};
   std::string on;
@@ -35,17 +35,21 @@ struct SwitchingTimes {
 
 inline constexpr std::size_t kMostProjectors = 32;  // each has a thread
 
-// Parses a projector's address; without a port, it is 4352. Nothing if it is not an address.
+// Parses a projector's address; the default port is 4352. Returns nothing if the text is not an
+// address.
 std::optional<TcpAddress> projectorAddress(std::string_view text);
 
-// Parses "HH:MM" from 00:00 to 23:59 to minutes after midnight; nothing if it is not a time.
+// Parses "HH:MM" from 00:00 to 23:59 to minutes after midnight; returns nothing if the text is not
+// a time.
 std::optional<int> minuteOfDay(std::string_view text);
 
-// Bit i: kWeekdays[i] is among the names. Other names are ignored.
+// Returns a number in which bit i is set if kWeekdays[i] is among the names. Other names are
+// ignored.
 unsigned weekdayBits(const std::vector<std::string>& names);
 
-// Finds projectors without a name or with the name of another, and invalid addresses, inputs, days
-// and times. Pointers: "/2/name".
+// Return faults for projectors without a valid name or with the name or address of another, and for
+// invalid addresses, inputs, days and times. Their JSON pointers begin with the index of the entry,
+// as in "/2/name".
 SettingFaults validate(const std::vector<PjlinkSettings>& projectors);
 SettingFaults validate(const std::vector<SwitchingTimes>& schedule);
 

@@ -12,26 +12,27 @@
 namespace merlin {
 
 // Returns a share of full scale, -1..1. Values up to `dead_zone` give 0, and beyond it the scale
-// starts at 0, so that the result is continuous at its edge. `dead_zone` and `full_scale` in the
-// unit of `value`. REQUIRES: dead_zone < full_scale.
+// starts at 0, so that the result is continuous at its edge. `dead_zone` and `full_scale` are in
+// the unit of `value`. REQUIRES: dead_zone < full_scale.
 inline float axisShare(float value, float dead_zone, float full_scale) noexcept {
   const float beyond = std::max(std::abs(value) - dead_zone, 0.0F);
   const float share = std::min(beyond / (full_scale - dead_zone), 1.0F);
   return value < 0 ? -share : share;
 }
 
-// Writes the axes of an input device into `sample`. `deflections`: those along x, y, z and about
-// them, -1..1; deflections up to `dead_zone` give 0, the rest of the scale is raised to the power
+// Writes the axes of an input device into `sample`. `deflections`: along x, y, z and about these
+// axes, -1..1. Deflections up to `dead_zone` give 0, the rest of the scale is raised to the power
 // `curve`. The raw values are the deflections in thousandths, before dead zone and curve, in a
 // Spaceball's axes, whose z points away from the person, because clients of the space-mouse socket
 // expect these axes.
 void fillAxes(const std::array<float, 6>& deflections, float dead_zone, float curve,
               BallSample& sample) noexcept;
 
-// For x, y, z and the rotations about them: a device's axis 1..6, negative if it is reversed.
+// The device's axes for x, y, z and the rotations about them: 1..6, negative if the axis is
+// reversed.
 using AxisMap = std::array<int, 6>;
 
-// Finds a map in which an axis is missing or repeated. Pointer: "/axis_map".
+// Returns a fault if an axis is missing or repeated in the map. Its JSON pointer is "/axis_map".
 SettingFaults validateAxisMap(const AxisMap& map);
 
 }  // namespace merlin

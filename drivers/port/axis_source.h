@@ -30,7 +30,7 @@ struct AxisReading {
 // Sources for x, y, z and the rotations about them.
 using AxisSources = std::array<AxisSource, 6>;
 
-// The number of an axis with this name; nothing if there is none.
+// Looks up the device's number of the axis with this name; returns nothing if there is none.
 using AxisNumber = std::function<std::optional<int>(std::string_view name)>;
 
 // Parses NAME, -NAME (reversed), NAME-NAME (the second acts in the opposite direction) and "none";

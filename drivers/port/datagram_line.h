@@ -4,7 +4,7 @@
 // read them. Pure.
 //
 //   byte 0     0xDA
-//   byte 1     0x67 xor bytes 2 to 7, so that a damaged length is not believed
+//   byte 1     0x67 xor bytes 2 to 7, a checksum against damaged lengths
 //   bytes 2-3  length of the datagram, 1 to 65507: u16, little-endian
 //   bytes 4-7  sender: u32, little-endian; the same for all datagrams from one address and port
 //   then the datagram

@@ -17,16 +17,17 @@ class Dialogue {
  public:
   Dialogue(ByteStream& stream, const Clock& clock) : stream_(stream), clock_(clock) {}
 
+  // Writes `bytes`, within 1 s. Errors: those of the stream.
   Result<Ok> send(std::string_view bytes);
 
   // Reads exactly `count` bytes. The first must arrive within `timeout`; each later one within
   // `timeout` as well, or within 100 ms of the byte before it, so that a slow line gets the time
-  // that it needs. `step` names the expected answer in messages; that of kTimeout quotes the bytes
-  // that arrived.
+  // that it needs. `step` names the expected answer in messages. Errors: kTimeout (the message
+  // quotes the bytes that arrived), and those of the stream.
   Result<std::string> readExactly(std::size_t count, Duration timeout, std::string_view step);
 
-  // Reads until `end`; returns the bytes before it, at most `limit`. Time limits as above. Errors
-  // also: kMalformed (more than `limit` bytes).
+  // Reads until the byte `end`; returns the bytes before it, at most `limit`. Time limits and
+  // errors are those of readExactly(); in addition, kMalformed (more than `limit` bytes).
   Result<std::string> readUntil(char end, std::size_t limit, Duration timeout,
                                 std::string_view step);
 
@@ -35,14 +36,15 @@ class Dialogue {
   Result<std::size_t> drain(Duration quiet, Duration most);
 
  private:
-  // The next byte, or kTimeout once `deadline` has passed.
+  // Returns the next byte; kTimeout once `deadline` has passed.
   Result<char> next(Timestamp deadline);
 
   ByteStream& stream_;
   const Clock& clock_;
 };
 
-// The first 24 bytes for a message: printable ASCII unchanged, other bytes as \xNN, "..." if cut.
+// Returns the first 24 bytes for a message: printable ASCII unchanged, other bytes as \xNN, and
+// "..." if there are more.
 std::string quoteBytes(std::string_view bytes);
 
 }  // namespace merlin

@@ -15,7 +15,7 @@ class GpioLines {
  public:
   virtual ~GpioLines() = default;
 
-  // Errors: kIo (the chip does not respond any more).
+  // Set or read the level of a line. Errors: kIo (the chip does not respond any more).
   virtual Result<Ok> write(int line, bool high) = 0;
   virtual Result<bool> read(int line) = 0;
 

@@ -17,7 +17,8 @@ constexpr GuidedStep kCornerSteps[] = {
 };
 enum Step : std::size_t { kTopLeft, kTopRight, kBottomLeft };
 
-constexpr float kLeastSide = 0.3F;  // of two corners; the image may be smaller than the surface
+// Least distance of two corners; the image may be smaller than the surface.
+constexpr float kLeastSide = 0.3F;
 
 SurfacePlace between(const SurfacePlace& from, const SurfacePlace& to) {
   return {to[0] - from[0], to[1] - from[1]};

@@ -13,10 +13,10 @@
 
 namespace merlin {
 
-// The top left corner, the top right one, the bottom left one.
+// Returns the steps: touching the top left, the top right and the bottom left corner.
 std::span<const GuidedStep> cornerSteps();
 
-// A place on the surface, in shares of the device's own axes.
+// A place on the surface, as shares 0..1 of the device's own axes.
 using SurfacePlace = std::array<float, 2>;
 
 class GuidedCorners {
@@ -30,7 +30,7 @@ class GuidedCorners {
   // first.
   Result<SurfacePlace> end();
 
-  // REQUIRES: each step has ended without an error.
+  // Returns how the surface is mounted. REQUIRES: each step has ended without an error.
   TouchOrientation solve() const;
 
  private:

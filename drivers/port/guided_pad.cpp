@@ -23,11 +23,12 @@ constexpr GuidedStep kPadSteps[] = {
 };
 constexpr std::size_t kRest = 0;
 
-constexpr float kNothing = 0.15F;     // smaller changes are not intended
-constexpr float kLeast = 0.5F;        // smallest intended change
-constexpr float kMostNext = 0.6F;     // change of the next axis, relative to the strongest
-constexpr float kMostNoise = 0.2F;    // largest motion of an axis at rest
-constexpr float kTriggerRest = 0.6F;  // farther from the middle than a stick rests
+constexpr float kNothing = 0.15F;  // a smaller change counts as not intended
+constexpr float kLeast = 0.5F;     // least change that is accepted as an answer
+// Limit of the second strongest change, share of the strongest.
+constexpr float kMostNext = 0.6F;
+constexpr float kMostNoise = 0.2F;    // largest accepted motion of an axis at rest
+constexpr float kTriggerRest = 0.6F;  // an axis that rests farther from the middle is a trigger
 constexpr double kLeastDeadZone = 0.05, kMostDeadZone = 0.5;  // sticks seldom return exactly
 
 }  // namespace

@@ -16,7 +16,7 @@
 
 namespace merlin {
 
-// First rest, then a push along x, y, z and a turn about each.
+// Returns the steps: rest, then a push along each of x, y, z, then a turn about each of them.
 std::span<const GuidedStep> padSteps();
 
 // The axis that responded in a step. In the step "rest": the axis that moved the most by itself.
@@ -43,7 +43,8 @@ class GuidedPad {
   // or more than two.
   Result<PadAnswer> end();
 
-  // Nothing if no axis responded in any step. REQUIRES: each step has ended without an error.
+  // Returns axes and dead zone for the settings; nothing if no axis responded in any step.
+  // REQUIRES: each step has ended without an error.
   std::optional<PadAxes> solve() const;
 
  private:

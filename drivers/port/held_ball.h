@@ -16,8 +16,10 @@ class HeldBall {
  public:
   explicit HeldBall(SampleSink& sink) : sink_(sink) {}
 
-  // To be filled in before publish(), except for its times and its counter.
+  // Returns the sample, which the driver fills in before publish(), except for its times and its
+  // counter.
   BallSample& sample() noexcept { return sample_; }
+  // Returns whether the sample has a push or a twist.
   bool pushed() const noexcept;
 
   // Publishes the sample as measured at `at`.
@@ -25,7 +27,7 @@ class HeldBall {
   // Publishes the sample again if the ball is pushed and nothing was published for kAgain; calls
   // the sink's tick() when that is due.
   void hold(Timestamp now) noexcept;
-  // Longest time for which the driver may wait for bytes before it calls hold().
+  // Returns the longest time for which the driver may wait for bytes before it calls hold().
   Duration wait(Timestamp now) const noexcept;
 
   // Begins a new connection: buttons and pushes of an earlier one have ended.
@@ -33,7 +35,7 @@ class HeldBall {
   // To be called at the end of open(). Publishes the sample if none was published since restart()
   // and the last one before had a button or push, whose end would not be seen otherwise.
   void settle(Timestamp now) noexcept;
-  std::uint64_t samples() const noexcept { return samples_; }  // published, over all connections
+  std::uint64_t samples() const noexcept { return samples_; }  // number over all connections
 
   static constexpr Duration kAgain = std::chrono::milliseconds(50);  // as a Spaceball sends pushes
 
@@ -41,7 +43,7 @@ class HeldBall {
   SampleSink& sink_;
   BallSample sample_{};
   bool held_ = false;   // the newest published sample has a button or a push
-  bool ended_ = false;  // that has ended, but its end has not been published
+  bool ended_ = false;  // they ended with a connection, which was not published yet
   std::uint64_t samples_ = 0;
 };
 

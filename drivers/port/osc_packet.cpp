@@ -21,10 +21,10 @@ std::uint32_t bigEndian32(std::string_view bytes) noexcept {
   return word;
 }
 
-// Whether a message has a blob among its arguments. oscpack 1.1.0 does not check a blob's length
-// (it constructs an exception but does not throw it), so later arguments would be read out of
-// bounds. The address ends where oscpack sees its end: at the first group of four bytes whose last
-// byte is zero.
+// Returns whether a message has a blob among its arguments. oscpack 1.1.0 does not check a blob's
+// length (it constructs an exception but does not throw it), so later arguments would be read out
+// of bounds. The address ends where oscpack sees its end: at the first group of four bytes whose
+// last byte is zero.
 bool hasBlob(std::string_view message) noexcept {
   std::size_t last = 3;
   while (message[0] != '\0' && last < message.size() && message[last] != '\0') last += 4;
@@ -68,8 +68,8 @@ class Reading {
   Reading(std::vector<OscArgument>& arguments, OscSink* sink)
       : arguments_(arguments), sink_(sink) {}
 
-  // A message or a bundle; `depth`: number of bundles around it. Returns false if it is malformed
-  // or a limit is exceeded; throws the exceptions of oscpack if a message is malformed.
+  // Reads a message or a bundle; `depth`: number of bundles around it. Returns false if it is
+  // malformed or a limit is exceeded; throws the exceptions of oscpack if a message is malformed.
   bool element(std::string_view bytes, int depth) {
     if (bytes.empty() || bytes.size() % 4 != 0) return false;
     return bytes[0] == kBundle[0] ? bundle(bytes, depth) : message(bytes);

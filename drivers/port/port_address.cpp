@@ -47,7 +47,7 @@ std::optional<PortAddress> parseUdp(std::string_view text) {
   return PortAddress{PortKind::kUdp, address->host, address->port};
 }
 
-// A network address as 16 bytes, an IPv4 address in the form ::ffff:a.b.c.d; nothing for a name.
+// A network address as 16 bytes; an IPv4 address has the form ::ffff:a.b.c.d.
 using NetworkAddress = std::array<unsigned char, 16>;
 constexpr NetworkAddress kAnyIpv4{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF}, kAny{};
 
@@ -62,8 +62,8 @@ bool isIpv4(const NetworkAddress& address) {
   return std::equal(kAnyIpv4.begin(), kAnyIpv4.begin() + 12, address.begin());
 }
 
-// Whether a datagram to one of these local addresses may arrive at the other one; :: includes all
-// addresses of IPv4.
+// Returns whether a datagram to one of these local addresses may also arrive at the other address;
+// :: includes all addresses of IPv4.
 bool overlap(const NetworkAddress& a, const NetworkAddress& b) {
   const auto within = [](const NetworkAddress& all, const NetworkAddress& one) {
     return all == kAny || (all == kAnyIpv4 && isIpv4(one));

@@ -23,19 +23,19 @@ struct PortAddress {
   std::string path;
   std::string service;  // for kTcp and kUdp only: the port's number
 
-  // Whether MERLIN sets the baud rate of the line.
+  // Returns whether MERLIN sets the baud rate of the line.
   bool hasSpeed() const noexcept { return kind == PortKind::kSerial || kind == PortKind::kPty; }
 };
 
-// Errors: kInvalidArgument, with the allowed forms.
+// Parses the address of a line. Errors: kInvalidArgument; the message lists the allowed forms.
 Result<PortAddress> parsePort(std::string_view text);
 
-// Whether both denote the same line, in whatever notation, or receive the same datagrams, as
-// 0.0.0.0 receives those of 127.0.0.1. serial: and pty: with the same path are one line; the caller
-// has to resolve links first. Two transcripts are always two lines.
+// Returns whether both addresses denote the same line, in whatever notation, or receive the same
+// datagrams, as 0.0.0.0 receives those of 127.0.0.1. serial: and pty: with the same path are one
+// line; the caller has to resolve links first. Two transcripts are always two lines.
 bool sameLine(const PortAddress& a, const PortAddress& b);
 
-// Speeds of a serial line that the drivers support, ascending [baud].
+// Returns the speeds of serial lines that the drivers support, ascending [baud].
 std::span<const int> lineSpeeds();
 
 // Speed of a line whose driver has no default.
@@ -51,8 +51,8 @@ struct LineSettings {
   int max_bytes_s = 0;
 };
 
-// Finds a port or speed that is not allowed, and a port that the driver cannot read. Pointers:
-// "/port", "/baud".
+// Returns faults for a port or speed that is not allowed, and for a port that the driver cannot
+// read. Their JSON pointers are "/port" and "/baud".
 SettingFaults validate(const LineSettings& line);
 
 }  // namespace merlin

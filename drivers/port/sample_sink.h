@@ -29,19 +29,19 @@ class SampleSink {
   // drivers of other devices do not call it.
   virtual void describe(const DeviceKeys&) noexcept {}
 
-  // When this sink has to act even if no sample arrives, for example because a held button takes
-  // effect after a delay. Timestamp::max(): never. The driver of a device that sends nothing while
-  // an input is held must then call tick() with the present time.
+  // Returns when this sink has to act even if no sample arrives, for example because a held button
+  // takes effect after a delay; Timestamp::max() if never. The driver of a device that sends
+  // nothing while an input is held must then call tick() with the present time.
   virtual Timestamp due() const noexcept { return Timestamp::max(); }
   virtual void tick(Timestamp) noexcept {}
 };
 
-// How long the driver may wait for bytes before it has to call tick(), at most `most`.
+// Returns how long the driver may wait for bytes before it has to call tick(), at most `most`.
 inline Duration untilDue(const SampleSink& sink, Timestamp now, Duration most) noexcept {
   const Timestamp due = sink.due();
   return due < now + most ? std::max<Duration>(due - now, Duration::zero()) : most;
 }
-// Calls tick() if it is due.
+// Calls sink.tick() if sink.due() has been reached.
 inline void tickIfDue(SampleSink& sink, Timestamp now) noexcept {
   if (sink.due() <= now) sink.tick(now);
 }

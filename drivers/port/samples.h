@@ -89,7 +89,8 @@ inline constexpr std::size_t kFingers = 10;
 struct TouchSample {
   std::int64_t received_ns;
   std::uint32_t counter;
-  std::uint32_t fingers;        // number that touch now: entries used in the lists below
+  // Number of fingers that touch now: entries used in the arrays below.
+  std::uint32_t fingers;
   std::uint32_t id[kFingers];   // of each finger, constant while it stays down
   float position[kFingers][2];  // right and down, shares of width and height: 0..1
   float aspect;                 // the surface's width divided by its height

@@ -6,7 +6,7 @@
 namespace merlin {
 namespace {
 
-// Limits to 0..1; NaN becomes 0.
+// Limits a value to 0..1; NaN becomes 0.
 float share(float value) noexcept { return value > 0 ? std::min(value, 1.0F) : 0; }
 
 bool isSame(const TouchSample& a, const TouchSample& b) noexcept {

@@ -39,20 +39,20 @@ class TouchFrames {
   // Publishes the frame in any case.
   void publishAnyway(Timestamp at) noexcept;
 
-  // Longest time for which the driver may wait for bytes before it calls hold(), which triggers the
-  // later effects of a held button or pinch.
+  // Returns the longest time for which the driver may wait for bytes before it calls hold(), which
+  // triggers the later effects of a held button or pinch.
   Duration wait(Timestamp now) const noexcept { return untilDue(sink_, now, kLongestWait); }
   void hold(Timestamp now) noexcept { tickIfDue(sink_, now); }
 
-  // Removes all fingers and releases all buttons; publishes this if there were any.
+  // Removes all fingers and releases all buttons; publishes the change if there were any.
   void lift(Timestamp at) noexcept;
 
   std::uint64_t samples() const noexcept { return samples_; }
   const TouchSample& newest() const noexcept { return newest_; }
 
  private:
-  static constexpr Duration kLongestWait =
-      std::chrono::milliseconds(250);  // as Device::poll() allows
+  // The longest wait that Device::poll() allows.
+  static constexpr Duration kLongestWait = std::chrono::milliseconds(250);
 
   SampleSink& sink_;
   TouchOrientation orientation_;

@@ -25,7 +25,7 @@ Vector along(const std::array<int, 3>& axes, const Vector& v) {
   return placed;
 }
 
-// 1 if the axes are right-handed, otherwise -1.
+// Returns 1 if the axes are right-handed, otherwise -1.
 float handedness(const std::array<int, 3>& axes) {
   const Vector x = along(axes, {1, 0, 0}), y = along(axes, {0, 1, 0}), z = along(axes, {0, 0, 1});
   const Vector cross = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2],

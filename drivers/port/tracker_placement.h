@@ -1,5 +1,5 @@
-// TrackerPlacement: transformation from the frame of a tracker that has its own, as motion capture
-// and VR systems do, to the frame that the rest of MERLIN assumes for all trackers. Pure.
+// TrackerPlacement: transforms poses from a tracker's own frame, which motion capture and VR
+// systems have, to the frame that the rest of MERLIN assumes for all trackers. Pure.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@ namespace merlin {
 class SettingsVisitor;
 
 struct TrackerPlacement {
-  // The tracker's axes (1 x, 2 y, 3 z; negative: reversed) that are x, y and z of the samples.
+  // The tracker's axes (1 x, 2 y, 3 z; negative: reversed) that become x, y and z of the samples.
   std::array<int, 3> axes = {1, 2, 3};
-  // The place of its origin, in the frame of the samples [m].
+  // Position of the tracker's origin in the frame of the samples.
   std::array<double, 3> origin_m{};
 };
 
@@ -24,8 +24,8 @@ struct TrackerPlacement {
 // are then reversed. REQUIRES: checkPlacement() finds nothing.
 void place(const TrackerPlacement& placement, TrackerSample& sample) noexcept;
 
-// The complaint about a plausible pose (drivers/port/plausible.h) that is not plausible any more
-// once it is placed. A driver drops it, since every reader on another machine would.
+// Complaint about a pose that is plausible as received (drivers/port/plausible.h), but not after
+// place(). A driver drops such a pose, since readers on other machines would reject it.
 inline constexpr const char* kPlacedTooFar =
     "poses lie beyond 25 m with \"origin_m\" added: is \"origin_m\" right?";
 
@@ -37,12 +37,12 @@ Result<TrackerPlacement> placementOf(const std::array<double, 3>& origin,
                                      const std::array<double, 3>& on_x,
                                      const std::array<double, 3>& on_y);
 
-// Adds a fault unless each of x, y and z is used by one axis. `pointer`: that of the driver's
-// settings.
+// Adds a fault unless each of x, y and z is used by one axis. `pointer`: JSON pointer of the
+// driver's settings.
 void checkPlacement(const TrackerPlacement& placement, const std::string& pointer,
                     SettingFaults& faults);
 
-// Calls `visitor` for "axes" and "origin_m".
+// Calls `visitor` for the settings "axes" and "origin_m".
 void describe(TrackerPlacement& placement, SettingsVisitor& visitor);
 
 }  // namespace merlin

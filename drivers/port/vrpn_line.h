@@ -43,14 +43,14 @@ inline constexpr const char* kVrpnInstance = "MERLIN instance ";
 // Maximum numbers of buttons and channels of one device in VRPN; both are numbered from 0.
 inline constexpr std::size_t kVrpnButtons = 256, kVrpnChannels = 128;
 
-// The cookie that we send.
+// Returns the cookie that MERLIN sends.
 std::string vrpnCookie();
 
-// Whether the peer's cookie agrees with ours up to the last '.' of the version. REQUIRES: `cookie`
-// has 24 bytes.
+// Returns whether the peer's cookie agrees with MERLIN's up to the last '.' of the version.
+// REQUIRES: `cookie` has 24 bytes.
 bool vrpnCookieFits(std::string_view cookie);
 
-// The version in a cookie that fits: "07.38".
+// Returns the version in a cookie that vrpnCookieFits() accepts, such as "07.38".
 std::string_view vrpnVersion(std::string_view cookie);
 
 struct VrpnHeader {
@@ -71,8 +71,8 @@ struct VrpnStart {
 // REQUIRES: `bytes` begins with kVrpnHeaderLength bytes.
 VrpnStart readVrpnStart(std::string_view bytes) noexcept;
 
-// Encode and decode payloads. A text that is returned is a view of the payload; nothing is returned
-// if the payload is malformed.
+// Functions that encode and decode payloads. A returned text is a view of the payload. Decoding
+// returns nothing if the payload is malformed.
 std::string vrpnName(std::string_view name);  // for a description of a sender or type
 std::optional<std::string_view> readVrpnName(std::string_view payload) noexcept;
 

@@ -36,7 +36,7 @@ class Parser {
   std::uint64_t bad_packets_ = 0, bad_bytes_ = 0;
 };
 
-// Inverse of the parser.
+// Returns the line of a record; inverse of the parser.
 std::string encode(const Record& record);
 
 }  // namespace merlin::sample

@@ -17,8 +17,8 @@ constexpr Duration kPollTime = milliseconds(250);
 constexpr Duration kSilenceBeforePing = seconds(2);
 constexpr Duration kPingTime = seconds(1);
 constexpr Duration kConfirmTime = milliseconds(400);
-constexpr int kMostSetUps = 5;                         // without a confirmation
-constexpr Duration kQuestionTime = milliseconds(500);  // between queries in open()
+constexpr int kMostSetUps = 5;                         // attempts without a confirmation
+constexpr Duration kQuestionTime = milliseconds(500);  // period of the queries in open()
 constexpr Duration kLongestWait = milliseconds(3500);  // a reset takes about 2 s
 constexpr Duration kBannerTime = seconds(10);
 
@@ -26,7 +26,8 @@ constexpr std::string_view kReset = "\r@RESET\r";
 constexpr std::string_view kPing = "k\r";
 constexpr std::string_view kQuestion = "\rhm\rhv\r";
 
-// "2.63" of "@2 Firmware version 2.63 created on 24-Oct-1997."; empty if there is none.
+// Returns the version in a line such as "@2 Firmware version 2.63 created on 24-Oct-1997.", here
+// "2.63"; empty if there is none.
 std::string_view firmwareVersion(std::string_view line) {
   constexpr std::string_view kBefore = "ersion ";
   const auto at = line.find(kBefore);
@@ -60,9 +61,10 @@ Result<std::string> SpaceballDevice::open(ByteStream& stream) {
   return fmt::format("{}, firmware {}", nameOf(model_), *firmware);
 }
 
-// Returns the firmware's version. Banner lines: "@1 Spaceball alive and well after a ... reset."
-// and "@2 Firmware version N created on ...". A ball that missed @RESET (it was frozen, or its line
-// was interrupted) may nevertheless work, or even stream, so its version is queried every 0.5 s.
+// Waits for the banner and returns the firmware's version. The banner's lines are "@1 Spaceball
+// alive and well after a ... reset." and "@2 Firmware version N created on ...". A ball that missed
+// @RESET (it was frozen, or its line was interrupted) may nevertheless work, or even stream, so its
+// version is queried every 0.5 s.
 Result<std::string> SpaceballDevice::awaitBanner(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
   const Timestamp start = clock_.now();

@@ -42,7 +42,7 @@ class SpaceballDevice final : public Device {
   Timestamp last_heard_{};
   bool pinged_ = false;
   bool fresh_ = true;       // nothing published since open()
-  bool confirmed_ = false;  // the ball has confirmed that it is on
+  bool confirmed_ = false;  // the ball has confirmed that it was switched on
   const char* complaint_ = "";
   int set_ups_ = 0;  // repeated set-ups since the last confirmation
   Timestamp set_up_at_{};

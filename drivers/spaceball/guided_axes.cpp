@@ -20,7 +20,8 @@ constexpr GuidedStep kSteps[] = {
 };
 constexpr std::size_t kRest = 0;
 
-constexpr int kMostNext_percent = 60;           // second axis of a kind, relative to the first
+// Limit of the second axis of a kind, relative to the first.
+constexpr int kMostNext_percent = 60;
 constexpr int kMargin = 4;                      // counts, added to the dead zone
 constexpr int kMostNoise = (99 - kMargin) / 2;  // keeps the dead zone within 0..99
 

@@ -12,7 +12,7 @@
 
 namespace merlin::spaceball {
 
-// First rest, then a push along x, y, z and a twist about each.
+// Returns the steps: rest, then a push along each of x, y, z, then a twist about each of them.
 std::span<const GuidedStep> axesSteps();
 
 // The ball's axis with the largest response: 1..6 (X Y Z A B C), negative if it is reversed, and
@@ -21,7 +21,7 @@ struct AxisAnswer {
   int axis = 0, counts = 0;
   int next_axis = 0, next_counts = 0;
 };
-char nameOfAxis(int axis) noexcept;  // 'X' for 1 and -1
+char nameOfAxis(int axis) noexcept;  // 'X' for 1 and -1, ... 'C' for 6 and -6
 
 // How strongly a kind of ball responds to a person, in raw counts.
 struct BallResponse {

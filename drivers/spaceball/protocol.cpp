@@ -18,7 +18,7 @@ constexpr std::size_t kKeysLength = 3;
 // Letters that start a reply or the banner; any other letter at a packet's start means damage.
 constexpr std::string_view kReplies = "@CEFMNPZHQBSYA?-\"%cR";
 
-// The byte that `^c` stands for, or nothing if the device never sends `^c`.
+// Returns the byte for which `^c` stands; nothing if the device never sends `^c`.
 std::optional<std::uint8_t> unescape(std::uint8_t c) noexcept {
   switch (c) {
     case 'M': return kCarriageReturn;

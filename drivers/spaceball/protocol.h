@@ -1,5 +1,5 @@
-// Spaceball 1003/2003/3003/4000 FLX wire format, binary mode: bytes to packets and back. No I/O, no
-// clock.
+// Spaceball 1003/2003/3003/4000 FLX wire format, binary mode: converts bytes to packets and back.
+// No I/O, no clock.
 //
 // A packet is a letter, its data, and CR. The device escapes 0x0D, 0x11, 0x13 and '^' inside it as
 // ^M ^Q ^S ^^, so a CR always ends a packet; a bare XON or XOFF is flow control, not data.
@@ -43,11 +43,12 @@ class Parser {
   // A malformed packet is dropped whole and counted; the next CR resynchronises.
   std::optional<Packet> feed(std::byte byte) noexcept;
 
-  // Packets dropped since construction (wrong length, unknown escape or letter), and their bytes.
+  // Return the numbers of packets (wrong length, unknown escape or letter) and of bytes that were
+  // dropped since construction.
   std::uint64_t badPackets() const noexcept { return bad_packets_; }
   std::uint64_t badBytes() const noexcept { return bad_bytes_; }
 
-  // True in the middle of a packet.
+  // Returns whether a packet has begun and is not complete yet.
   bool inside() const noexcept { return length_ > 0; }
 
  private:
@@ -65,18 +66,19 @@ class Parser {
 
 enum class Model { k2003, k3003, k4000, k1003 };
 
-// The model with this firmware version; 2003 if the version is unknown (as in spacenavd).
+// Returns the model with this firmware version; the 2003 if the version is unknown (as in
+// spacenavd).
 Model modelOf(std::string_view firmware_version) noexcept;
 const char* nameOf(Model model) noexcept;
 
-// Meaning of the first error in an 'E' packet of a 4000. Source: FLX.
+// Returns the meaning of the first error in an 'E' packet of a 4000. Source: FLX.
 const char* meaningOf(std::string_view error_packet) noexcept;
 
-// Bit i = button i + 1. 1003, 2003: eight buttons, and the pick button as the ninth. 3003: left,
-// right, rezero. 4000: twelve.
+// Returns the pressed buttons; bit i is button i + 1. 1003 and 2003: eight buttons, and the pick
+// button as the ninth. 3003: left, right, rezero. 4000: twelve buttons.
 std::uint32_t buttonsOf(const Keys& keys, Model model) noexcept;
 
-// Inverse of the parser, for the emulator: the bytes that a device of that model sends.
+// Return the bytes that a device of that model sends; inverse of the parser, for the emulator.
 std::string encode(const Displacement& displacement);
 std::string encodeKeys(std::uint32_t buttons, Model model);
 

@@ -25,15 +25,16 @@ struct SpaceballSettings {
   // Beep at open(): a lower-case letter is a tone, an upper-case one a pause; the nearer to a, the
   // shorter.
   std::string beep = {};
-  // For x, y, z and the rotations about them: the device's axis 1..6 (X Y Z A B C), negative if it
-  // is reversed.
+  // The device's axes for x, y, z and the rotations about them: 1..6 (X Y Z A B C), negative if the
+  // axis is reversed.
   AxisMap axis_map = {1, 2, -3, 4, 5, -6};
 };
 
-// Finds an axis map in which an axis is missing or repeated. Pointer: "/axis_map".
+// Returns a fault if an axis is missing or repeated in the axis map. Its JSON pointer is
+// "/axis_map".
 SettingFaults validate(const SpaceballSettings& ball);
 
-// Calls `visitor` for every setting, in the order of written files.
+// Calls `visitor` for every setting, in the order in which MERLIN writes them to a file.
 void describe(SpaceballSettings& ball, SettingsVisitor& visitor);
 
 }  // namespace merlin

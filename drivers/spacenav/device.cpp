@@ -31,8 +31,9 @@ Result<std::string> SpacenavDevice::open(ByteStream& stream) {
   return name;
 }
 
-// A spacenavd of version 0 interprets the word as a sensitivity, which is then NaN; so the
-// sensitivity is set to 1 afterwards, as libspnav does.
+// Sends the word with which version 1 begins. A spacenavd of version 0 interprets this word as a
+// sensitivity, which is then NaN; therefore the sensitivity is set to 1 afterwards, as libspnav
+// does.
 Result<Ok> SpacenavDevice::greet(ByteStream& stream) {
   Dialogue dialogue(stream, clock_);
   if (auto sent = dialogue.send(encodeWord(kHello)); !sent) return sent;

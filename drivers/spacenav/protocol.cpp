@@ -6,10 +6,10 @@
 namespace merlin::spacenav {
 namespace {
 
-constexpr std::int32_t kNameBytes = 24;  // of a piece
+constexpr std::int32_t kNameBytes = 24;  // bytes of a name in one piece
 constexpr std::int32_t kBytesLeft = 0xFFFF;
 
-// Whether a frame may begin with this word.
+// Returns whether a frame may begin with this word.
 bool begins(std::int32_t word) noexcept {
   constexpr std::uint32_t kRequestMask = 0xFFFF0000;
   const auto bits = static_cast<std::uint32_t>(word);

@@ -1,5 +1,5 @@
-// Wire format between spacenavd, the daemon for space mice, and its clients: bytes to frames and
-// back. Pure.
+// Wire format between spacenavd, the daemon for space mice, and its clients: converts bytes to
+// frames and back. Pure.
 //
 // A frame is 32 bytes: i32[8] in the machine's byte order. From spacenavd: 0 motion x y z rx ry rz
 // ms; 1 press, 2 release: the button; 3 device: 0 added or 1 removed; 4 to 6 configuration, raw
@@ -44,7 +44,7 @@ class Parser {
   std::uint64_t bad_packets_ = 0, bad_bytes_ = 0;
 };
 
-// Inverse of the parser.
+// Return the bytes of a frame or of a word; inverse of the parser.
 std::string encode(const Frame& frame);
 std::string encodeWord(std::uint32_t word);
 
@@ -53,7 +53,8 @@ struct NamePiece {
   std::string text;      // at most 24 characters
   bool complete = true;  // no further piece follows
 };
-// Nothing if the frame is not an answer to kDeviceName, or reports that there is no device.
+// Reads an answer to kDeviceName; returns nothing if the frame is not such an answer, or reports
+// that there is no device.
 std::optional<NamePiece> namePiece(const Frame& frame);
 
 }  // namespace merlin::spacenav

@@ -10,18 +10,18 @@ namespace merlin {
 class SettingsVisitor;
 
 struct SpacenavSettings {
-  int full_scale = 350;  // count of an axis at a full push or twist, as 3Dconnexion's mice send it
-  int dead_zone = 10;    // up to this count an axis is taken as at rest
-  // For x, y, z and the rotations about them: spacenavd's axis 1..6 (x y z rx ry rz), negative if
-  // it is reversed.
+  int full_scale = 350;  // count of an axis at full deflection, as 3Dconnexion's mice send it
+  int dead_zone = 10;    // an axis counts as at rest up to this count
+  // spacenavd's axes for x, y, z and the rotations about them: 1..6 (x y z rx ry rz), negative if
+  // the axis is reversed.
   AxisMap axis_map = {1, 2, -3, 4, 5, -6};
 };
 
-// Finds an axis map in which an axis is missing or repeated, and a port of the wrong kind.
-// Pointers: "/spacenav/axis_map", "/port".
+// Returns faults for an axis map in which an axis is missing or repeated, and for a port of the
+// wrong kind. Their JSON pointers are "/spacenav/axis_map" and "/port".
 SettingFaults validate(const SpacenavSettings& settings, const LineSettings& line);
 
-// Calls `visitor` for every setting, in the order of written files.
+// Calls `visitor` for every setting, in the order in which MERLIN writes them to a file.
 void describe(SpacenavSettings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

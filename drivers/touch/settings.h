@@ -12,13 +12,13 @@ class SettingsVisitor;
 struct TouchSettings {
   TouchOrientation orientation;
   double aspect = 0;        // width / height as a person sees it; 0: as the device reports
-  int mouse_counts = 2000;  // a mouse's counts over the surface's height
+  int mouse_counts = 2000;  // counts of a mouse for the surface's whole height
 };
 
-// Finds a port of the wrong kind. Pointer: "/port".
+// Returns a fault for a port of the wrong kind. Its JSON pointer is "/port".
 SettingFaults validate(const TouchSettings& settings, const LineSettings& line);
 
-// Calls `visitor` for every setting, in the order of written files.
+// Calls `visitor` for every setting, in the order in which MERLIN writes them to a file.
 void describe(TouchSettings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

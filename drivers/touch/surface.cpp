@@ -9,7 +9,7 @@
 namespace merlin::touch {
 namespace {
 
-constexpr std::int32_t kMostNotches = 100;  // maximum of a wheel in one report
+constexpr std::int32_t kMostNotches = 100;  // limit of a wheel's motion in one report
 
 constexpr std::size_t kLongestName = 200;
 constexpr float kNarrowest = 0.02F, kWidest = 50;  // limits of the aspect ratio
@@ -73,8 +73,9 @@ Surface::Kind Surface::choose(const TouchSettings& settings) noexcept {
   return kind_;
 }
 
-// Uses the resolutions if both axes have one. Equal ranges are not evidence of a square, since many
-// frames scale both axes to the same range.
+// Returns the aspect ratio by the settings, or by the resolutions of the axes if both have one, or
+// by their ranges. Equal ranges are not evidence of a square, since many frames scale both axes to
+// the same range.
 float Surface::aspectOf(const TouchSettings& settings) const noexcept {
   if (settings.aspect > 0)
     return std::clamp(static_cast<float>(settings.aspect), kNarrowest, kWidest);

@@ -1,5 +1,6 @@
-// Surface: the fingers on an input device of the kernel. It is a multi-touch device with slots, a
-// device with a single position, or a mouse, whose pressed button counts as a finger. Pure.
+// Surface: keeps the fingers on an input device of the kernel, which is a multi-touch device with
+// slots, a device with a single position, or a mouse, whose pressed button counts as a finger.
+// Pure.
 //
 // Source: Linux Documentation/input/multi-touch-protocol.rst (protocol B), event-codes.rst.
 #pragma once
@@ -36,9 +37,9 @@ class Surface {
   std::size_t slots() const noexcept {
     return slots_used_;
   }  // number of the device's slots that are followed
-  // The surface's width divided by its height, as a person sees it.
+  // Returns the surface's width divided by its height, as a person sees it.
   float aspect() const noexcept { return aspect_; }
-  // Whether the device reports fingers by the kernel's protocol A, which has no slots.
+  // Returns whether the device reports fingers by the kernel's protocol A, which has no slots.
   bool hasOldProtocol() const noexcept { return !slot_range_ && mt_x_.there; }
 
   static constexpr std::size_t kSlots = 32;  // further slots are ignored
@@ -73,16 +74,16 @@ class Surface {
   std::optional<std::int32_t> slot_range_;  // highest slot number
   std::array<Slot, kSlots> slots_{};
   std::size_t slots_used_ = 0;
-  std::int32_t slot_ = 0;  // to which the next records belong
+  std::int32_t slot_ = 0;  // slot to which the next records belong
 
   bool moves_x_ = false, moves_y_ = false;     // the device has the relative axis
   bool has_touch_ = false, has_left_ = false;  // the device has the button
   bool pressed_touch_ = false, pressed_left_ = false, down_ = false;
-  std::uint32_t id_ = 0;             // of the only finger, while down_
+  std::uint32_t id_ = 0;             // id of the only finger, while down_
   float count_x_ = 0, count_y_ = 0;  // a mouse's count as a share of the sides
   std::array<float, 2> place_{};     // place of a mouse's finger
   std::uint16_t buttons_ = 0;        // as in TouchSample, without the left one
-  int notches_ = 0;                  // since the last fill()
+  int notches_ = 0;                  // notches of the wheel since the last fill()
 };
 
 }  // namespace merlin::touch

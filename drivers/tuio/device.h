@@ -38,7 +38,7 @@ class TuioDevice final : public Device {
   OscReader osc_;
   Sources sources_;
   Timestamp datagram_start_{};
-  std::uint64_t bad_datagrams_ = 0;  // that are not OSC
+  std::uint64_t bad_datagrams_ = 0;  // number of datagrams that are not OSC
   bool heard_ = false;               // a complete frame came since open()
   const char* fault_ = "";           // of the newest datagram, if it was not a frame
   Timestamp faulted_{};              // arrival of that datagram

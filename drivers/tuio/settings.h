@@ -14,10 +14,10 @@ struct TuioSettings {
   double aspect = 16.0 / 9;  // the surface's width / height as a person sees it
 };
 
-// Finds a port of the wrong kind. Pointer: "/port".
+// Returns a fault for a port of the wrong kind. Its JSON pointer is "/port".
 SettingFaults validate(const TuioSettings& settings, const LineSettings& line);
 
-// Calls `visitor` for every setting, in the order of written files.
+// Calls `visitor` for every setting, in the order in which MERLIN writes them to a file.
 void describe(TuioSettings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

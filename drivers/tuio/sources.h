@@ -1,5 +1,5 @@
-// Sources: the contacts that are now on the surfaces of trackers which speak TUIO 1.1, taken from
-// the messages of their datagrams. Pure.
+// Sources: keeps the contacts that are now on the surfaces of trackers with TUIO 1.1, as reported
+// in the messages of their datagrams. Pure.
 //
 // Each datagram is one or more frames of a profile: "source" (optional), "alive" with the session
 // numbers of all contacts, a "set" for each contact that moved, "fseq" with the frame's number. Of
@@ -34,7 +34,7 @@ class Sources final : public OscSink {
   // Ignores a message that does not belong to TUIO or to the two profiles. A malformed message is
   // dropped and counted, and the rest of its frame is dropped as well.
   void take(const OscMessage& message) noexcept override;
-  // Whether the datagram has completed a frame.
+  // Returns whether the datagram has completed a frame.
   bool complete() const noexcept { return complete_; }
 
   // Removes the sources that are silent; returns whether there was one.
@@ -46,9 +46,9 @@ class Sources final : public OscSink {
 
   std::size_t number() const noexcept;  // number of sources
   std::uint64_t badMessages() const noexcept { return bad_messages_; }
-  std::uint64_t lateFrames() const noexcept { return late_frames_; }  // came after a later one
-  // Why the newest dropped message was dropped; empty: no message was dropped since the last
-  // complete frame.
+  std::uint64_t lateFrames() const noexcept { return late_frames_; }  // arrived after a later frame
+  // Returns why the newest dropped message was dropped; empty if no message was dropped since the
+  // last complete frame.
   const char* fault() const noexcept { return fault_; }
 
  private:

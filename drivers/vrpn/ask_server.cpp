@@ -8,9 +8,10 @@ namespace merlin::vrpn {
 namespace {
 
 constexpr std::size_t kMostBytes = 1 << 20;
-constexpr Duration kWriteTime = std::chrono::milliseconds(250);  // 77 bytes, into an empty buffer
+// Time limit for writing 77 bytes into an empty buffer.
+constexpr Duration kWriteTime = std::chrono::milliseconds(250);
 
-// Our cookie, and the description of the sender that every VRPN client has.
+// Returns MERLIN's cookie and the description of the sender that every VRPN client has.
 std::string greeting() {
   std::string bytes = vrpnCookie();
   VrpnHeader header;

@@ -8,8 +8,9 @@
 namespace merlin::vrpn {
 namespace {
 
-constexpr std::size_t kMostTypes = 64;  // types; a server assigns a number to each name
-constexpr std::string_view kForwarder = "vrpn_Forwarder_Brain";  // in VRPN's own vrpn_server
+constexpr std::size_t kMostTypes = 64;  // greatest number of types whose numbers are kept
+// Name of an internal sender of VRPN's own vrpn_server.
+constexpr std::string_view kForwarder = "vrpn_Forwarder_Brain";
 
 struct KnownType {
   std::string_view name;

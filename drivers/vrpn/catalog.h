@@ -1,5 +1,5 @@
-// Catalog: the devices that a VRPN server describes to a client, and what they measure, as far as
-// their messages show it. Pure.
+// Catalog: lists the devices that a VRPN server describes to a client, and what they measure, as
+// far as their messages show it. Pure.
 #pragma once
 
 #include <cstddef>
@@ -39,16 +39,17 @@ class Catalog {
   Result<Ok> take(std::string_view bytes);
 
   bool greeted() const noexcept { return greeting_.size() == kVrpnCookieLength; }
-  // "07.38"; empty before the greeting. The bytes are the server's and are not checked.
+  // Returns the server's version, such as "07.38"; empty before the greeting. The bytes come from
+  // the server unchecked.
   std::string_view version() const;
-  // Devices in the order in which they were described, without VRPN's internal senders.
+  // Returns the devices in the order in which they were described, without VRPN's internal senders.
   const std::vector<CatalogDevice>& devices() const noexcept { return devices_; }
-  // Number of devices that were left out because their name is not valid in a configuration or
-  // because there were too many.
+  // Returns the number of devices that were left out because their name is not valid in a
+  // configuration or because there were too many.
   std::size_t leftOut() const noexcept { return left_out_; }
-  // The types that the server has described; any of its devices may send them.
+  // Returns the types of messages that the server has described; any of its devices may send them.
   const Measures& described() const noexcept { return described_; }
-  // The instance of MERLIN whose server this is; empty if it is not a server of MERLIN.
+  // Returns the instance of MERLIN that runs the server; empty if it is not a server of MERLIN.
   const std::string& instance() const noexcept { return instance_; }
 
  private:
@@ -60,8 +61,9 @@ class Catalog {
   std::string greeting_;
   Parser parser_;
   std::vector<CatalogDevice> devices_;
-  std::map<std::int32_t, std::size_t> senders_;     // server's number to index in devices_
-  std::map<std::int32_t, bool Measures::*> types_;  // server's number to its kind
+  // Maps a server's number to an index in devices_.
+  std::map<std::int32_t, std::size_t> senders_;
+  std::map<std::int32_t, bool Measures::*> types_;  // maps a server's number to a kind
   Measures described_;
   std::string instance_;
   std::size_t left_out_ = 0;

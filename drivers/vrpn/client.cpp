@@ -19,7 +19,8 @@ constexpr Duration kPingInterval = seconds(1);  // as in VRPN's clients
 constexpr Duration kLongestSilence = seconds(3);
 constexpr std::size_t kMostOthers = 8;  // names of other devices that a message lists
 
-// Our numbers for senders and for the types that every client has; the driver's own types follow.
+// The client's numbers for its senders and for the types that every client has; the numbers of the
+// driver's own types follow.
 enum Sender : std::int32_t { kControl, kDevice };
 enum Type : std::int32_t { kPing, kPong, kFirstOwn };
 
@@ -59,7 +60,8 @@ void Client::restart() noexcept {
   heard_ = clock_.now();
 }
 
-// A server answers a ping only if its sender has the name of one of the server's devices.
+// Returns the descriptions of the client's senders and types. A server answers a ping only if the
+// ping's sender has the name of one of the server's devices.
 std::string Client::introduction() {
   std::string bytes;
   const auto describe = [&](std::int32_t what, std::int32_t number, std::string_view name) {
@@ -150,7 +152,8 @@ void Client::handle(const Message& message) {
   if (!listener_.take(index, message.payload, message_start_)) ++bad_packets_;
 }
 
-// If the server gives our device's number a new name, it no longer denotes our device.
+// Takes the description of a sender. If the server gives the device's number a new name, the number
+// no longer denotes the device.
 void Client::describeSender(const Message& message) {
   const std::int32_t number = message.header.sender;
   const auto name = readVrpnName(message.payload);

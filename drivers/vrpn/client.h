@@ -50,7 +50,7 @@ class Client {
   // kMalformed, and those of the stream. Allocates nothing, unless it fails.
   Result<Ok> poll(ByteStream& stream, Duration wait = kPollTime);
 
-  // knowsDevice(): whether the server has described the device. The other call: whether it has
+  // knowsDevice() returns whether the server has described the device, knowsAType() whether it has
   // described any of the types.
   bool knowsDevice() const noexcept { return device_.has_value(); }
   bool knowsAType() const noexcept;

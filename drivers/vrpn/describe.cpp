@@ -1,4 +1,4 @@
-// The descriptions of the settings of what a VRPN server serves.
+// The descriptions of the settings of devices on a VRPN server.
 #include <fmt/format.h>
 
 #include "daemon/base/settings_visitor.h"

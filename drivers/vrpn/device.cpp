@@ -9,7 +9,7 @@
 namespace merlin::vrpn {
 namespace {
 
-constexpr Duration kPoseTime = std::chrono::seconds(2);  // without a pose before a complaint
+constexpr Duration kPoseTime = std::chrono::seconds(2);  // time without a pose until a complaint
 constexpr const char* kTypes[] = {kVrpnPoseType};
 
 constexpr const char* kNoneCame = "the server has the device, but no pose of it comes";

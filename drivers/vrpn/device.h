@@ -14,11 +14,11 @@
 
 namespace merlin::vrpn {
 
-// open() takes at most 4 s; it ends with the first pose. Errors also: those of Client, kTimeout if
-// the device has sent no pose. If the server answers but sends no pose, poll() does not fail,
-// because the cameras may have lost the target; complaint() reports it after 2 s, and at once if
-// the server no longer has the device. Publishes one sample per pose of a sensor that is a station;
-// each station has its own counter.
+// open() takes at most 4 s; it ends with the first pose. Errors: those of Client::open(); among
+// them kTimeout if the device has sent no pose. If the server answers but sends no pose, poll()
+// does not fail, because the cameras may have lost the target; complaint() reports it after 2 s,
+// and at once if the server no longer has the device. Publishes one sample per pose of a sensor
+// that is a station; each station has its own counter.
 class VrpnDevice final : public Device, private Listener {
  public:
   VrpnDevice(const VrpnSettings& settings, const Clock& clock, SampleSink& sink);

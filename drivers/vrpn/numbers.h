@@ -6,11 +6,12 @@
 
 namespace merlin::vrpn {
 
-// Parses the number of a button or a channel, which must be less than `end`; nothing if it is
-// invalid.
+// Parses the number of a button or a channel, which must be less than `end`; returns nothing if the
+// text is invalid.
 std::optional<int> parseNumber(std::string_view text, std::size_t end);
 
-// The number of a channel, for an AxisSource.
+// Parses the number of a channel, 0 to 127, for parseAxisSource(); returns nothing if the text is
+// invalid.
 std::optional<int> channelNumber(std::string_view text);
 
 }  // namespace merlin::vrpn

@@ -16,10 +16,10 @@
 
 namespace merlin::vrpn {
 
-// open() takes at most 4 s; it ends when the server has described the device. Errors also: those of
-// Client. A device at rest is silent, so silence is no fault while the server answers. complaint()
-// reports a server that has neither buttons nor analogs, or no longer has the device. Publishes one
-// sample for each message, and repeats a push that is held every 50 ms.
+// open() takes at most 4 s; it ends when the server has described the device. Errors: those of
+// Client::open(). A device at rest is silent, so silence is no fault while the server answers.
+// complaint() reports a server that has neither buttons nor analogs, or no longer has the device.
+// Publishes one sample for each message, and repeats a push that is held every 50 ms.
 class VrpnPad final : public Device, private Listener {
  public:
   VrpnPad(const VrpnPadSettings& settings, const Clock& clock, SampleSink& sink);
@@ -31,7 +31,7 @@ class VrpnPad final : public Device, private Listener {
   }
   const char* complaint() const noexcept override { return complaint_; }
 
-  // The state of its buttons and channels.
+  // Returns the present state of the device's buttons and channels.
   const PadInput& input() const noexcept { return input_; }
 
  private:

@@ -1,5 +1,5 @@
-// PadInput: the state of a VRPN device's buttons and channels, and its conversion to a ball's.
-// Pure.
+// PadInput: keeps the state of a VRPN device's buttons and channels, and converts it to the buttons
+// and axes of a ball. Pure.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class PadInput {
   void take(const VrpnChannels& channels) noexcept { channels_ = channels; }
   void rest() noexcept;  // releases all buttons and pushes
 
-  // Deflection of each channel that the device has sent. Allocates; for calibration.
+  // Returns the deflection of each channel that the device has sent. Allocates; for calibration.
   std::vector<AxisReading> readings() const;
 
   // Writes the present state into `sample`: axes, buttons and raw values (fillAxes() of

@@ -1,5 +1,5 @@
-// Parses what a VRPN server sends: bytes to messages. Pure. drivers/port/vrpn_line describes the
-// wire format and has the inverse.
+// Parses the bytes that a VRPN server sends into messages. Pure. drivers/port/vrpn_line describes
+// the wire format and has the inverse.
 #pragma once
 
 #include <array>
@@ -24,10 +24,12 @@ Result<Ok> checkGreeting(std::string_view cookie);
 // Parses the bytes that follow the cookie.
 class Parser {
  public:
-  // The payload with the maximum number of channels. That of all buttons has 1028 bytes, a
-  // description of a sender or type at most 104, a pose 64.
+  // Bytes of the payload with the maximum number of channels, which is the longest that is read:
+  // the payload of all buttons has 1028 bytes, the description of a sender or type at most 104, a
+  // pose 64.
   static constexpr std::size_t kMostPayload = 8 + 8 * kVrpnChannels;
-  // The longest message, with its header, that a server can send: VRPN's own buffer has 64000.
+  // Limit of the length of a message with its header [bytes]. A server cannot send longer ones:
+  // VRPN's own buffer has 64000 bytes.
   static constexpr std::size_t kLongest = 65536;
 
   // Takes one byte; returns a message when `byte` completes one. Never blocks, never allocates.

@@ -8,10 +8,11 @@
 
 namespace merlin::vrpn {
 
-// Finds a port of the wrong kind, if `driver` is the line's driver. Pointer: "/port".
+// Adds a fault for a port of the wrong kind, if `driver` is the line's driver. Its JSON pointer is
+// "/port".
 void checkPort(const LineSettings& line, const char* driver, SettingFaults& faults);
 
-// Finds a name that no device of a server can have. `pointer`: JSON pointer of the name.
+// Adds a fault if no device of a server can have this name. `pointer`: JSON pointer of the name.
 void checkName(const std::string& name, const char* pointer, SettingFaults& faults);
 
 }  // namespace merlin::vrpn

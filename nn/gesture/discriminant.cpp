@@ -15,7 +15,7 @@ constexpr double kConverged = 1e-6;  // relative change of the objective
 using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
 
-// log(1 + exp(x)) without overflow.
+// Returns log(1 + exp(x)) without overflow.
 double softPlus(double x) { return x > 0 ? x + std::log1p(std::exp(-x)) : std::log1p(std::exp(x)); }
 
 // Returns a matrix with one row of terms for each example.

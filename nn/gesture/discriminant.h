@@ -1,6 +1,6 @@
-// Discriminant: tells the strokes of a gesture from those of ordinary motion that look like it.
-// Logistic regression on a stroke's whitened features and all their products, so that the border
-// is a quadric. Pure, deterministic.
+// Discriminant: distinguishes strokes of a gesture from similar strokes of ordinary motion. It is a
+// logistic regression on a stroke's whitened features and all their products, so that the decision
+// boundary is a quadric. Pure, deterministic.
 #pragma once
 
 #include <array>
@@ -16,19 +16,19 @@ namespace merlin::nn {
 inline constexpr std::size_t kTerms = 1 + kFeatures + kFeatures * (kFeatures + 1) / 2;
 using Discriminant = std::array<float, kTerms>;
 
-// Returns the log-odds that the stroke was meant as the gesture. `whitened`: its features in
-// deviations from the gesture's mean. Allocation-free; about 0.05 us.
+// Returns the log-odds that the stroke was meant as the gesture. `whitened`: the stroke's features,
+// whitened by the gesture's distribution (recogniser.h). Allocation-free; about 0.05 us.
 float oddsOf(const Discriminant& discriminant, const StrokeFeatures& whitened) noexcept;
 
-// Whitened features with the answer.
+// A stroke's whitened features, and whether the stroke was meant as the gesture.
 struct DiscriminantExample {
   StrokeFeatures whitened{};
   bool meant = false;
 };
 
-// Returns the weights that maximise the log-likelihood minus `decay` / 2 times the sum of their
-// squares, by Newton's method. Cost: up to 25 steps, each linear in the examples and cubic in
-// kTerms.
+// Returns the weights that maximise the log-likelihood minus `decay` / 2 times the sum of the
+// squared weights, by Newton's method. Cost: up to 25 steps, each linear in the examples and cubic
+// in kTerms.
 Discriminant fitDiscriminant(std::span<const DiscriminantExample> examples, double decay);
 
 }  // namespace merlin::nn

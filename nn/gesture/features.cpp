@@ -7,7 +7,7 @@
 namespace merlin::nn {
 namespace {
 
-constexpr std::size_t kPoints = 24;  // in the resampled path
+constexpr std::size_t kPoints = 24;  // number of points in the resampled path
 constexpr float kLeastLength_m = 0.02F, kLeastSpeed_m_s = 0.01F;
 constexpr float kFull = 2 * std::numbers::pi_v<float>;
 
@@ -48,12 +48,13 @@ Path resample(std::span<const PathPoint> stroke, float length) noexcept {
     }
     passed += step;
   }
-  for (; done < kPoints; ++done) path[done] = placeOf(stroke.back());  // rounding
+  for (; done < kPoints; ++done) path[done] = placeOf(stroke.back());  // points left by rounding
   return path;
 }
 
-// Returns how often the direction turns around in the wall's plane, clockwise as the person sees
-// it. Steps that are short in that plane are skipped, since their direction is unreliable.
+// Returns the number of full turns of the path's direction in the wall's plane, positive if
+// clockwise as the person sees it. Steps that are short in that plane are skipped, since their
+// direction is unreliable.
 float turningOf(const Path& path, float length) noexcept {
   const float least = 0.2F * length / static_cast<float>(kPoints - 1);
   float sum = 0, last = 0;
@@ -119,7 +120,7 @@ std::optional<StrokeFeatures> featuresOf(std::span<const PathPoint> stroke, floa
                                 length / seconds / greatest,
                                 calm_m_s / greatest,
                                 pace.hasteOf(std::log(length), std::log(greatest))};
-  float sum = 0;  // not finite if any feature is not
+  float sum = 0;  // NaN if any feature is not finite
   for (const float f : features) sum += f * 0;
   return sum == 0 ? std::optional(features) : std::nullopt;
 }

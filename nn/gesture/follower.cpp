@@ -8,7 +8,7 @@ constexpr float kBack = -0.35F;   // dot product below which a stroke reverses t
 
 }  // namespace
 
-// Whether the stroke is the return movement after the last gesture.
+// Returns whether the stroke is the return movement after the last gesture.
 bool GestureFollower::leadsBack(const StrokeFeatures& stroke,
                                 std::int64_t began_ns) const noexcept {
   if (!any_ || static_cast<double>(began_ns - last_ended_ns_) > settings_.back_s * 1e9)

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::int64_t kSessionGap_ns = 500'000'000;
 
-// Returns the index of the take that overlaps at least half of the stroke's time. The takes are in
-// the order of time; a recording may have as many of them as poses, so that they are not all looked
-// at for each stroke.
+// Returns the index of the take that overlaps at least half of the stroke's time. Since a recording
+// may have as many takes as poses, the takes, which are in order of time, are searched by
+// bisection.
 std::optional<std::size_t> takeOf(const std::vector<Take>& takes, std::int64_t first_ns,
                                   std::int64_t last_ns) {
   auto take = std::partition_point(takes.begin(), takes.end(),
@@ -25,7 +25,9 @@ std::optional<std::size_t> takeOf(const std::vector<Take>& takes, std::int64_t f
   return std::nullopt;
 }
 
-// Of the takes that began before, the last one also ended last.
+// Returns whether a stroke that began at `first_ns` began less than `after_s` after the end of a
+// take. Only the last take that began before is checked: takes do not overlap, so it also ended
+// last.
 bool isJustAfter(const std::vector<Take>& takes, std::int64_t first_ns, double after_s) {
   const auto later = std::partition_point(takes.begin(), takes.end(),
                                           [&](const Take& t) { return t.first_ns < first_ns; });
@@ -33,10 +35,10 @@ bool isJustAfter(const std::vector<Take>& takes, std::int64_t first_ns, double a
          static_cast<double>(first_ns - std::prev(later)->last_ns) < after_s * 1e9;
 }
 
-// Logarithm of length times speed, since both features are logarithms.
+// Returns the logarithm of length times greatest speed; both features are logarithms.
 float greatness(const StrokeFeatures& stroke) { return stroke[kLogLength] + stroke[kLogSpeed]; }
 
-// Translation and rotation of the hand combined, as in PathPoint::speed_m_s.
+// Movement of a hand, translation and roll combined as in PathPoint::speed_m_s.
 struct Movement {
   float reach_m = 0;  // distance from the hand's first pose
   float greatest_m_s = 0;

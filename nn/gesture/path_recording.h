@@ -19,8 +19,8 @@ struct LabelledPose {
   HandPose pose;
 };
 
-// Poses in the order of time. A new session begins where the time goes back, or where two poses are
-// more than half a second apart.
+// Labelled poses, in order of time within a session. A new session begins where the time goes back,
+// or where two poses are more than half a second apart.
 struct PathRecording {
   std::vector<std::string> labels;  // names of gestures, and kNoGesture
   std::vector<LabelledPose> poses;
@@ -30,25 +30,29 @@ struct PathRecording {
   std::uint32_t labelled(std::string_view name);
 };
 
-// Consecutive poses of one session.
+// Returns the sessions of a recording, each as its consecutive poses; valid as long as the
+// recording does not change.
 std::vector<std::span<const LabelledPose>> sessionsOf(const PathRecording& recording);
 
-// A take: consecutive poses of a session that have the label of one gesture.
+// A take: consecutive poses of a session that all have the label of one gesture.
 struct Take {
   std::uint32_t label;
   std::int64_t first_ns, last_ns;
 };
+// Returns the takes of a session, in order of time.
 std::vector<Take> takesOf(std::span<const LabelledPose> session, const PathRecording& recording);
 
-// Returns the greatest stroke (by length times speed) of each take, and all strokes outside of the
-// takes, as kNoGesture. Strokes that begin less than `after_take_s` after a take are left out,
-// since the way back is not ordinary motion. `lost`: set to the number of takes in which there is
-// no stroke.
+// Returns the greatest stroke of each take (by length times greatest speed), labelled with the
+// take's gesture, and all strokes outside of the takes, labelled kNoGesture. Strokes that begin
+// less than `after_take_s` after a take are left out, since the hand's way back is not ordinary
+// motion. A stroke belongs to a take that covers at least half of its duration. `lost` is set to
+// the number of takes without a stroke.
 std::vector<LabelledStroke> strokesOf(const PathRecording& recording, double after_take_s,
                                       std::size_t& lost);
 
 // Checks that `take`, a recording of one take of a gesture, contains a stroke; training leaves out
-// takes without one. Errors: kInvalidArgument: how little the hand moved in it, and what to do.
+// takes without one. Errors: kInvalidArgument if there is no stroke; the message says how far and
+// how fast the hand moved, and what to do.
 Result<Ok> checkTake(const PathRecording& take);
 
 }  // namespace merlin::nn

@@ -1,4 +1,4 @@
-// Poses of the hand as a viewer at the wall sees them, and how the tracker's are turned into them.
+// Poses of the hand in the wall's coordinates, and the conversion of the tracker's poses into them.
 // Pure.
 #pragma once
 
@@ -17,18 +17,19 @@ struct HandPose {
   std::array<float, 4> orientation_wxyz{1, 0, 0, 0};
 };
 
-// Turns poses of the tracker's frame into those of the wall. Immutable, hence thread-safe.
+// Converts poses from the tracker's coordinates to the wall's. Immutable, hence thread-safe.
 class WallAxes {
  public:
-  // The tracker's axis that corresponds to each of the wall's axes x, y, z: 1 is x, 2 is y, 3 is z;
-  // negative: the opposite direction. Nothing unless these are a right-handed system, in which each
-  // of the tracker's axes occurs once.
+  // `tracker_axes`: the tracker's axis along each of the wall's axes x, y, z; 1 is x, 2 is y, 3 is
+  // z, negative is the opposite direction. Returns nothing unless each of the tracker's axes occurs
+  // once and the result is a right-handed system.
   static std::optional<WallAxes> of(const std::array<int, 3>& tracker_axes) noexcept;
-  // {-2, -3, 1}: the transmitter's x axis points from the wall to the person, y to the left, z
-  // down.
+  // Uses the axes {-2, -3, 1}: the tracker's transmitter has its x axis from the wall to the
+  // person, y to the left and z down.
   WallAxes() noexcept = default;
 
-  // The result's `at_ns` is the argument. Allocation-free, a few ns.
+  // Returns a pose of the tracker in the wall's coordinates, with the time `at_ns`.
+  // Allocation-free, takes a few ns.
   HandPose turned(std::int64_t at_ns, const float (&position_m)[3],
                   const float (&orientation_wxyz)[4]) const noexcept;
 

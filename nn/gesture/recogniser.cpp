@@ -14,8 +14,8 @@ float norm(const StrokeFeatures& v) noexcept {
   return std::sqrt(square);
 }
 
-// Logarithm of the volume of the unit deviation ellipsoid: W is triangular, so it is the sum of
-// -log of W's diagonal.
+// Returns the logarithm of the volume of the ellipsoid of one deviation, up to a constant. W is
+// triangular, so this is the sum of -log over W's diagonal.
 float logVolume(const Triangle& whitening) {
   double sum = 0;
   std::size_t at = 0;

@@ -1,8 +1,9 @@
-// GestureRecogniser: which gesture a stroke is, or none. Pure.
+// GestureRecogniser: decides which gesture a stroke is, if any. Pure.
 //
-// Each gesture is a normal distribution of the features of its strokes; a stroke is the gesture
-// under which it is most likely, or none if it is too far from that one's mean, or if the gesture's
-// discriminant finds it too much like ordinary motion.
+// Each gesture is modelled as a normal distribution of the features of its strokes. A stroke is
+// recognised as the gesture under whose distribution it is most likely. It is rejected if it is too
+// far from this gesture's mean, or if the gesture's discriminant finds it too similar to ordinary
+// motion.
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ inline constexpr std::string_view kNoGesture = "none";
 // Whether `name` is valid: 1 to 31 letters, digits, - or _, and not kNoGesture.
 bool isGestureName(std::string_view name) noexcept;
 
-// Rows of a lower triangle, one after another.
+// A lower triangular matrix, stored row by row.
 using Triangle = std::array<float, kFeatures*(kFeatures + 1) / 2>;
 
 struct StrokeDistribution {
@@ -39,14 +40,14 @@ struct StrokeDistribution {
 struct TrainedGesture {
   std::string name;
   StrokeDistribution strokes;
-  float limit = 0;  // greatest distance at which a stroke is accepted, above 0
-  // Tells the gesture from ordinary motion that looks like it; absent if the training had hardly
-  // any such strokes. A stroke is accepted only if its log-odds are at least `least_odds`.
+  float limit = 0;  // greatest distance from the mean at which a stroke is accepted, > 0
+  // Distinguishes the gesture from similar ordinary motion; absent if the training had too few
+  // strokes of such motion. A stroke is accepted only if its log-odds are at least `least_odds`.
   std::optional<Discriminant> discriminant;
   float least_odds = 0;
 };
 
-// The stroke in deviations from the distribution's mean: W (f - mean).
+// Returns the stroke's whitened features W (f - mean), in deviations from the distribution's mean.
 StrokeFeatures whitened(const StrokeDistribution& distribution,
                         const StrokeFeatures& features) noexcept;
 
@@ -57,9 +58,9 @@ struct GestureModel {
 struct StrokeRecognition {
   std::size_t nearest = 0;  // index of the gesture under which the stroke is most likely
   float distance = 0;       // from this gesture's mean, in deviations
-  float odds = 0;           // log-odds by the gesture's discriminant; infinite if none
+  float odds = 0;           // log-odds of the gesture's discriminant; infinite without one
   bool accepted = false;    // whether distance and odds are within the gesture's limits
-  float certainty = 0;      // 1 at the mean, 0 at the limit of the distance and beyond
+  float certainty = 0;      // 1 at the mean; 0 at the limit of the distance and if not accepted
 };
 
 // Immutable, hence thread-safe.
@@ -68,10 +69,11 @@ class GestureRecogniser {
   // REQUIRES: the model has at least one gesture.
   explicit GestureRecogniser(const GestureModel& model);
 
-  // Allocation-free; about 0.1 us for each gesture.
+  // Recognises a stroke by its features. Allocation-free; takes about 0.1 us for each gesture.
   StrokeRecognition operator()(const StrokeFeatures& features) const noexcept;
 
-  // Valid as long as the recogniser.
+  // Returns the name of a gesture, valid as long as the recogniser exists. REQUIRES: index <
+  // size().
   std::string_view name(std::size_t index) const noexcept { return names_[index]; }
   std::size_t size() const noexcept { return names_.size(); }
 

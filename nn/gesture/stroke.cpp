@@ -9,18 +9,19 @@ namespace {
 constexpr std::int64_t kNearest_ns = 7'000'000, kLongestGap_ns = 250'000'000;
 constexpr float kSmooth_s = 0.025F;  // time constant of the velocity
 constexpr float kSlow_s = 0.2F;      // time constant of the speed before a stroke
-constexpr float kStillShare = 0.4F;  // below this share of the starting speed the hand is still
+constexpr float kStillShare = 0.4F;  // share of begins_m_s below which the hand is still
 
 bool isFinite(const HandPose& pose) noexcept {
-  float sum = 0;  // not finite if any value is not
+  float sum = 0;  // NaN if any value is not finite
   for (const float v : pose.position_m) sum += v * 0;
   for (const float v : pose.orientation_wxyz) sum += v * 0;
   return sum == 0;
 }
 
-// Rotation from one orientation to the next about the hand's own -z axis, clockwise for the person.
+// Returns the rotation [rad] from one orientation to the next about the hand's own -z axis;
+// positive is clockwise, as the person sees it.
 float rollBetween(const std::array<float, 4>& from, const std::array<float, 4>& to) noexcept {
-  // conj(from) * to: its scalar, and its part about z
+  // w and z components of the quaternion product conj(from) * to.
   const float w = from[0] * to[0] + from[1] * to[1] + from[2] * to[2] + from[3] * to[3];
   const float z = from[0] * to[3] - from[3] * to[0] - from[1] * to[2] + from[2] * to[1];
   return -2 * std::atan2(w < 0 ? -z : z, std::abs(w));
@@ -51,7 +52,7 @@ void StrokeFinder::restart(const HandPose& pose) noexcept {
   count_ = 1;
 }
 
-// Updates position, roll and their speeds.
+// Updates the newest point and the smoothed velocities with a pose that is `dt_s` later.
 void StrokeFinder::advance(const HandPose& pose, float dt_s) noexcept {
   const float roll = rollBetween(last_.orientation_wxyz, pose.orientation_wxyz);
   const float share = dt_s / (kSmooth_s + dt_s);
@@ -113,7 +114,8 @@ void StrokeFinder::begin() noexcept {
   greatest_ = newest_.speed_m_s;
 }
 
-// Removes the slow beginning from the stroke.
+// Ends the stroke and returns it without its slow beginning; empty if it has too few points or is
+// too long.
 std::span<const PathPoint> StrokeFinder::finish() noexcept {
   state_ = State::kFalling;
   ended_ = true;

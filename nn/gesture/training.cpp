@@ -24,7 +24,7 @@ Vector vectorOf(const StrokeFeatures& features) {
   return Eigen::Map<const Eigen::Matrix<float, kFeatureCount, 1>>(features.data()).cast<double>();
 }
 
-// Strokes by gesture, in the order of the names; strokes without a gesture are separate.
+// `of`: strokes of each gesture, in the order of the names; `none`: strokes of ordinary motion.
 struct Examples {
   std::map<std::string, std::vector<StrokeFeatures>> of;
   std::vector<StrokeFeatures> none;
@@ -32,14 +32,15 @@ struct Examples {
 
 struct Sums {
   Vector mean = Vector::Zero();
-  Matrix scatter = Matrix::Zero();  // sum of squares about the mean
+  Matrix scatter = Matrix::Zero();  // sum of the outer products of the deviations from the mean
   double count = 0;
 };
 
 // Neighbours in a recording come from the same person, so they are put into the same fold.
 std::size_t foldOf(std::size_t n, std::size_t count) { return n * kFolds / count; }
 
-// Sums over all strokes except those of the fold; kFolds: over all strokes.
+// Returns the sums over all strokes except those of fold `fold`; over all strokes if `fold` is
+// kFolds.
 Sums sumsOf(const std::vector<StrokeFeatures>& strokes, std::size_t fold) {
   Sums sums;
   const auto each = [&](auto use) {
@@ -73,7 +74,8 @@ StrokeDistribution distributionOf(const Sums& own, const Matrix& pooled,
   return distribution;
 }
 
-// Fits gestures, without discriminants and limits, to all strokes except those of the fold.
+// Fits the distributions of all gestures, without discriminants and limits, to all strokes except
+// those of fold `fold`.
 GestureModel distributions(const Examples& examples, std::size_t fold,
                            const GestureTrainingSettings& settings) {
   std::vector<Sums> sums;
@@ -122,7 +124,7 @@ void setLimits(GestureModel& model, const Examples& examples,
   }
 }
 
-// Returns the examples of each gesture: its own strokes and its lookalikes.
+// Returns the discriminant's examples for each gesture: first its own strokes, then its lookalikes.
 std::vector<std::vector<DiscriminantExample>> lookalikesOf(
     const GestureModel& model, const Examples& examples, const GestureTrainingSettings& settings) {
   std::vector<std::vector<DiscriminantExample>> sets(model.gestures.size());
@@ -156,7 +158,8 @@ float leastOdds(std::vector<float> own, std::vector<float> others, double worth)
     const double lost = static_cast<double>(n) + worth * static_cast<double>(others.size() - below);
     if (lost >= least) continue;
     least = lost;
-    // In the middle between the best rejected lookalike and the worst accepted stroke.
+    // The threshold is in the middle between the worst accepted stroke and the best rejected
+    // lookalike.
     best = below > 0 ? (own[n] + others[below - 1]) / 2 : own[n];
   }
   return best;

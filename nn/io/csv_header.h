@@ -19,17 +19,17 @@ struct ChosenColumn {
 };
 
 struct CsvHeader {
-  std::size_t label = 0;           // column
-  std::vector<int> slot;           // one for each column; -1 for the label and for ignored columns
-  std::vector<std::string> notes;  // assumptions that were made
+  std::size_t label = 0;           // index of the label's column
+  std::vector<int> slot;           // of each column; -1 for the label and for ignored columns
+  std::vector<std::string> notes;  // assumptions that were made, for the user
 };
 
-// Finds columns by their names. The label is "posture", "label", "class" or another of kLabelNames,
-// or has one of these in its name; sensors are "s0".."s22" or the names of kInputNames. If the
-// sensors have other names, their number (18, 22 or 23) and order decide, as in the glove's mask.
-// `chosen` takes precedence over all of this; if it contains a sensor, columns that were not chosen
-// are left out. Returns what is wrong with the header or the choice, "...; allowed: ..."; nothing
-// if all is valid.
+// Finds columns by their names. The label is "posture", "label", "class" or another name of
+// kLabelNames (csv_header.cpp), or contains one of these words; sensors are "s0".."s22" or the
+// names of kInputNames. If the sensors have other names, there must be 18, 22 or 23 of them, in the
+// order of the glove's sensor mask. `chosen` takes precedence over all of this; if it contains a
+// sensor, columns that were not chosen are left out. Returns a message, "...; allowed: ...", if the
+// header or the choice is invalid, otherwise nothing.
 std::optional<std::string> readHeader(const std::vector<std::string>& names, CsvHeader& header,
                                       std::span<const ChosenColumn> chosen = {});
 

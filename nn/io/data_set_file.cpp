@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kLargestFile = std::size_t{1} << 26;  // bytes: about 300,000 hands
 constexpr std::size_t kMostQuoted = 40;                     // characters of a field in an error
-constexpr std::size_t kDip[] = {6, 10, 14, 18};             // the slot before each is the PIP
+// The slot before a DIP is the same finger's PIP.
+constexpr std::size_t kDip[] = {6, 10, 14, 18};
 constexpr std::string_view kSyntheticLine = "# synthetic hands: nobody was measured";
 
 std::string quote(std::string_view text) {
@@ -177,7 +178,8 @@ class Parser {
     return std::nullopt;
   }
 
-  // Fills slots without a sensor as the glove's driver does.
+  // Chooses the unit, and computes missing DIP angles from the PIP angles as the glove's driver
+  // does.
   Recording finish() {
     recording_.unit = unit_.value_or(far_ ? InputUnit::kRaw : InputUnit::kRadians);
     if (!unit_ && far_)
@@ -199,7 +201,7 @@ class Parser {
   char separator_ = ',';
   std::vector<std::string> names_;
   CsvHeader header_;
-  std::map<std::string, std::string> labels_;  // from a posture to its spelling in the file
+  std::map<std::string, std::string> labels_;  // maps a posture to its spelling in the file
   bool far_ = false;
   Recording recording_;
 };

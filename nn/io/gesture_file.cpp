@@ -18,7 +18,9 @@ using nlohmann::json;
 constexpr std::uint64_t kGestureVersion = 1;
 constexpr std::uint64_t kMostGestureVersions = 1000;
 constexpr double kMostNumber = 1e6;
-constexpr double kLeastDiagonal = 1e-6;  // useless features have large deviations
+// Least diagonal element of a whitening matrix; small, since a feature that says nothing has a
+// large deviation.
+constexpr double kLeastDiagonal = 1e-6;
 constexpr std::size_t kLongestOrigin = 200;
 constexpr auto kMostStrokes = std::numeric_limits<std::uint64_t>::max();
 
@@ -95,7 +97,8 @@ GestureFile readGestureDocument(JsonView root) {
   return file;
 }
 
-// fmt's shortest form that reads back as the same float; `+ 0` turns -0 into 0.
+// Writes each number in fmt's shortest form that reads back as the same float; `+ 0` turns -0 into
+// 0.
 template <typename Numbers>
 std::string formatNumbers(const Numbers& numbers) {
   std::string out = "[";
@@ -123,7 +126,7 @@ Result<GestureFile> parseGestures(std::string_view text, const std::string& file
     GestureFile read = readGestureDocument(JsonView(&*document, "", file, error));
     if (error) return *std::move(error);
     return read;
-  } catch (const std::exception& ex) {  // no memory
+  } catch (const std::exception& ex) {  // out of memory
     return Error{Errc::kMalformed, file + ": " + ex.what()};
   }
 }

@@ -11,10 +11,10 @@
 namespace merlin::nn {
 
 struct GestureProvenance {
-  std::string how;             // for a person
-  std::uint64_t takes = 0;     // strokes that were meant as gestures
-  std::uint64_t ordinary = 0;  // strokes of ordinary motion
-  bool synthetic = false;      // any of them is generated
+  std::string how;             // description for people
+  std::uint64_t takes = 0;     // number of strokes that were meant as gestures
+  std::uint64_t ordinary = 0;  // number of strokes of ordinary motion
+  bool synthetic = false;      // whether any of these strokes is generated
 };
 
 struct GestureFile {
@@ -22,19 +22,21 @@ struct GestureFile {
   GestureProvenance trained;
 };
 
-// Reads a whole file or nothing. The error is the first fault: it names the file, the place (a JSON
-// pointer), what was found there and what is allowed.
-// Errors: kNotFound, kIo, kMalformed, kUnsupported (any other version).
+// Reads a gesture file; a file with any fault is refused as a whole. The error is the first fault:
+// it names the file, the place (a JSON pointer), what was found there and what is allowed. Errors:
+// kNotFound, kIo, kMalformed, kUnsupported (any other version).
 Result<GestureFile> loadGestures(const std::string& path);
 
-// The same for a text; `file` is its name in errors.
+// Parses the text of a gesture file as loadGestures() does. `file`: the file's name in errors.
+// Errors: kMalformed, kUnsupported.
 Result<GestureFile> parseGestures(std::string_view text, const std::string& file);
 
-// The exact inverse: reading the text back gives equal numbers (-0 becomes 0).
+// Returns the text of a gesture file. parseGestures() of this text gives equal numbers (-0 becomes
+// 0).
 std::string formatGestures(const GestureFile& file);
 
-// Replaces `path` by a whole file or leaves it unchanged. Errors: kIo; kInvalidArgument if
-// loadGestures() would refuse the result.
+// Writes a gesture file to `path`; after an error, an existing file is unchanged. Errors: kNotFound
+// (no such folder), kIo; kInvalidArgument if loadGestures() would refuse the result.
 Result<Ok> saveGestures(const std::string& path, const GestureFile& file);
 
 }  // namespace merlin::nn

@@ -41,7 +41,8 @@ InputUnit readUnit(JsonView view) {
   return unit == "raw" ? InputUnit::kRaw : InputUnit::kRadians;
 }
 
-// Checks that slot and name agree, which finds files that were made for another order.
+// Reads the ranges of the inputs. Checks that slots and names agree, which detects files that were
+// made for another order of the slots.
 void readInputs(JsonView inputs, InputUnit unit, InputRanges& ranges) {
   const double most = mostValue(unit);
   inputs.expectArray(kInputs, kInputs);
@@ -86,7 +87,8 @@ void readPostures(JsonView list, PostureTable& postures) {
   }
 }
 
-// Rows are in the order of the postures' codes, as in the file's list of postures.
+// Returns the statistics; nothing if the file's "memory" is empty. Its rows are in the order of the
+// postures' codes.
 std::optional<PostureStatistics> readStatistics(JsonView view, const PostureTable& postures) {
   view.allowKeys({"mean", "spread"});
   PostureStatistics statistics;
@@ -121,8 +123,8 @@ Provenance readProvenance(JsonView view) {
 NetworkFile readDocument(JsonView root) {
   NetworkFile file;
   JsonView version = root.at("version");
-  if (version.count(0, kMostVersions) !=
-      kVersion) {  // first, since anything may differ in another version
+  // The version is checked first, since anything may differ in another version.
+  if (version.count(0, kMostVersions) != kVersion) {
     version.addFault(fmt::format("{}, the version that this release of MERLIN reads", kVersion), {},
                      Errc::kUnsupported);
   }
@@ -140,7 +142,7 @@ NetworkFile readDocument(JsonView root) {
   return file;
 }
 
-// fmt's shortest form that reads back as the same float; `+ 0` turns -0 into 0.
+// Returns fmt's shortest form that reads back as the same float; `+ 0` turns -0 into 0.
 std::string number(float v) { return fmt::format("{}", v + 0.0F); }
 
 template <typename Rows>
@@ -199,7 +201,7 @@ Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file)
     NetworkFile read = readDocument(JsonView(&*document, "", file, error));
     if (error) return *std::move(error);
     return read;
-  } catch (const std::exception& ex) {  // no memory
+  } catch (const std::exception& ex) {  // out of memory
     return Error{Errc::kMalformed, file + ": " + ex.what()};
   }
 }

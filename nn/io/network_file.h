@@ -1,4 +1,4 @@
-// The posture network's file: JSON, version 2; reads version 1 too. nn/io/README.md describes it.
+// The posture network's file: JSON, version 2. nn/io/README.md describes it.
 #pragma once
 
 #include <optional>
@@ -15,27 +15,30 @@ namespace merlin::nn {
 struct NetworkFile {
   PostureNetwork network;
   Provenance trained;
-  std::optional<PostureStatistics> statistics;  // for adapting and for drift; absent in version 1
+  // For adapt() and DriftFollower. Absent if the file's "memory" is empty.
+  std::optional<PostureStatistics> statistics;
 };
 
-// Returns what is needed to recognise the file's postures. Without statistics in the file, no drift
-// is followed.
+// Returns the file's network and statistics, as needed to recognise postures. If the file has no
+// statistics, they are empty, and drift is not followed.
 TrainedPostures trainedPostures(const NetworkFile& file);
 
-// Reads a whole file or nothing. The error is the first fault: it names the file, the place (a JSON
-// pointer), what was found there and what is allowed.
-// Errors: kNotFound, kIo, kMalformed, kUnsupported (any other version).
+// Reads a network file; a file with any fault is refused as a whole. The error is the first fault:
+// it names the file, the place (a JSON pointer), what was found there and what is allowed. Errors:
+// kNotFound, kIo, kMalformed, kUnsupported (any other version).
 Result<NetworkFile> loadNetwork(const std::string& path);
 
-// The same for a text; `file` is its name in errors.
+// Parses the text of a network file as loadNetwork() does. `file`: the file's name in errors.
+// Errors: kMalformed, kUnsupported.
 Result<NetworkFile> parseNetwork(std::string_view text, const std::string& file);
 
-// The exact inverse: reading the text back gives equal numbers (-0 becomes 0).
-// Always version 2.
+// Returns the text of a network file, version 2. parseNetwork() of this text gives equal numbers
+// (-0 becomes 0).
 std::string formatNetwork(const NetworkFile& file);
 
-// Replaces `path` by a whole file or leaves it unchanged. Errors: kIo; kInvalidArgument if
-// loadNetwork() would refuse the result, such as a weight that is not finite.
+// Writes a network file to `path`; after an error, an existing file is unchanged. Errors: kNotFound
+// (no such folder), kIo; kInvalidArgument if loadNetwork() would refuse the result, such as a
+// weight that is not finite.
 Result<Ok> saveNetwork(const std::string& path, const NetworkFile& file);
 
 }  // namespace merlin::nn

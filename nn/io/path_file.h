@@ -9,18 +9,20 @@
 
 namespace merlin::nn {
 
-// Reads a whole file or nothing. Every error names the file and the line, what was found and what
-// is allowed. Errors: kNotFound, kIo, kMalformed.
+// Reads a path recording; a file with any fault is refused as a whole. Every error names the file
+// and the line, what was found and what is allowed. Errors: kNotFound, kIo, kMalformed.
 Result<PathRecording> loadPaths(const std::string& path);
 
-// The same for a text; `file` is its name in errors.
+// Parses the text of a path recording as loadPaths() does. `file`: the file's name in errors.
+// Errors: kMalformed.
 Result<PathRecording> parsePaths(std::string_view text, const std::string& file);
 
-// The inverse; times are kept to the microsecond.
+// Returns the recording as the text of a file, which parsePaths() reads back. Times are rounded to
+// 1 us.
 std::string formatPaths(const PathRecording& recording);
 
-// Replaces `path` by a whole file or leaves it unchanged. Errors: kIo; kInvalidArgument if
-// loadPaths() would refuse the result.
+// Writes a path recording to `path`; after an error, an existing file is unchanged. Errors:
+// kNotFound (no such folder), kIo; kInvalidArgument if loadPaths() would refuse the result.
 Result<Ok> savePaths(const std::string& path, const PathRecording& recording);
 
 }  // namespace merlin::nn
