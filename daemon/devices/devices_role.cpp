@@ -179,8 +179,8 @@ Result<std::unique_ptr<DevicesRole>> DevicesRole::make(const Settings& settings,
 Result<std::string> DevicesRole::mend() {
   auto mended = segment_.mend();
   auto flight = flight_.mend();
-  const bool is_whole = mended && mended->empty();
-  return is_whole ? flight : mended;
+  if (!mended || !flight) return mended ? flight : mended;
+  return *mended + (mended->empty() || flight->empty() ? "" : "; ") + *flight;
 }
 
 void DevicesRole::publishFrames(const DevicesSettings& settings, std::size_t device) {
