@@ -28,11 +28,11 @@ class DetailAxis {
   virtual ~DetailAxis() = default;
 
   virtual std::size_t steps() const noexcept = 0;  // at least 1
-  // Cost of a step, in units; falls from step 0 on. REQUIRES: step < steps().
+  // Returns the cost of a step, in unit(); it falls from step 0 on. REQUIRES: step < steps().
   virtual std::size_t costOf(std::size_t step) const noexcept = 0;
-  // The finest step that costs at most `budget`, or the coarsest if none does.
+  // Returns the finest step that costs at most `budget`, or the coarsest step if none does.
   virtual std::size_t stepWithin(std::size_t budget) const noexcept = 0;
-  // The lowest cost at which the content is still recognisable.
+  // Returns the lowest cost at which the content is still recognisable.
   virtual std::size_t leastUseful() const noexcept = 0;
   virtual std::string_view unit() const noexcept = 0;  // in the plural: "triangles"
 
@@ -54,11 +54,11 @@ struct ContentView {
   float weight = 1;  // square root of the weight of squared errors in this view
 };
 
-// What the last choice left out because it is still being loaded.
+// Says whether the last choose() left out parts that are still being loaded.
 enum class Pending {
-  kNothing,  // nothing: the choice shows all that its step has
-  kLoading,  // parts, which are shown coarser meanwhile
-  kArrived,  // parts, some of which have arrived since: another choose() shows them
+  kNothing,  // nothing was left out
+  kLoading,  // parts were left out; they are shown coarser meanwhile
+  kArrived,  // parts were left out, and some have arrived since: another choose() shows them
 };
 
 // How far one view of a frame has been drawn. The content defines what the numbers count; both are
@@ -95,15 +95,15 @@ class Content {
   virtual ContentBounds bounds() const noexcept = 0;
   virtual Navigation navigation() const noexcept = 0;
 
-  // Called before choose(): whether the scene moves, so that time for the frame is short. A content
-  // that takes in large amounts of new data then does so in small portions.
+  // Called before choose(), to say whether the scene moves, so that time for the frame is short. A
+  // content that takes in large amounts of new data then does so in small portions.
   virtual void setMoving(bool moving) noexcept { static_cast<void>(moving); }
 
   // Chooses what the next frame draws at `step` for these views. The choice does not change until
   // the next call, so renderers may read it on their threads. REQUIRES: step < detail().steps().
   virtual void choose(std::size_t step, std::span<const ContentView> views) = 0;
 
-  // What the last choose() left out.
+  // Returns whether the last choose() left out parts that are still being loaded.
   virtual Pending pending() const noexcept { return Pending::kNothing; }
 
   // Creates the renderer for one context. Called on that context's thread, possibly at the same

@@ -12,8 +12,8 @@ namespace {
 // since the bins of llvmpipe then exceed the L2 cache.
 constexpr std::size_t kSlice = 10'000;
 
-// The transform that centres the model's bounding box at the origin and scales half its diagonal to
-// `radius_m`.
+// Returns the transform that centres the model's bounding box at the origin and scales half its
+// diagonal to `radius_m`.
 Eigen::Matrix4f scaling(const lod::Dendrogram& model, float radius_m) {
   const mesh::Box box = mesh::boundingBox(model.arrays().positions);
   const float half = box.diagonal() / 2;

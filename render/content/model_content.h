@@ -49,9 +49,9 @@ struct ModelDrawList {
 
 class ModelContent final : public Content {
  public:
-  // May be called on any thread. The model must outlive the content; it is scaled such that a
-  // sphere of `radius_m` about the centre of its bounding box encloses it. Errors: kMalformed (the
-  // model's texture cannot be decoded). O(nodes + triangles).
+  // Makes a content of a model, which must outlive it; may be called on any thread. The model is
+  // scaled such that a sphere of `radius_m` about the centre of its bounding box encloses it.
+  // Errors: kMalformed (the model's texture cannot be decoded). O(nodes + triangles).
   static Result<std::unique_ptr<ModelContent>> make(const lod::Dendrogram& model,
                                                     const ModelSettings& settings, double radius_m);
 

@@ -180,8 +180,8 @@ ModelRenderer::Vertex ModelRenderer::vertexOf(std::uint32_t node) const {
   return v;
 }
 
-// The vertex at the fraction `share` of the way from its parent to its own position: 0 at the
-// parent, 1 at its own.
+// Returns the vertex at the fraction `share` of the way from its parent to its own position: 0 at
+// the parent, 1 at its own.
 ModelRenderer::Vertex ModelRenderer::between(const Vertex& parent, const Vertex& own,
                                              float share) const {
   Vertex v{};
@@ -205,8 +205,8 @@ ModelRenderer::Vertex ModelRenderer::between(const Vertex& parent, const Vertex&
   return v;
 }
 
-// The parent's current, possibly displaced vertex. REQUIRES: the node has a parent, and the
-// parent's vertex is in morphed_ if it is displaced.
+// Returns the current, possibly displaced, vertex of a node's parent. REQUIRES: the node has a
+// parent, and the parent's vertex is in morphed_ if it is displaced.
 ModelRenderer::Vertex ModelRenderer::parentOf(std::uint32_t node) const {
   const std::uint32_t parent = model_.parentOf(node);
   const auto end = morphs_.begin() + static_cast<std::ptrdiff_t>(morphed_.size());

@@ -9,8 +9,8 @@ enum class Navigation {
   kPanorama,  // a panorama: the viewer looks around from its centre, and zooms
 };
 
-// Nearest distance of a plane, as a multiple of the initial one, unless its content defines
-// another.
+// Least distance between viewer and plane, as a multiple of the initial one, unless the content
+// defines another.
 inline constexpr float kNearestPlane = 0.02F;
 
 }  // namespace merlin::render::content

@@ -12,14 +12,15 @@
 namespace merlin::render::content {
 
 struct ShownColours {
-  std::vector<std::array<std::uint8_t, 3>> rgb;  // by node; empty: the model has no colours
+  // Colour of each node; empty: the model has no colours.
+  std::vector<std::array<std::uint8_t, 3>> rgb;
   float low = 0, high = 0;  // for a feature of dimension 1: the ends of the colour scale
 };
 
-// Checks whether coloursOf() can show the feature; errors as there.
+// Checks that coloursOf() can show the feature. Errors: those of coloursOf().
 Result<Ok> checkShown(const lod::Dendrogram& model, const ShownFeature& show);
 
-// By the feature's kind:
+// Returns the colours of the model's nodes, by the feature's kind:
 //   dimension 3  red, green, blue, each 0..1; for "normal" -1..1
 //   dimension 1  a scale of dark blue, green, yellow (viridis) over show.range, or, if its ends are
 //                equal, from the 1st to the 99th percentile of the vertices at full resolution; for

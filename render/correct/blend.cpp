@@ -9,7 +9,8 @@ namespace {
 
 double rampAt(double distance, double width) { return width > 0 ? ramp(distance / width) : 1; }
 
-// Share of a pixel, centred at `distance` from the border, that is within the ramp.
+// Returns the share of a pixel, centred at `distance` from the border, that lies within the ramp
+// [px].
 double within(double distance, double width) {
   return width > 0 ? std::clamp(width - distance + 0.5, 0.0, 1.0) : 0;
 }

@@ -12,10 +12,10 @@ namespace merlin::render::correct {
 using CorrectRows = void (*)(const CorrectionMap& map, const std::uint8_t* picture,
                              std::uint8_t* signal, int first, int last);
 
-// The fastest implementation for this CPU. All implementations give the same bits.
+// Returns the fastest implementation for this CPU. All implementations give the same bits.
 CorrectRows rowCorrector();
 
-// For tests: the implementation that runs on any CPU.
+// Returns the implementation that runs on any CPU, for tests.
 CorrectRows portableRowCorrector();
 
 }  // namespace merlin::render::correct

@@ -26,8 +26,8 @@ float shareAt(const MeasuredShares& m, double x, double y) {
   return static_cast<float>(upper + fy * (lower - upper));
 }
 
-// The part, 0..1, of a pixel-wide interval around `at` that lies within the picture, along one
-// axis. `at`: 0 is the centre of the first pixel.
+// Returns the part, 0..1, of a pixel-wide interval around `at` that lies within the picture, along
+// one axis [px]. `at`: 0 is the centre of the first pixel.
 double coverage(double at, int size) { return std::clamp(std::min(at + 1, size - at), 0.0, 1.0); }
 
 std::int32_t fixed(double at, int size) {
@@ -54,7 +54,8 @@ Light lightOf(const CorrectionSettings& s, const MeasuredCorrection* measured) {
   return light;
 }
 
-// `all`: the light of every pixel changes.
+// Returns which steps of the formula the run of pixels from `first` on needs. `all`: true if the
+// correction changes the light of every pixel.
 RunKind kindOf(const CorrectionMap& map, std::size_t first, bool all) {
   bool shown = false, changed = all;
   for (std::size_t i = first; i < first + kRun; ++i) {

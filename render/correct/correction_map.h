@@ -1,6 +1,6 @@
 // CorrectionMap: tables, computed once, of what a correction does to each pixel of an output. The
-// formula below is the reference: correct_pixels evaluates it on the CPU, and gpu/shader_pass,
-// which reads the same tables as textures, with the same result within 1 of 255.
+// formula below is the reference. correct_pixels evaluates it on the CPU. gpu/shader_pass reads the
+// same tables as textures; its results differ by at most 1 of 255.
 //
 // For the output's pixel p, with source position (X, Y), gain a and black share s from the tables:
 //   1. c = bilinear filter of the uncorrected picture's signal (0..1) between the centres of the
@@ -68,7 +68,7 @@ struct CorrectionMap {
 
   int width = 0, height = 0, stride = 0;         // of the output [px]
   int source_width = 0, source_height = 0;       // of the uncorrected picture [px], each >= 2
-  std::vector<std::int32_t> source_x, source_y;  // 0: first pixel's centre
+  std::vector<std::int32_t> source_x, source_y;  // in 1 / kOne pixels; 0: centre of the first pixel
   // `gain` holds sqrt(a): stored linearly, a step of 1 / 65535 near 0 would be three steps of an
   // 8-bit signal with gamma 2.4.
   std::vector<std::uint16_t> gain, black;

@@ -1,5 +1,5 @@
-// Port (an interface): evaluates the formula of correction_map.h elsewhere than on the CPU.
-// Implemented by ShaderPass (render/correct/gpu).
+// CorrectionPass: the port (an interface) to a processor other than the CPU that evaluates the
+// formula of correction_map.h. Implemented by ShaderPass (render/correct/gpu).
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@ class CorrectionPass {
  public:
   virtual ~CorrectionPass() = default;
 
-  // Computes the whole signal, as CorrectRows does for rows. Keeps data of a map as long as
+  // Computes the whole signal, as CorrectRows does for some rows. Keeps data of a map as long as
   // somebody else holds the map. Returns false if the pass is off or cannot compute this signal;
   // `signal` is undefined then, and the CPU has to compute it.
   virtual bool run(const std::shared_ptr<const CorrectionMap>& map,
                    std::span<const std::uint8_t> picture, std::span<std::uint8_t> signal) = 0;
 
-  // Whether draw() may draw.
+  // Returns whether draw() can draw into displays' memory at all.
   virtual bool canDraw() const { return false; }
-  // Draws the same signal into each of these places, of which there is at least one, and has
-  // finished when it returns. `picture`: the map's source size, RGBA; `signal`: width x height x 4
-  // bytes of the map; `rows`: 0 to height - 1, may repeat: those of the signal that are also
-  // written to their places in `signal`, whose rest is undefined. Returns false if it cannot draw
-  // there; then run() is to compute the signal. Waits for the GPU. Thread: that of run().
+  // Draws the signal that run() would compute into each of these places, at least one, and waits
+  // until the GPU has finished. `picture`: RGBA, of the map's source size. `signal`: 4 x width x
+  // height bytes for a map of that size. `rows`: numbers of rows, 0 to height - 1, which may
+  // repeat; only these rows are also written to `signal`, whose rest is undefined. Returns false if
+  // it cannot draw there; run() is then to compute the signal. Called on the thread of run().
   virtual bool draw(const std::shared_ptr<const CorrectionMap>& /*map*/,
                     std::span<const std::uint8_t> /*picture*/,
                     std::span<const out::DrawPlace> /*places*/, std::span<const int> /*rows*/,

@@ -20,8 +20,8 @@ class GridSurface {
   GridSurface(int columns, int rows, std::span<const Point> points, MeshInterpolation between)
       : columns_(columns), rows_(rows), points_(points), between_(between) {}
 
-  // The surface at (column, row), in grid units; outside the grid, the outermost cell is
-  // extrapolated. NaN if one of the points that contribute is NaN.
+  // Returns the surface's point at (column, row), in grid units; outside the grid, the outermost
+  // cell is extrapolated. NaN if one of the points that contribute is NaN.
   Point at(double column, double row) const noexcept;
 
  private:

@@ -17,8 +17,8 @@ class Homography {
   // corners of a convex quadrilateral that is not mirrored.
   explicit Homography(const std::array<Point, 4>& corners);
 
-  // map() goes from the unit square to the quadrilateral, unmap() back. Nothing if the point is on
-  // or beyond the line that maps to infinity.
+  // map() goes from the unit square to the quadrilateral, unmap() back. Both return nothing if the
+  // point is on or beyond the line that maps to infinity.
   std::optional<Point> map(Point p) const noexcept { return apply(forward_, p); }
   std::optional<Point> unmap(Point p) const noexcept { return apply(inverse_, p); }
 

@@ -35,7 +35,7 @@ out::Signal OutputCorrection::draw(const out::Signal& picture,
                                    std::span<const out::DrawPlace> places) {
   const CorrectionMap& map = *map_;
   assert(picture.width == map.source_width && picture.height == map.source_height);
-  // The rows by which the output's picture is judged.
+  // PictureChecks compares these rows with what the output shows, so they are needed in memory.
   const auto rows = out::digestRows(map.height);
   if (pass_ && pass_->draw(map_, picture.pixels, places, rows, pixels_))
     return {map.width, map.height, pixels_, true};

@@ -22,7 +22,8 @@ class OutputCorrection final : public frame::Correction {
   // it must outlive this; null: the CPU computes all.
   OutputCorrection(CorrectionMap map, Threads threads, CorrectionPass* pass = nullptr);
 
-  // One pass over the output. REQUIRES: the picture has the map's source size.
+  // Computes the signal, in one pass over the output's pixels. REQUIRES: the picture has the map's
+  // source size.
   out::Signal apply(const out::Signal& picture) override;
 
   bool canDraw() override { return pass_ && pass_->canDraw(); }

@@ -7,9 +7,9 @@
 
 namespace merlin::render::correct {
 
-// x ^ y for x in 0..16 and y in 0.05..4, with a relative error of at most 1.5e-4: a step of an
-// 8-bit signal is 25 times as large. 0 if x is 0. The polynomials have the least relative error of
-// their degree (Remez).
+// Returns x ^ y for each element x in 0..16 and y in 0.05..4, with a relative error of at most
+// 1.5e-4: a step of an 8-bit signal is 25 times as large. 0 if x is 0. The polynomials have the
+// least relative error of their degree (Remez).
 MERLIN_INLINE simd::Floats power(const simd::Floats& x, float y) {
   constexpr std::int32_t kRootHalf = 0x3F3504F3;  // bits of 0.7071
   constexpr float kLeast = 5e-10F;                // its fourth power is still a normal number

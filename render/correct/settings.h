@@ -39,7 +39,7 @@ struct MeshSettings {
 struct BlendSettings {
   double left = 0, right = 0, top = 0, bottom = 0;
   double gamma = 2.2;  // the display's: light = signal ^ gamma
-  // Whether the strips are those that follow from where the screens are: see out/room_blend.h.
+  // True: the strips are computed from the screens' positions, see out/room_blend.h.
   bool automatic = false;
 
   bool hasRamp() const { return left > 0 || right > 0 || top > 0 || bottom > 0; }
@@ -70,12 +70,13 @@ struct CorrectionSettings {
   std::array<double, 8> corners{};
   MeshSettings mesh{};
   std::string mpcdi{};         // file with a measured warp and blend, instead of mesh and blend
-  std::string mpcdi_region{};  // which of its regions; empty: the only one
+  std::string mpcdi_region{};  // id of the file's region to use; empty: the only one
   BlendSettings blend{};
   ColourSettings colour{};
   BlackSettings black{};
 
-  // Whether the output is sent the uncorrected picture.
+  // Returns whether the settings correct nothing, so that the output is sent the uncorrected
+  // picture.
   bool isOff() const;
   bool operator==(const CorrectionSettings&) const = default;
 };

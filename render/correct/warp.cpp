@@ -20,8 +20,8 @@ double turn(Point a, Point b, Point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Whether the quadrilateral is convex and not mirrored: all four corner triangles have at least
-// this double area. p: 00, 10, 01, 11.
+// Returns whether the quadrilateral is convex and not mirrored: all four corner triangles have at
+// least this double area. p: 00, 10, 01, 11.
 bool isUpright(const std::array<Point, 4>& p, double least) {
   return turn(p[0], p[1], p[2]) > least && turn(p[1], p[3], p[0]) > least &&
          turn(p[3], p[2], p[1]) > least && turn(p[2], p[0], p[3]) > least;
@@ -40,7 +40,7 @@ std::array<Point, 4> pinnedCorners(const CorrectionSettings& s, int width, int h
 struct Warp::Patch {
   double u0, v0, u1, v1;
   std::array<Point, 4> corners;
-  double left, top, right, bottom;  // of the pixels that it may cover
+  double left, top, right, bottom;  // bounds of the pixels that the patch may cover
 };
 
 Warp::Warp(const CorrectionSettings& settings, int width, int height, const MeasuredWarp* measured)

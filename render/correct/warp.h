@@ -27,13 +27,14 @@ struct MeasuredWarp {
   MeshInterpolation between = MeshInterpolation::kBilinear;
 };
 
-// Point of the uncorrected picture that a pixel's centre shows; NaN: none. May lie outside 0..1 by
-// some pixels.
+// The point of the uncorrected picture that a pixel's centre shows; NaN: none. It may lie outside
+// 0..1 by some pixels.
 struct Place {
   float u, v;
 };
 
-// The picture's corners on the output, moved by settings.corners [px], in the order of Homography.
+// Returns the positions [px] of the picture's corners on an output of width x height pixels, moved
+// by settings.corners, in the order of Homography.
 std::array<Point, 4> pinnedCorners(const CorrectionSettings& settings, int width, int height);
 
 class Warp {
@@ -43,18 +44,19 @@ class Warp {
   Warp(const CorrectionSettings& settings, int width, int height,
        const MeasuredWarp* measured = nullptr);
 
-  // Position of (u, v) on the output [px]; nothing if it is beyond the line that maps to infinity.
-  // Not for a measured warp, which has no forward direction.
+  // Returns the position of (u, v) on the output [px]; nothing if it is beyond the line that maps
+  // to infinity. Not for a measured warp, which has no forward direction.
   std::optional<Point> land(Point meant) const noexcept;
 
   struct Cell {
     int column, row;
   };
-  // The first cell of the mesh, row by row, in which the picture is mirrored or has no area.
+  // Returns the first cell of the mesh, row by row, in which the picture is mirrored or has no
+  // area; nothing if there is none.
   std::optional<Cell> fold() const;
 
-  // The point that each output pixel shows, row by row. REQUIRES: fold() finds nothing. Takes about
-  // 400 ns per pixel if there is a mesh.
+  // Returns the point that each output pixel shows, row by row. REQUIRES: fold() finds nothing.
+  // Takes about 400 ns per pixel if there is a mesh.
   std::vector<Place> places(Threads threads) const;
 
  private:
@@ -70,7 +72,7 @@ class Warp {
   const MeasuredWarp* measured_;
   int width_, height_;
   Homography pin_;
-  std::vector<Point> points_;  // of the mesh
+  std::vector<Point> points_;  // points of the mesh
 };
 
 }  // namespace merlin::render::correct

@@ -17,16 +17,17 @@ class Correction {
   // until the next call.
   virtual out::Signal apply(const out::Signal& canvas) = 0;
 
-  // Whether the next draw() may draw, so that it is worth asking the output for places.
+  // Returns whether the next draw() can draw into the output's memory, so that the output is to be
+  // asked for places.
   virtual bool canDraw() { return false; }
-  // Draws the signal of apply() into all these places of the output, at least one, and has finished
-  // when it returns; Signal::drawn then says so. If it cannot draw there, it returns what apply()
-  // returns. To be called after canDraw() returned true.
+  // Draws the signal that apply() would return into all these places of the output (at least one),
+  // waits until drawing has finished, and returns it with Signal::drawn set. If it cannot draw
+  // there, it returns what apply() returns. To be called after canDraw() returned true.
   virtual out::Signal draw(const out::Signal& canvas, std::span<const out::DrawPlace> /*places*/) {
     return apply(canvas);
   }
 
-  // Whether apply() would return a different signal for the same canvas than it did last.
+  // Returns whether apply() would return a different signal for the same canvas than it did last.
   virtual bool hasChanged() const { return false; }
 };
 

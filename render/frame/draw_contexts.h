@@ -23,7 +23,7 @@ struct DrawContexts {
   // kUnsupported (fewer contexts can be created than are configured).
   static Result<std::shared_ptr<DrawContexts>> make(const gl::GlSettings& settings);
 
-  std::string renderer() const;  // for a person
+  std::string renderer() const;  // name of the renderer, for a person
 };
 
 }  // namespace merlin::render::frame

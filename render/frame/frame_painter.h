@@ -47,17 +47,17 @@ class FramePainter {
   // Refined frames keep full size. The divisor is 1 initially. REQUIRES: divisor >= 1.
   virtual void setSizeDivisor(int divisor) = 0;
 
-  // Whether any tile of the wall may show any part of the content.
+  // Returns whether any tile of the wall may show any part of the content.
   virtual bool sees(const Eigen::Isometry3f& T_eye_content) const = 0;
 
-  // Whether the frame begun last lacks parts of the content that are still being loaded.
+  // Returns whether the frame begun last lacks parts of the content that are still being loaded.
   virtual content::Pending pending() const noexcept { return content::Pending::kNothing; }
 
-  // Steps of the last draw() or refine(), in order.
+  // Returns the timed steps of the last draw() or refine(), in order.
   virtual std::span<const FrameStep> steps() const noexcept = 0;
 
-  // The canvas: RGBA, rows from top to bottom, of the size of the plan's frame. Whoever draws
-  // overlays on it must erase them again.
+  // Returns the canvas: RGBA, rows from top to bottom, of the size of the plan's frame. Whoever
+  // draws overlays on it must erase them again.
   virtual std::span<std::uint8_t> pixels() noexcept = 0;
 };
 

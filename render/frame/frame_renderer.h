@@ -32,7 +32,8 @@ class FrameRenderer final : public FramePainter {
   FrameRenderer(const FrameRenderer&) = delete;
   FrameRenderer& operator=(const FrameRenderer&) = delete;
 
-  // Draws once in each way that frames are drawn, so that no shader is compiled during a frame.
+  // Draws once in each way in which frames are drawn, so that no shader is compiled later during a
+  // frame.
   void warmUp(const Eigen::Isometry3f& T_eye_content);
 
   DrawTimes draw(const Request& request) override;
@@ -54,7 +55,7 @@ class FrameRenderer final : public FramePainter {
   bool isOperators(std::size_t tile) const {
     return plan_.tiles[tile].kind == tiles::TileKind::kOperator;
   }
-  // What drawing some of a frame's tiles took; times are sums over all threads.
+  // The times that drawing some of a frame's tiles took; sums over all threads.
   struct TileTimes {
     DrawTimes times;
     Duration operators{};  // part of times.drawing: the operator's views

@@ -12,7 +12,7 @@ class Overlay {
  public:
   virtual ~Overlay() = default;
 
-  // Whether draw() would now draw something else than it did last.
+  // Returns whether draw() would now draw something else than it did last.
   virtual bool hasChanged() const = 0;
 
   // Draws into the canvas: RGBA of the plan's frame.

@@ -20,8 +20,8 @@ class PointerMarker final : public Overlay {
   // Borrows `plan`.
   explicit PointerMarker(const tiles::TilePlan& plan);
 
-  // The pixel of the frame in which a wall tile shows the point (eye coordinates, metres); the
-  // pixel's centre is at x + 0.5, y + 0.5. Nothing if no wall tile shows the point.
+  // Returns the pixel of the frame in which a wall tile shows the point (eye coordinates, metres);
+  // the pixel's centre is at x + 0.5, y + 0.5. Nothing if no wall tile shows the point.
   std::optional<Eigen::Vector2i> pixelOf(const Eigen::Vector3f& at_eye_m) const;
 
   // Where hands point, in eye coordinates [m]. The first point is that of the hand that acts on the

@@ -12,7 +12,7 @@
 
 namespace merlin::render::frame {
 
-// apply() and hasChanged() are for the wall's thread; replace() for one other thread at a time.
+// replace() is called by one other thread at a time, all other functions by the wall's thread.
 class ReplaceableCorrection final : public Correction {
  public:
   explicit ReplaceableCorrection(std::unique_ptr<Correction> first = nullptr)
@@ -31,14 +31,13 @@ class ReplaceableCorrection final : public Correction {
   bool hasChanged() const override { return waiting_ || (current_ && current_->hasChanged()); }
 
   // Without a correction this costs nothing. Never waits: if replace() is running at the same time,
-  // the next
-  // frame uses the new correction.
+  // the next frame uses the new correction.
   out::Signal apply(const out::Signal& canvas) override {
     if (waiting_) take();
     return current_ ? current_->apply(canvas) : canvas;
   }
 
-  // draw() uses the correction that canDraw() asked, which is the newest one.
+  // Takes the newest correction, which the draw() that follows then uses too.
   bool canDraw() override {
     if (waiting_) take();
     return current_ && current_->canDraw();

@@ -10,8 +10,8 @@ namespace merlin::render::frame {
 enum class CorrectionPlace { kAuto, kCpu, kGpu };  // kAuto: where frames are drawn
 inline constexpr const char* kCorrectionPlaceNames[] = {"auto", "cpu", "gpu"};
 
-// How a signal that a shader makes comes to the displays of an output of kind kms. In the order of
-// kScanOutNames.
+// How a signal that a shader has computed reaches the displays of an output of kind kms. In the
+// order of kScanOutNames.
 enum class ScanOutMode {
   kAuto,    // drawn into the memory that the display shows, where a GPU can do so
   kCopied,  // read back and copied
@@ -23,8 +23,9 @@ struct RenderSettings {
   content::ModelSettings model{};
   CorrectionPlace correction = CorrectionPlace::kAuto;
   ScanOutMode scan_out = ScanOutMode::kAuto;
-  int picture_memory_mb = 0;  // for picture tiles, in memory and textures; 0: from the wall's size
-  int fade_frames = 3;        // duration of the fade to a finer frame of a still scene
+  // [MB] for the tiles of pictures, in memory and in textures; 0: by the wall's size.
+  int picture_memory_mb = 0;
+  int fade_frames = 3;  // duration of the fade to a finer frame of a still scene
 };
 
 }  // namespace merlin::render::frame

@@ -12,9 +12,9 @@ class SignalWatcher {
  public:
   virtual ~SignalWatcher() = default;
 
-  // Whether see() is to be called with the next signal of output `i`.
+  // Returns whether see() is to be called with the next signal of output `i`.
   virtual bool wants(std::size_t i) const = 0;
-  // Receives that signal, whose pixels are valid only during the call.
+  // Receives the signal that output `i` was sent; its pixels are valid only during the call.
   virtual void see(std::size_t i, const out::Signal& signal, const out::FrameInfo& info) = 0;
 };
 

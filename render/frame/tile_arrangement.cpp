@@ -42,7 +42,7 @@ TileArrangement::TileArrangement(const tiles::TilePlan& plan,
   for (const out::PlacedTile& p : tiles) {
     const tiles::Tile& t = tileOf(plan, p.tile);
     const auto [column, row] = axesOf(p);
-    int x = p.x, y = p.y;  // of the tile's upper left pixel on the output
+    int x = p.x, y = p.y;  // position of the tile's upper left pixel on the output
     for (const auto& [step, count] : {std::pair{column, t.width}, std::pair{row, t.height}}) {
       x += step.x < 0 ? count - 1 : 0;
       y += step.y < 0 ? count - 1 : 0;

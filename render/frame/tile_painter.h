@@ -29,8 +29,8 @@ class TilePainter {
                                                    const tiles::TilePlan& plan, const Clock& clock,
                                                    bool asynchronous);
 
-  // Called once per frame, after the content has chosen its detail. Abandons a tile that is being
-  // refined.
+  // Begins a frame, after the content has chosen its detail: uploads what was chosen. Abandons a
+  // tile that is being refined.
   void begin();
 
   // Draws the tile at 1/divisor of its width and height and copies it, upscaled, to its position in
@@ -59,7 +59,7 @@ class TilePainter {
   struct Unread {
     std::size_t tile;
     int divisor;
-    Duration given{};      // time that giving it to the GPU took
+    Duration given{};      // time that it took to submit the tile to the GPU
     bool awaited = false;  // awaitDrawn() has waited for it
   };
 

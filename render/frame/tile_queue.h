@@ -11,7 +11,8 @@ namespace merlin::render::frame {
 // take() and done() are thread-safe; begin() may only be called while no thread uses the queue.
 class TileQueue {
  public:
-  // Indices of tiles in the plan, in the order in which take() returns them.
+  // Starts anew. `tiles`: indices in the plan, in the order in which take() returns them; after the
+  // last one take() returns kNone. Each taken tile is to be reported by done().
   void begin(std::span<const std::size_t> tiles) {
     tiles_.assign(tiles.begin(), tiles.end());
     next_ = done_ = 0;

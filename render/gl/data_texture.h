@@ -9,14 +9,15 @@ namespace merlin::render::gl {
 // Thread-bound to its context, which must outlive it.
 class DataTexture {
  public:
-  // What a texel is, and the sampler that a shader reads it by.
+  // Type of a texel, and the type of sampler that reads it in a shader.
   enum class Texels {
     kRgba8,   // 4 bytes; sampler2D
     kInt32,   // isampler2D
     kUint16,  // usampler2D
     kUint8,   // usampler2D
   };
-  // Size in texels. Errors: kUnsupported (larger than this OpenGL allows, or no memory).
+  // Makes a texture of this size [texels]. Errors: kUnsupported (larger than this OpenGL allows, or
+  // no memory).
   static Result<DataTexture> make(const GlApi& gl, Texels texels, int width, int height);
 
   DataTexture(DataTexture&& other) noexcept;

@@ -1,4 +1,4 @@
-// DrawTimer: how long the GPU took for a part of its work.
+// DrawTimer: measures how long the GPU takes for the commands between begin() and end().
 #pragma once
 
 #include <utility>

@@ -27,7 +27,7 @@ Error eglError(const char* step) {
                       step, eglGetError())};
 }
 
-// The PCI address of the device with this DRM node; empty if it has none.
+// Returns the PCI address of the device with this DRM node; empty if it has none.
 std::string pciOf(const std::string& node) {
   namespace fs = std::filesystem;
   if (node.empty()) return {};
@@ -78,8 +78,8 @@ class EglContext final : public GlContext {
   }
 
   Result<RenderTarget> importTarget(const DmaBuf& buffer) const override {
-    // Mesa's software renderer offers the import also where it then crashes: on a display that is
-    // no device's, or of which it may not map the memory.
+    // Mesa's software renderer offers the import even where it would then crash: on a display
+    // without a device, or if it may not map the device's memory.
     if (info_.software) return Error{Errc::kUnsupported, "the CPU draws, not the display's GPU"};
     // Another GPU's driver may take the memory and then draw into a copy of it, or hang.
     if (folder_.empty() || folder_ != buffer.device) {

@@ -17,12 +17,13 @@ struct EglDevice {
   std::string card{};      // DRM node of the card's displays; empty if unknown
   std::string pci{};       // PCI address; empty if unknown
 };
-// In EGL's order; empty if EGL cannot list devices.
+// Lists EGL's devices, at most 16, in EGL's order; empty if EGL cannot list devices.
 std::vector<EglDevice> eglDevices();
 
-// These create a context that is current on the calling thread. Errors: kUnsupported.
+// Creates a context on this device, current on the calling thread. Errors: kUnsupported.
 Result<std::unique_ptr<GlContext>> makeEglContext(const EglDevice& device);
-// Uses the EGL display that belongs to no device: Mesa then chooses a GPU or its software renderer.
+// Creates a context, current on the calling thread, on the EGL display that belongs to no device:
+// Mesa then chooses a GPU or its software renderer. Errors: kUnsupported.
 Result<std::unique_ptr<GlContext>> makeSurfacelessContext();
 
 }  // namespace merlin::render::gl

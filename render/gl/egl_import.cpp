@@ -11,7 +11,7 @@
 namespace merlin::render::gl {
 namespace {
 
-// Of GL_OES_EGL_image, which glcorearb.h does not have.
+// Type of glEGLImageTargetRenderbufferStorageOES() of GL_OES_EGL_image, which glcorearb.h lacks.
 using TakeImage = void (*)(GLenum target, void* image);
 
 bool offers(EGLDisplay display, std::string_view extension) {
@@ -20,8 +20,8 @@ bool offers(EGLDisplay display, std::string_view extension) {
   return padded.find(fmt::format(" {} ", extension)) != std::string::npos;
 }
 
-// Whether the driver lists modifiers for this format of pixels. One that lists none takes memory as
-// its own kernel driver describes it.
+// Returns whether the driver lists modifiers for this pixel format. A driver that lists none takes
+// the memory's layout from its kernel driver.
 bool knowsModifiers(EGLDisplay display, std::uint32_t format) {
   if (!offers(display, "EGL_EXT_image_dma_buf_import_modifiers")) return false;
   const auto query = reinterpret_cast<PFNEGLQUERYDMABUFMODIFIERSEXTPROC>(
@@ -73,7 +73,8 @@ Result<RenderTarget> importTarget(void* display, const GlApi& gl, const DmaBuf& 
       reinterpret_cast<PFNEGLDESTROYIMAGEKHRPROC>(eglGetProcAddress("eglDestroyImageKHR"));
   if (!take || !destroy || !offers(display, "EGL_EXT_image_dma_buf_import"))
     return Error{Errc::kUnsupported, "the driver lacks EGL_EXT_image_dma_buf_import"};
-  // A driver that refuses the modifier is not asked without: it could take rows for tiles then.
+  // If the driver refuses the modifier, the import is not tried without it: the driver could then
+  // take linear rows for tiles.
   const EGLImageKHR image = makeImage(display, buffer, knowsModifiers(display, buffer.format));
   if (image == EGL_NO_IMAGE_KHR)
     return refused("eglCreateImage", buffer, static_cast<unsigned>(eglGetError()));

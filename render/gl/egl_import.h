@@ -9,8 +9,9 @@
 
 namespace merlin::render::gl {
 
-// `display`: the EGLDisplay of the current context, whose functions are `gl`. Asks the driver
-// whatever the memory is. Errors: kUnsupported: what the driver lacks or refuses.
+// Makes a render target of the memory `buffer`. `display`: the EGLDisplay of the current context,
+// whose functions are `gl`. Does not check to which device the memory belongs. Errors:
+// kUnsupported: what the driver lacks or refuses.
 Result<RenderTarget> importTarget(void* display, const GlApi& gl, const DmaBuf& buffer);
 
 }  // namespace merlin::render::gl

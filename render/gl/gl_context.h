@@ -23,12 +23,12 @@ class GlContext {
 
   const GlApi& gl() const noexcept { return api_; }
   const RendererInfo& info() const noexcept { return info_; }
-  // "EGL, llvmpipe (LLVM 15.0.6, 256 bits)"; for a person.
+  // Names library and device for a person: "EGL, llvmpipe (LLVM 15.0.6, 256 bits)".
   std::string renderer() const { return info_.library + ", " + info_.name; }
 
-  // Whether the GPU was reset, by a driver that gave up on it: the context and all that it holds
-  // are lost, and frames stay black. Stays true, since some drivers report a reset only once. False
-  // if the driver does not report resets.
+  // Returns whether the driver has reset the GPU: the context and all that it holds are then lost,
+  // and frames stay black. Stays true, since some drivers report a reset only once. False if the
+  // driver does not report resets.
   bool wasReset() const {
     if (!was_reset_ && api_.GetGraphicsResetStatus)
       was_reset_ = api_.GetGraphicsResetStatus() != GL_NO_ERROR;
@@ -54,15 +54,15 @@ class GlContext {
   mutable bool was_reset_ = false;
 };
 
-// `gpu`: as GlSettings::gpu; kAnyGpu takes the first GPU on which a context can be created, else
-// the software renderer. Errors: kUnsupported, with what is missing (the library, the context or an
-// OpenGL function); kInvalidArgument (`gpu` names no GPU of this machine, or OSMesa was asked for a
-// GPU).
+// Creates a context that is current on the calling thread. `gpu`: as GlSettings::gpu; kAnyGpu takes
+// the first GPU on which a context can be created, else the software renderer. Errors:
+// kUnsupported, with what is missing (the library, the context or an OpenGL function);
+// kInvalidArgument (`gpu` names no GPU of this machine, or OSMesa was asked for a GPU).
 Result<std::unique_ptr<GlContext>> makeGlContext(GlBackend backend,
                                                  const std::string& gpu = kAnyGpu);
 
-// Whether makeGlContext() would find this GPU. Cheap for kAnyGpu and kNoGpu; otherwise it takes as
-// long as listGpus(). Errors: kInvalidArgument, as makeGlContext().
+// Checks that makeGlContext() would find this GPU. Cheap for kAnyGpu and kNoGpu; otherwise it takes
+// as long as listGpus(). Errors: kInvalidArgument, as for makeGlContext().
 Result<Ok> checkGpu(GlBackend backend, const std::string& gpu);
 
 // Prepares the process for Mesa's software renderer: sets the number of its raster threads (0: it

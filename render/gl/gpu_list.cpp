@@ -35,7 +35,7 @@ Error cannotChoose(std::span<const Gpu> gpus, const std::string& wanted, const c
                   all.empty() ? "no GPU that EGL lists" : fmt::to_string(fmt::join(all, "; ")))};
 }
 
-// Whether `wanted` is an exact name of the GPU; exact names come before parts of names.
+// Returns whether `wanted` is an exact name of the GPU; exact names come before parts of names.
 bool isNamed(const Gpu& gpu, const std::string& wanted) {
   return !wanted.empty() && (gpu.renderer.node == wanted || gpu.card == wanted ||
                              gpu.renderer.pci == wanted || "0000:" + wanted == gpu.renderer.pci);

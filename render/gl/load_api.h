@@ -12,8 +12,8 @@
 
 namespace merlin::render::gl {
 
-// `resolve(name)` returns a function of any type, or null. Errors: kUnsupported, with the first
-// function that is missing.
+// Resolves all functions of GlApi except GetGraphicsResetStatus. `resolve(name)` returns a function
+// of any type, or null. Errors: kUnsupported, with the first function that is missing.
 template <typename Resolve>
 Result<GlApi> loadApi(Resolve resolve) {
   GlApi api;

@@ -8,7 +8,8 @@
 
 namespace merlin::render::gl {
 
-// Current on the calling thread. Errors: kUnsupported.
+// Creates OSMesa's context, current on the calling thread. Errors: kUnsupported (the library is
+// missing or too old).
 Result<std::unique_ptr<GlContext>> makeOsmesaContext();
 
 }  // namespace merlin::render::gl

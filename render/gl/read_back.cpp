@@ -7,7 +7,8 @@
 namespace merlin::render::gl {
 namespace {
 
-constexpr GLuint64 kLook_ns = 1'000'000'000;  // a GPU that is reset signals its fences
+constexpr GLuint64 kLook_ns = 1'000'000'000;  // the wait is repeated after this time; it ends even
+                                              // if the GPU is reset, which signals its fences
 
 }  // namespace
 

@@ -25,8 +25,9 @@ class ReadBack {
   // the target.
   void start(const RenderTarget& target, int width, int height);
 
-  // The same for `width` pixels from column `x` on of each of these rows; finish() writes the rows
-  // one below the other. REQUIRES: the pixels lie within the target.
+  // Begins to copy `width` pixels from column `x` on of each of these rows; finish() writes the
+  // rows one below the other. Drops an unfinished copy, like start(). REQUIRES: the pixels lie
+  // within the target.
   void startRows(const RenderTarget& target, int x, int width, std::span<const int> rows);
 
   // Waits until the copy is complete and writes it to `pixels` as RenderTarget::read() does.

@@ -14,7 +14,8 @@ enum class Depth { kNone, k24Bits };
 // Thread-bound to its context, which must outlive it.
 class RenderTarget {
  public:
-  // Sizes in pixels. Errors: kUnsupported (the context cannot create a target of this size).
+  // Makes a target of this size [px]. Errors: kUnsupported (the context cannot create a target of
+  // this size).
   static Result<RenderTarget> make(const GlApi& gl, int width, int height,
                                    Depth depth = Depth::k24Bits);
   // Makes a target of a renderbuffer that has its memory already, and takes it over. Errors:

@@ -16,7 +16,7 @@ struct RendererInfo {
   bool software = true;   // drawn by the CPU
 };
 
-// True if a renderer of this name (GL_RENDERER) draws on the CPU.
+// Returns true if a renderer of this name (GL_RENDERER) draws on the CPU.
 bool isSoftwareRenderer(std::string_view name);
 
 }  // namespace merlin::render::gl

@@ -25,7 +25,8 @@ struct GlSettings {
   // Number of contexts that share the tiles, each on its own thread; 0: two for Mesa's software
   // renderer on more than one core, else one.
   int contexts = 0;
-  int raster_threads = 0;  // of Mesa's software renderer; 0: it rasterises on the calling thread
+  // Threads of Mesa's software renderer; 0: it rasterises on the calling thread.
+  int raster_threads = 0;
   // What draws: kAnyGpu, kNoGpu (software), or a GPU as chooseGpu() finds it.
   std::string gpu = kAnyGpu;
   ReadBackMode read_back = ReadBackMode::kAuto;

@@ -6,7 +6,8 @@
 
 namespace merlin::render::gl {
 
-// Errors: kUnsupported, with the compiler's log.
+// Returns the OpenGL name of the linked program, which the caller deletes. Errors: kUnsupported,
+// with the log of the compiler or linker.
 Result<GLuint> linkProgram(const GlApi& gl, const char* vertex_source, const char* fragment_source);
 
 }  // namespace merlin::render::gl

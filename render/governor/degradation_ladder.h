@@ -1,6 +1,6 @@
 // DegradationLadder: decides when quality other than detail is reduced, and when it is restored, if
-// not even frames of the coarsest detail meet their deadlines. The caller decides what each step
-// means (the wall: smaller tiles, then lower frame rates).
+// even frames of the coarsest detail miss their deadlines. The caller decides what each step means
+// (the wall: smaller tiles, then lower frame rates).
 //
 // Both rules are statistical tests of the share of late frames and count frames, not seconds.
 // README.md says where the figures come from.
@@ -15,12 +15,13 @@ namespace merlin::render::governor {
 // Pure; thread-bound.
 class DegradationLadder {
  public:
-  // `most`: number of the lowest step; step 0 is the top.
+  // `most`: number of the lowest step, i.e. of the worst quality; step 0 is full quality.
   explicit DegradationLadder(int most) noexcept : most_(most) {}
 
-  // To be called after each deadline that passed while something moved. `least`: its frame had the
-  // coarsest detail, or there was no time to draw it at all. `higher_fits`: the coarsest detail is
-  // expected to fit at the next higher step. Returns whether the step has changed.
+  // To be called after each deadline that passed while something moved, with the frame that had
+  // this deadline. `late`: the frame was late. `least`: it had the coarsest detail, or there was no
+  // time to draw it at all. `higher_fits`: the coarsest detail is expected to fit at the next
+  // higher step. Returns whether the step has changed.
   bool observe(bool late, bool least, bool higher_fits) noexcept;
 
   int step() const noexcept { return step_; }  // 0: full quality
@@ -35,7 +36,7 @@ class DegradationLadder {
   int most_;
   int step_ = 0;
   double evidence_ = 0;  // cumulative sum of log-likelihood ratios, >= 0
-  int clean_ = 0;        // frames in time, in a row
+  int clean_ = 0;        // number of frames in time in a row
 };
 
 }  // namespace merlin::render::governor

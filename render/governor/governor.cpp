@@ -28,8 +28,8 @@ constexpr double kSlow = 0.05, kSlowUp = 0.15, kDearer = 0.05, kCheaper = 0.10;
 constexpr double kNoiseStep = 1.02, kQuiet = 0.03, kMostUnrest = 3;
 // A rising load is extrapolated by the slope of this many frames.
 constexpr double kAhead = 3;
-// When a single late frame sets c: the factor for its noise, and the largest factor by which c may
-// grow.
+// If a single late frame sets c: factor on its measured c, to allow for its noise, and the largest
+// factor by which c may grow.
 constexpr double kOneFrame = 1.06, kMostJump = 6;
 // If c of the next frame is below this multiple of c before the late frame, that one was an
 // outlier.
@@ -167,8 +167,8 @@ void Governor::jumpTo(double per) noexcept {
   slope_ = 0;
 }
 
-// 1 on an otherwise idle machine; more if the load of other processes varies the cost of the same
-// frame.
+// Returns 1 on an otherwise idle machine, and more if the load of other processes varies the cost
+// of the same frame.
 double Governor::unrest() const noexcept { return std::min(noise_ / kQuiet, kMostUnrest); }
 
 // The trend follows a load that rises for seconds without lag, but is noisy. So c follows slowly as
@@ -260,7 +260,7 @@ double Governor::clamped(double triangles) const noexcept {
                     static_cast<double>(settings_.max_triangles));
 }
 
-// The inverse of the cost model: triangles whose predicted time is `seconds`.
+// Returns the number of triangles whose predicted time is `seconds`: the inverse of the cost model.
 double Governor::fitting(double seconds) const noexcept {
   return std::pow(std::max(seconds - fixed_, 0.0) / per_, 1 / exponent_);
 }

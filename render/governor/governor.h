@@ -29,7 +29,7 @@ namespace merlin::render::governor {
 
 // One frame that was drawn while something moved.
 struct FrameCost {
-  std::size_t triangles = 0;  // requested
+  std::size_t triangles = 0;  // requested number of triangles
   Duration fixed{};           // part of `work` that does not depend on the triangles
   // Time (> 0) from the frame's begin to its last pixel, as if no view had been drawn coarser to
   // save time. If longer than the period, the frame counts as one of the late frames in a row.
@@ -44,20 +44,22 @@ class Governor {
   // 0 < late_share < 1.
   explicit Governor(const GovernorSettings& settings) noexcept;
 
-  // Triangle budget of the next frame while something moves: triangles of the model, each counted
-  // once however many tiles show it.
+  // Returns the triangle budget of the next frame while something moves. A triangle of the model
+  // counts once, however many tiles show it.
   std::size_t budget() const noexcept;
 
-  // The budget of a frame that has only `available` left until its deadline, because the previous
-  // frame overran: the number of triangles that the cost model expects to fit; 0 if not even
-  // least() fit.
+  // Returns the budget of a frame that has only `available` left until its deadline, because the
+  // previous frame overran: the number of triangles that the cost model expects to fit, at most
+  // budget(); 0 if not even least() fit. Returns budget() if it is held, before the first
+  // measurement, and if almost the whole period is left.
   std::size_t budgetFor(Duration available) const noexcept;
 
-  // Triangles of a frame that takes `work` according to the cost model, without head room and
-  // independent of the last budget, within least() and max_triangles. Returns budget() before
-  // the first measurement.
+  // Returns the number of triangles of a frame that takes `work` according to the cost model,
+  // without head room and independent of the last budget, within least() and max_triangles. Returns
+  // budget() before the first measurement.
   std::size_t costWithin(Duration work) const noexcept;
 
+  // Learns from a frame that was drawn while something moved, and sets the budget of the next one.
   // REQUIRES: cost.work > 0, 0 <= cost.fixed <= cost.work.
   void observe(const FrameCost& cost) noexcept;
 
@@ -91,7 +93,7 @@ class Governor {
   // nothing.
   void setLimits(const GovernorSettings& settings) noexcept;
 
-  // The time that the model expects `triangles` to take, in seconds.
+  // Returns the time that the cost model expects for `triangles` [s].
   double predict(std::size_t triangles) const noexcept;
 
   double headRoom() const noexcept { return head_room_; }  // share of the period
@@ -99,12 +101,13 @@ class Governor {
   double coefficient() const noexcept { return per_; }     // c; 0 before the first frame
   double exponent() const noexcept { return exponent_; }   // p
   Duration period() const noexcept { return period_; }
-  // The lower limit of the budget, for the content that is shown.
+  // Returns the lower limit of the budget for the content that is shown.
   std::size_t least() const noexcept {
     return std::min(settings_.min_triangles, least_useful_.value_or(settings_.min_triangles));
   }
-  std::size_t most() const noexcept { return settings_.max_triangles; }  // its upper limit
-  // The lowest rate that the caller may set because frames are late.
+  // Returns the upper limit of the budget.
+  std::size_t most() const noexcept { return settings_.max_triangles; }
+  // Returns the lowest frame rate that the caller may set because frames are late.
   double minRateHz() const noexcept { return settings_.min_rate_hz; }
 
  private:

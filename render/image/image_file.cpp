@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
 
-// Returns an image of this size; with `head`, without memory for pixels, as only the header is
-// wanted.
+// Returns an image of this size. `head`: only the header is wanted, so no memory for pixels is
+// allocated.
 Result<ImageFile> sized(std::uint64_t width, std::uint64_t height, bool head) {
   if (width == 0 || height == 0 || width > kMostPixels / height) {
     return Error{Errc::kUnsupported,
@@ -72,8 +72,8 @@ Result<ImageFile> readAny(std::string_view bytes, bool head) {
   return Error{Errc::kUnsupported, "is neither PNG nor JPEG"};
 }
 
-// The two of n pixels in a row whose centres are nearest to texture coordinate `place`, and its
-// position between them: 0 at the first, 1 at the second.
+// The two of n pixels in a row whose centres are nearest to texture coordinate `place`, and where
+// it lies between them: 0 at the first, 1 at the second.
 struct Between {
   int low, high;
   float share;

@@ -1,4 +1,4 @@
-// A small picture of a whole pyramid.
+// Makes a small picture of a whole pyramid.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace merlin::render::image {
 
-// The coarsest level whose longer side has at least kOverviewSide pixels, or the finest level, as
-// one image. Reads at most 36 tiles: a few milliseconds and 10 MB. Errors: those of
-// PyramidReader::readTile().
+// Returns one level of the pyramid as one image: the coarsest one whose longer side has at least
+// kOverviewSide pixels, or else the finest one. Reads at most 36 tiles: a few milliseconds and 10
+// MB. Errors: those of PyramidReader::readTile().
 Result<Image> readOverview(std::shared_ptr<const PyramidFile> file);
 
 inline constexpr std::int64_t kOverviewSide = 640;

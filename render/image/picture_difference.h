@@ -1,4 +1,4 @@
-// PictureDifference: the pixels in which two images differ visibly.
+// PictureDifference: finds the pixels in which two images differ visibly. Pure.
 #pragma once
 
 #include <array>
@@ -11,12 +11,13 @@ namespace merlin::render::image {
 // than 15 % of its range ([GOURLEY98] figures 5.30 to 5.35).
 struct PictureDifference {
   Image image;  // changed pixels white, the others black; alpha 0
-  // Changed pixels as a percentage of the pixels that differ from `background` in at least one
-  // image.
+  // Number of changed pixels, in percent of the pixels that differ from `background` in at least
+  // one of the images.
   double changed_percent = 0;
 };
 
-// `background`: red, green, blue, each 0..1. REQUIRES: `a` and `b` have the same size.
+// Compares two images. `background`: red, green, blue, each 0..1. REQUIRES: `a` and `b` have the
+// same size.
 PictureDifference differenceOf(const Image& a, const Image& b,
                                const std::array<float, 3>& background);
 

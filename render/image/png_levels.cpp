@@ -13,10 +13,10 @@ namespace {
 
 constexpr png_uint_32 kMostSide = 1 << 16;
 constexpr std::size_t kMostMessage = 128;
-constexpr png_alloc_size_t kMostChunk = 1 << 20;  // of a chunk without pixels [bytes]
+constexpr png_alloc_size_t kMostChunk = 1 << 20;  // largest size of a chunk without pixels [bytes]
 
-// What libpng's functions reach while it reads. No C++ object with a destructor lives across its
-// longjmp, so this has none.
+// The data that libpng's callbacks use while reading. Since libpng reports errors by longjmp, no
+// C++ object with a destructor may be alive then, so this struct has none.
 struct Reading {
   png_structp png = nullptr;
   png_infop info = nullptr;

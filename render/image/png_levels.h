@@ -22,8 +22,8 @@ struct Levels {
 // `most_pixels`).
 Result<Levels> decodeLevels(std::span<const std::byte> png, std::size_t most_pixels);
 
-// Encodes one channel with 16 bits. The same values give the same bytes. Errors: kIo (no memory).
-// REQUIRES: channels = 1, width * height values.
+// Returns the bytes of a PNG file with one channel of 16 bits. The same values give the same bytes.
+// Errors: kIo (no memory). REQUIRES: channels = 1, width * height values.
 Result<std::string> encodeLevels(const Levels& levels);
 
 }  // namespace merlin::render::image

@@ -22,7 +22,7 @@ struct PngRows {
   std::vector<std::uint8_t*> rows{};
 };
 
-// libpng declares rows as mutable that it does not write to.
+// Returns pointers to the rows. libpng declares them as mutable, but does not write to them.
 PngRows rowsOf(int width, int height, std::span<const std::uint8_t> pixels, bool alpha) {
   PngRows image{width, height, alpha, alpha ? kUsualCompression : kFastCompression};
   const std::size_t stride = (alpha ? std::size_t{4} : 3) * static_cast<std::size_t>(width);
@@ -39,7 +39,7 @@ void writeChunk(png_structp png, png_bytep data, png_size_t size) {
 void flushNoFile(png_structp) {}
 void keepQuietOfWriting(png_structp, png_const_charp) {}
 
-// No C++ object with a destructor is alive across libpng's longjmp.
+// Since libpng reports errors by longjmp, no C++ object with a destructor is alive here.
 bool encode(const WriteBytes* write, const PngRows* image) {
   png_structp png =
       png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, keepQuietOfWriting);

@@ -12,13 +12,13 @@
 namespace merlin::render::image {
 
 // `pixels`: RGBA, rows from top to bottom, 4 * width * height bytes; alpha is not written. The file
-// appears whole or not at all. The same pixels give the same bytes. Errors: as writeFile().
+// appears whole or not at all. The same pixels give the same bytes. Errors: those of writeFile().
 Result<Ok> writePng(const std::string& path, int width, int height,
                     std::span<const std::uint8_t> pixels);
 
-// The bytes of a PNG file. `pixels`: RGB, rows from top to bottom. The same pixels give the same
-// bytes. About 30 ms for a million pixels. Errors: kIo (no memory), kInvalidArgument (the size is
-// not that of `pixels`, or 0).
+// Returns the bytes of a PNG file. `pixels`: RGB, rows from top to bottom. The same pixels give the
+// same bytes. About 30 ms for a million pixels. Errors: kIo (no memory), kInvalidArgument (the size
+// is not that of `pixels`, or 0).
 Result<std::vector<std::uint8_t>> encodePng(int width, int height,
                                             std::span<const std::uint8_t> pixels);
 

@@ -21,7 +21,7 @@ bool isHalf(std::uint64_t part, std::uint64_t whole) {
   return part == std::max<std::uint64_t>(whole / 2, 1) || part == whole / 2 + whole % 2;
 }
 
-// Why the directory's pixels are of a form that is not read; empty if they are read.
+// Returns why the form of a directory's pixels is not supported; empty if it is.
 std::string unsupported(const TiffDirectory& d) {
   if (d.tile_offsets.value_size == 0 || d.tile_sizes.value_size == 0 || d.tile_width == 0)
     return "is not tiled";
@@ -75,7 +75,7 @@ Result<std::shared_ptr<const PyramidFile>> PyramidFile::ofFile(
   return read;
 }
 
-// Shared: the reader's thread and the wall's may each be the last to use a file.
+// A shared_ptr, since either the reader's thread or the wall's may be the last to use the file.
 Result<std::shared_ptr<const PyramidFile>> PyramidFile::read(
     std::unique_ptr<const RandomAccess> file, const std::string& name) {
   const std::shared_ptr<PyramidFile> pyramid(new PyramidFile);
@@ -116,8 +116,9 @@ Result<Ok> PyramidFile::readLevels() {
   return Ok{};
 }
 
-// The directories of all levels: the first one, then its subdirectories or those that follow it.
-// Each must be about half as large as the previous one, which ends a loop.
+// Returns the directories of all levels: the first one, then its subdirectories or those that
+// follow it. Each must be about half as large as the previous one, which also ends a loop of
+// directories.
 Result<std::vector<TiffDirectory>> PyramidFile::directories() const {
   const auto first = firstDirectory(*file_);
   if (!first) return first.error();

@@ -52,15 +52,17 @@ class PyramidFile {
   static Result<std::shared_ptr<const PyramidFile>> read(std::unique_ptr<const RandomAccess> file,
                                                          const std::string& name);
 
-  // A picture of one pixel, of which no tile may be read.
+  // Returns a pyramid of one pixel without a file. No tile of it may be read.
   static std::shared_ptr<const PyramidFile> ofOnePixel();
 
-  // At least one; level l is level 0 scaled by exactly 2^-l, rounded up or down at the right and
-  // lower edge. The coarsest has at most 16 tiles.
+  // Returns the levels, at least one: level l is level 0 scaled by exactly 2^-l, rounded up or down
+  // at the right and lower edge. The coarsest level has at most 16 tiles.
   std::span<const PyramidLevel> levels() const noexcept { return levels_; }
   bool isPanorama() const noexcept { return panorama_; }  // marked by kPanoramaMark
   const std::string& name() const noexcept { return name_; }
-  const FileStamp& stamp() const noexcept { return stamp_; }  // of the file when it was opened
+  const FileStamp& stamp() const noexcept {
+    return stamp_;
+  }  // state of the file when it was opened
 
   static constexpr std::int64_t kMostSide = 0x7FFF'FFFF;  // [px]
 
@@ -111,8 +113,9 @@ class PyramidReader {
   std::shared_ptr<const PyramidFile> file_;
   TileForm form_;
   TileDecoder decoder_;
-  std::vector<std::uint8_t> bytes_, own_;  // the file's own tile: encoded, and decoded
-  int own_level_ = -1;                     // which one that is; -1: none
+  // The file's own tile that was read last: encoded, and decoded.
+  std::vector<std::uint8_t> bytes_, own_;
+  int own_level_ = -1;  // level of the tile in own_; -1: there is none
   std::int64_t own_column_ = 0, own_row_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Port (an interface): bytes that are read at any place. Implemented for files by FileAccess and
-// for memory by tests.
+// RandomAccess: the port (an interface) to bytes that can be read at any offset. Implemented for
+// files by FileAccess and for memory by tests.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,9 @@ class RandomAccess {
  public:
   virtual ~RandomAccess() = default;
 
-  // Number of bytes when it was opened. Fewer may be there later.
+  // Returns the number of bytes when the file was opened; it may have become shorter since.
   virtual std::uint64_t size() const noexcept = 0;
-  // Fills `bytes` from `offset` on. Errors: kMalformed (the bytes end earlier), kIo.
+  // Fills `bytes` with the bytes from `offset` on. Errors: kMalformed (the file ends earlier), kIo.
   virtual Result<Ok> read(std::uint64_t offset, std::span<std::uint8_t> bytes) const = 0;
 };
 
@@ -29,14 +29,16 @@ class RandomAccess {
 // so that a file that is truncated meanwhile causes an error and does not end the process.
 class FileAccess final : public RandomAccess {
  public:
-  // Never blocks on a pipe or a device. Errors: kNotFound, kIo, kMalformed (not a regular file).
+  // Opens a file; never blocks on a pipe or a device. Errors: kNotFound, kIo, kMalformed (not a
+  // regular file).
   static Result<std::unique_ptr<FileAccess>> open(const std::string& path);
-  // The same for a file that is already open. `path`: for messages.
+  // Takes over a file that is already open. `path`: for messages. Errors: kIo, kMalformed (not a
+  // regular file).
   static Result<std::unique_ptr<FileAccess>> of(UniqueFd file, const std::string& path);
 
   std::uint64_t size() const noexcept override { return stamp_.size; }
   Result<Ok> read(std::uint64_t offset, std::span<std::uint8_t> bytes) const override;
-  // The file's stamp when it was opened.
+  // Returns the file's stamp when it was opened.
   const FileStamp& stamp() const noexcept { return stamp_; }
 
  private:

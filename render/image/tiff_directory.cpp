@@ -40,7 +40,8 @@ std::uint64_t little(const std::uint8_t* p, int bytes) noexcept {
   return value;
 }
 
-// Size of a value of a TIFF type; 0 for a type that no field read here may have.
+// Returns the size of a value of a TIFF type [bytes]; 0 for a type that no field read here may
+// have.
 int sizeOf(std::uint16_t type) noexcept {
   switch (type) {
     case 1:

@@ -32,7 +32,8 @@ Result<Ok> TileDecoder::decode(std::span<const std::uint8_t> bytes, std::span<st
   return form_.coding == TileCoding::kJpeg ? decodeJpeg(bytes, rgba) : inflate(bytes, rgba);
 }
 
-// The tables of all tiles are a JPEG stream of their own; put before the tile's they make it whole.
+// The tables that all tiles share are a JPEG stream of their own; put in front of the tile's
+// stream, they make it complete.
 Result<Ok> TileDecoder::decodeJpeg(std::span<const std::uint8_t> bytes,
                                    std::span<std::uint8_t> rgba) {
   if (!startsJpeg(bytes)) return Error{Errc::kMalformed, "is not JPEG"};

@@ -23,7 +23,8 @@ struct TileForm {
   std::size_t pixelBytes() const noexcept {
     return static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   }
-  // A larger encoded tile is refused: more than its pixels and tables can need.
+  // Returns the largest size of an encoded tile that is accepted [bytes]; its pixels and tables
+  // cannot need more.
   std::size_t mostBytes() const noexcept { return 2 * pixelBytes() * 4 + 65'536; }
 };
 
@@ -35,8 +36,8 @@ class TileDecoder {
   explicit TileDecoder(const TileForm& form);
 
   // Decodes a tile to RGBA, rows from top to bottom. REQUIRES: rgba.size() == 4 * pixelBytes().
-  // About 1 ms for 256 x 256 pixels. Errors: kMalformed (damaged, or of another size; `rgba` holds
-  // anything then).
+  // About 1 ms for 256 x 256 pixels. Errors: kMalformed (damaged, or of another size); `rgba` is
+  // undefined then.
   Result<Ok> decode(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> rgba);
 
  private:
@@ -46,7 +47,7 @@ class TileDecoder {
   const TileForm& form_;
   std::unique_ptr<void, int (*)(void*)> jpeg_;
   std::vector<std::uint8_t> whole_;    // a JPEG tile with its tables
-  std::vector<std::uint8_t> samples_;  // of a deflate tile
+  std::vector<std::uint8_t> samples_;  // samples of a deflate tile
 };
 
 }  // namespace merlin::render::image

@@ -8,8 +8,8 @@
 
 namespace merlin::render::image {
 
-// Which values are multiplied: those that are stored, or proportional to light (sRGB decoded, and
-// encoded again).
+// Which values are multiplied: the stored ones, or values proportional to light (sRGB is decoded,
+// and encoded again afterwards).
 enum class Light : std::uint8_t { kStored, kLinear };
 
 // Returns the picture with each channel multiplied by its factor (clamped to 0..1), and with a new

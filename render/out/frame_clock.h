@@ -1,5 +1,6 @@
-// Port (an interface): when frames are due. Here: a timer, and a clock that follows a display's
-// vertical blanks; others could follow a time base that several machines share.
+// FrameClock: the port (an interface) that says when each frame begins and when it is due.
+// Implemented here by TimerFrameClock, a timer, and VblankFrameClock, which follows a display's
+// vertical blanks.
 //
 // Frame k, counted from 0, begins at begin(k) and must have reached its outputs by deadline(k),
 // which is when the next frame begins. This clock alone defines the deadlines by which frames count
@@ -27,14 +28,14 @@ class FrameClock {
 
   virtual Duration period() const noexcept = 0;
 
-  // When frame k begins; a prediction if k is still to come.
+  // Returns when frame k begins; for a frame still to come, this is a prediction.
   virtual Timestamp begin(std::int64_t k) const noexcept = 0;
   Timestamp deadline(std::int64_t k) const noexcept { return begin(k + 1); }
 
-  // The number of the frame that is current at `now`; -1 before frame 0.
+  // Returns the number of the frame that is current at `now`; -1 before frame 0.
   virtual std::int64_t frameAt(Timestamp now) const noexcept = 0;
 
-  // Waits until frame k begins. Returns false within 50 ms after a stop was requested.
+  // Waits until frame k begins and returns true, or returns false within 50 ms of a stop request.
   virtual bool waitFor(std::int64_t k, const std::stop_token& stop) noexcept = 0;
 
   // Reports when frame k was shown, so that the clock can correct its predictions.
@@ -75,13 +76,14 @@ class TimerFrameClock final : public FrameClock {
 };
 
 // Frames that begin with every n-th vertical blank of a display (n >= 1), if the requested period
-// is within 3 % of n of the display's periods. Otherwise, and while the source returns no blank of
-// the last ten seconds, frames are timed by a Clock. In each frame the begin is shifted towards a
-// blank by at most a sixteenth of a period.
+// is within 3 % of n of the display's periods. Otherwise, or if the display's last known blank is
+// more than ten seconds old, frames are timed by a Clock alone. The begin of each frame is shifted
+// towards the nearest blank by at most 1/16 of a period.
 class VblankFrameClock final : public FrameClock {
  public:
   using Source = std::function<std::optional<Vblank>()>;
-  // `clock` outlives this. `source` is called once a frame and returns the display's last blank.
+  // `clock` outlives this. `source` is called once a frame and returns the display's last blank, or
+  // nothing if none is known.
   VblankFrameClock(Clock& clock, Source source) : clock_(clock), source_(std::move(source)) {}
 
   void start(Timestamp from, Duration period) override;
@@ -91,7 +93,7 @@ class VblankFrameClock final : public FrameClock {
   }
   std::int64_t frameAt(Timestamp now) const noexcept override;
   bool waitFor(std::int64_t k, const std::stop_token& stop) noexcept override;
-  // The display itself says when frames are shown.
+  // Ignored, since the display's vertical blanks already tell when frames are shown.
   void shown(std::int64_t /*k*/, Timestamp /*when*/) noexcept override {}
 
  private:
@@ -100,7 +102,7 @@ class VblankFrameClock final : public FrameClock {
   Clock& clock_;
   Source source_;
   Duration asked_ = std::chrono::seconds(1), period_ = asked_;
-  std::int64_t base_k_ = 0;  // this frame begins at base_
+  std::int64_t base_k_ = 0;  // number of the frame that begins at base_
   Timestamp base_{};
 };
 

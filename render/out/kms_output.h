@@ -13,7 +13,7 @@
 
 namespace merlin::render::out::kms {
 
-// A card with the thread that commits its frames and looks after its displays.
+// A card, with the thread that commits frames to its displays and looks for new ones.
 class CardWorker {
  public:
   // `kept_files`, `watch` and `clock` outlive this.
@@ -23,7 +23,7 @@ class CardWorker {
   CardWorker& operator=(const CardWorker&) = delete;
 
   Displays& displays() { return displays_; }
-  // Starts the thread, at the first call. All outputs must have been added before.
+  // Starts the thread; later calls do nothing. REQUIRES: all outputs have been added.
   void start();
 
  private:
@@ -34,19 +34,21 @@ class CardWorker {
   WatchedThread thread_;
 };
 
-// The cards of a wall, so that outputs on one card share it. Thread-bound.
+// The cards of a wall; the outputs on one card share it. Thread-bound.
 class Cards {
  public:
   Cards(KeptFiles& kept_files, ThreadWatch& watch, const Clock& clock)
       : kept_files_(kept_files), watch_(watch), clock_(clock) {}
 
-  // Opens the cards, once all outputs are made, and looks at them; takes 2 s at most. To be called
-  // before anything else in the process opens them, as Mesa does: whoever opens a card that has no
-  // master becomes it, and only the thread that opened it, or root, can give that away.
+  // Starts each card's thread, which opens the card, and waits at most 2 s for its first look at
+  // the displays. To be called after all outputs were made, and before other code of this process,
+  // such as Mesa, opens a card: whoever opens a card that has no DRM master becomes it, and only
+  // the thread that opened it, or root, can give that up.
   void open();
 
-  // Never fails, since a missing card or display may appear later; until then the output's fault
-  // says what is missing.
+  // Makes an output on the card that `settings` names; its picture has this size [px]. Never fails,
+  // since a missing card or display may appear later; until then Output::faultNow() says what is
+  // missing.
   std::unique_ptr<Output> makeOutput(const KmsSettings& settings, int picture_width,
                                      int picture_height);
 

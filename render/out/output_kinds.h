@@ -18,9 +18,9 @@ namespace merlin::render::out {
 // What outputs need besides their settings.
 struct OutputParts {
   const tiles::TilePlan& plan;
-  std::string frame_name;        // of the shared-memory object, e.g. "/merlin-framebuffer"
-  std::uint64_t generation = 0;  // new at each start of the daemon
-  ThreadWatch& watch;            // for the outputs' own threads; `watch` and `clock` outlive them
+  std::string frame_name;        // name of the shared-memory object, e.g. "/merlin-framebuffer"
+  std::uint64_t generation = 0;  // number that is new at each start of the daemon
+  ThreadWatch& watch;  // watches the outputs' own threads; `watch` and `clock` outlive the outputs
   const Clock& clock;
   const tiles::TilesSettings& tiles;
   kms::Cards& cards;    // for outputs of kind kms
@@ -35,11 +35,12 @@ std::optional<PanelPointer::Place> panelIn(const OutputSettings& settings,
                                            const tiles::TilePlan& plan,
                                            const PanelPointer::Place& in_frame);
 
-// Whether this installation has what outputs of this kind need. Errors: kUnsupported: what is
+// Checks that this installation has what outputs of this kind need. Errors: kUnsupported: what is
 // missing, and how to get it.
 Result<Ok> checkIsThere(OutputKind kind);
 
-// Errors: those of the make() of the output's class.
+// Makes the output that `settings` describes. Errors: kUnsupported: its kind needs something that
+// this installation lacks; kind shared_memory: those of SharedFrameOutput::make().
 Result<std::unique_ptr<Output>> makeOutput(const OutputSettings& settings,
                                            const OutputParts& parts);
 

@@ -20,7 +20,7 @@ struct NamedOutput {
   std::unique_ptr<Output> output;
 };
 
-// State of an output.
+// What was counted for an output, and its fault.
 struct OutputState {
   std::uint64_t frames = 0;  // shown since the start
   std::uint64_t due = 0;     // shown frames that had a deadline, since the start
@@ -40,10 +40,10 @@ class OutputSet {
   const std::string& name(std::size_t i) const { return entries_[i].named.name; }
   const std::string& kind(std::size_t i) const { return entries_[i].named.kind; }
   const OutputState& state(std::size_t i) const { return entries_[i].state; }
-  // Why output i shows nothing; empty while it works: Output::faultNow(), or else the error of its
-  // last present().
+  // Returns why output i shows nothing, empty while it works: Output::faultNow(), or else the error
+  // of its last present().
   std::string faultNow(std::size_t i) const;
-  // Number of frames shown in the second before `now`.
+  // Returns the number of frames that output i showed in the second before `now`.
   double shownHz(std::size_t i, Timestamp now) const;
 
   bool mayTake(std::size_t i, const FrameInfo& info) const {
@@ -54,28 +54,31 @@ class OutputSet {
     return entries_[i].named.output->beginDrawing();
   }
 
-  // Whether at least one output's last signal was drawn where it is shown (Signal::drawn).
-  // Thread-safe.
+  // Returns whether at least one output's last signal was drawn in place, not copied
+  // (Signal::drawn). Thread-safe.
   bool draws() const;
-  // The first output's Output::copyReason() that is not empty. Thread-safe.
+  // Returns the first Output::copyReason() of an output that is not empty; empty if all are.
+  // Thread-safe.
   std::string copyReason() const;
 
   bool wantsFrame(std::size_t i, Timestamp now) const {
     return entries_[i].named.output->wantsFrame(now) || (checks_ && checks_->wantsFrame(i));
   }
 
-  // Output i, for whoever reads back what it shows.
+  // Returns output i, so that what it shows can be read back.
   Output& output(std::size_t i) { return *entries_[i].named.output; }
   // Passes to `checks`, from now on, each picture that an output is handed. `checks` must outlive
   // the last present(); null: none.
   void checkWith(PictureChecks* checks) { checks_ = checks; }
-  // What the checks have found of output i.
+  // Returns what the checks have found on output i; kUnchecked without checks.
   PictureState picture(std::size_t i) const { return checks_ ? checks_->state(i) : PictureState{}; }
 
-  // The last vertical blank of the first output that has one; nothing if none has. Thread-safe.
+  // Returns the last vertical blank of the first output that has one; nothing if none has.
+  // Thread-safe.
   std::optional<Vblank> vblank() const;
 
-  // Passes a frame to output i. `deadline`: when it is due; none while nothing moves.
+  // Passes a frame to output i and records the result in state(i). `deadline`: when the frame is
+  // due; nothing while no motion is shown.
   void present(std::size_t i, const Signal& signal, const FrameInfo& info,
                std::optional<Timestamp> deadline);
 

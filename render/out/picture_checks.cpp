@@ -109,8 +109,8 @@ void PictureChecks::check(Entry& entry) {
   const Timestamp began = clock_.now();
   const auto read = entry.checked.output->readBack();
   const auto readings = read ? *read : std::vector<DisplayReading>();
-  // An output that is being set up again shows nothing for a while: its last, wrong state then
-  // remains.
+  // An output that is being set up again shows nothing for a while; its last state, which is wrong,
+  // then remains.
   const bool is_mended = isWrong(entry.steady.current()) && began < entry.mend_at;
   PictureState state = entry.last_state;
   if (!readings.empty() || !is_mended) state = judge(entry, readings, began);

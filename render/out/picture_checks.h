@@ -21,7 +21,8 @@
 
 namespace merlin::render::out {
 
-// The result for one output. Trivial, so that a SeqSlot holds it: begin with PictureState{}.
+// The result of checking one output. A trivial type, so that a SeqSlot can hold it: initialise it
+// with PictureState{}.
 struct PictureState {
   PictureVerdict verdict;
   float took_ms;   // duration of the last check
@@ -32,29 +33,30 @@ class PictureChecks {
  public:
   struct Checked {
     Output* output = nullptr;  // outlives this
-    Duration every{};          // between two checks; 0: never checked
+    Duration every{};          // time between two checks; 0: never checked
   };
-  // By output number. `clock` outlives this.
+  // `outputs`: in the order of their numbers. `clock` outlives this.
   PictureChecks(const std::vector<Checked>& outputs, const Clock& clock);
 
   // Starts the thread, unless nothing is to be checked. `watch` outlives this.
   void start(ThreadWatch& watch);
   void stop() { thread_.stop(); }
 
-  // Output i is handed this picture. Called on the wall's thread; never waits. Cost: digestOf().
+  // Records that output i is handed this picture. Called on the wall's thread; never waits. Cost:
+  // digestOf().
   void meant(std::size_t i, const Signal& signal);
-  // True after output i was found to show something else, until the next meant() for it.
+  // Returns true after output i was found to show something else, until the next meant() for it.
   // Thread-safe.
   bool wantsFrame(std::size_t i) const { return entries_[i].wants_frame.load(); }
-  // Thread-safe; never waits.
+  // Returns the result of the last check of output i. Thread-safe; never waits.
   PictureState state(std::size_t i) const {
     return entries_[i].state.read().value_or(PictureState{});
   }
 
   // Checks the output whose turn it is, if it is due. An output that was found to show something
-  // else is checked every half second. From the second such result on it counts as wrong and is set
-  // up again, at most once in its Checked::every. Returns when the next check is due; nothing if no
-  // output is ever checked. Called by the thread, or by a test without one.
+  // else is checked every half second. After the second such result in a row its state is wrong,
+  // and it is set up again, at most once every Checked::every. Returns when the next check is due;
+  // nothing if no output is ever checked. Called by the thread, or by a test without one.
   std::optional<Timestamp> step();
 
  private:
@@ -65,7 +67,7 @@ class PictureChecks {
   };
   struct Entry {
     Checked checked{};
-    // Written by the wall's thread; `written` counts the frames in `slots` so far.
+    // Written by the wall's thread; `written` is the number of frames put into `slots` so far.
     PictureDigest last{};
     std::array<shm::SeqSlot<Meant>, kRemembered> slots{};
     std::atomic<std::uint64_t> written{0};
@@ -73,7 +75,7 @@ class PictureChecks {
     Timestamp due{}, mend_at{};
     SteadyVerdict steady{};
     PictureState last_state{};
-    std::map<std::string, PictureDigest> last_right{};  // by display
+    std::map<std::string, PictureDigest> last_right{};  // last right digest of each display
     shm::SeqSlot<PictureState> state{};
     std::atomic<bool> wants_frame{false};
   };

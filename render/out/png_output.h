@@ -15,8 +15,8 @@
 namespace merlin::render::out {
 
 // A frame that arrives before the interval is over, or while the last one is still being written,
-// is skipped, so the wall never waits for a disk; the last one skipped is wanted once the interval
-// is over. present() returns a write error until a file is written successfully.
+// is skipped, so the wall never waits for a disk; wantsFrame() then asks for a frame once the
+// interval is over. present() returns a write error until a file is written successfully.
 class PngOutput final : public Output {
  public:
   // Writes RGBA pixels to the file `path`. Errors: those of image::writePng().
@@ -25,7 +25,7 @@ class PngOutput final : public Output {
 
   // `interval_s`: minimum time between two files. `watch` outlives this.
   PngOutput(std::string path, double interval_s, ThreadWatch& watch);
-  // Writes by another function, which is called on the output's thread.
+  // Writes files by the function `write`, which is called on the output's thread.
   PngOutput(std::string path, double interval_s, ThreadWatch& watch, Write write);
   ~PngOutput() override;
   PngOutput(const PngOutput&) = delete;
@@ -43,12 +43,12 @@ class PngOutput final : public Output {
   Write write_;
   double interval_s_;
   std::atomic<Timestamp> last_{Timestamp{}};
-  std::atomic<bool> skipped_ = false;  // the newest frame is not that of the file
+  std::atomic<bool> skipped_ = false;  // true: the newest frame was skipped, so the file is older
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<std::uint8_t> waiting_;  // pixels to be written; empty: none
   int width_ = 0, height_ = 0;         // of waiting_ [px]
-  std::optional<Error> fault_;         // from writing the last file
+  std::optional<Error> fault_;         // error of writing the last file; nothing: it was written
   WatchedThread thread_;
 };
 

@@ -71,18 +71,20 @@ Rectangle placeOf(const PlacedTile& placed, const tiles::TileSettings& tile,
 struct PictureSize {
   int width = 0, height = 0;  // [px]
 };
-// Nothing if a placed tile's name is not one of `tiles`.
+// Returns the size of the picture that `output` is sent; nothing if a placed tile's name is not one
+// of `tiles`.
 std::optional<PictureSize> pictureSize(const OutputSettings& output,
                                        const tiles::TilesSettings& tiles);
 
-// Maximum number of outputs; shared memory has room for the state of this many.
+// Maximum number of outputs, for whose states shared memory has room.
 inline constexpr std::size_t kMostOutputs = 32;
 
 // Checks for: no output or more than kMostOutputs; two outputs with one name; a name of more than
-// 23 characters; two outputs in shared memory; a PNG output without a path; a setting that belongs
-// to another kind; faults of a window; faults of an output of kind kms, or two of them on one
-// display; a placed tile that is not in `tiles` or overlaps another one on its output; faults of
-// the correction. Pure.
+// 23 characters; two outputs in shared memory; a PNG output without a path; two outputs that write
+// the same file; a setting that belongs to another kind; faults of a window; faults of an output of
+// kind kms, two of them on one display, or a named mode that is smaller than the picture; a placed
+// tile that is not in `tiles` or overlaps another one on its output; faults of the correction.
+// Pure.
 SettingFaults validate(const std::vector<OutputSettings>& outputs,
                        const tiles::TilesSettings& tiles);
 

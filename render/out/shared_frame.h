@@ -18,8 +18,9 @@ namespace merlin::render::out {
 
 class SharedFrameOutput final : public Output {
  public:
-  // `name`: e.g. "/merlin-framebuffer". `clock` outlives this. Errors: kUnsupported (more tiles
-  // than the framebuffer can describe), kBusy (a running daemon owns it), kIo.
+  // Creates the shared memory `name`, e.g. "/merlin-framebuffer". `clock` outlives this. Errors:
+  // kUnsupported (more tiles than the framebuffer can describe), kBusy (a running daemon owns it),
+  // kIo.
   // The writer does not rely on the segment's content afterwards, since other programs of the same
   // user may write to it.
   static Result<std::unique_ptr<SharedFrameOutput>> make(const std::string& name,
@@ -30,7 +31,8 @@ class SharedFrameOutput final : public Output {
   // REQUIRES: the signal has the size of the plan's frame.
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override;
 
-  // Reads the segment as any other process does, by its name. Errors: those of SharedFrameReader.
+  // readBack() opens the segment by its name, as any other process does, and reads its newest
+  // frame; kForeign if another daemon has created it. Errors: those of SharedFrameReader.
   bool canReadBack() const override { return true; }
   Result<std::vector<DisplayReading>> readBack() override;
 
@@ -71,10 +73,10 @@ class SharedFrameReader {
   static Result<SharedFrameReader> open(const std::string& name,
                                         SharedMemory::From from = SharedMemory::From::kAnyone);
 
-  // Generation of the daemon that created the segment; the headers of that daemon's other segments
-  // have the same one.
+  // Returns the generation of the daemon that created the segment; the headers of that daemon's
+  // other segments have the same number.
   std::uint64_t generation() const noexcept { return checked().generation; }
-  // Number of the newest frame; 0: there is none, or it is just being replaced.
+  // Returns the number of the newest frame; 0 if there is none, or if it is just being replaced.
   std::uint64_t newest() const noexcept;
   // Copies the newest frame into `frame` and reuses its memory. Errors: kTimeout (no frame yet, or
   // the writer overwrote the buffer during every attempt).
@@ -100,8 +102,9 @@ class SharedFrameReader {
 Result<CapturedFrame> captureFrame(const std::string& name,
                                    SharedMemory::From from = SharedMemory::From::kAnyone);
 
-// The wall's picture: the wall tiles in rows and columns; pixels without a tile are 0. Its pixels
-// are empty if there is no wall tile, and if it would have more than kMostWallPixels.
+// Returns the wall's picture: the wall's tiles of `frame`, each at its place; pixels without a tile
+// are 0. Its pixels are empty if there is no wall tile, or if it would have more than
+// kMostWallPixels.
 inline constexpr std::size_t kMostWallPixels = std::size_t{1} << 28;
 CapturedFrame wallPicture(const CapturedFrame& frame);
 

@@ -34,10 +34,11 @@ struct TileRectangle {
 static_assert(sizeof(TileRectangle) == 48);
 
 struct Buffer {
-  std::uint64_t offset;                 // of its pixels, from the segment's start [bytes]
-  std::atomic<std::uint64_t> sequence;  // of the frame in it; 0 while it is being written
-  std::int64_t finished_ns;             // CLOCK_MONOTONIC, last pixel drawn
-  std::uint32_t cost;         // of the detail drawn, in the content's unit, e.g. triangles
+  std::uint64_t offset;  // position of the pixels, from the segment's start [bytes]
+  // Number of the frame in this buffer; 0 while it is being written.
+  std::atomic<std::uint64_t> sequence;
+  std::int64_t finished_ns;   // when the last pixel was drawn, CLOCK_MONOTONIC [ns]
+  std::uint32_t cost;         // cost of the detail drawn, in the content's unit, e.g. triangles
   std::uint32_t full_detail;  // 1 if drawn at the finest detail
 };
 static_assert(sizeof(Buffer) == 32);

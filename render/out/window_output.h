@@ -17,8 +17,8 @@ class WindowOutput final : public Output {
 
   bool mayTake(const FrameInfo&) const override { return !link_.isClosed(); }
 
-  // A frame counts as shown when it is handed over. One that takes the place of a frame that the
-  // window has not fetched yet does not count.
+  // A frame counts as shown when it is handed over, unless it takes the place of a frame that the
+  // window has not fetched yet.
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo&) override {
     const auto shown = link_.show(signal.width, signal.height, signal.pixels);
     if (!shown) return shown.error();

@@ -15,7 +15,7 @@ struct Control {
   ControlId id;
   std::string_view label;
   Acts acts;
-  std::string_view command;  // empty: it moves
+  std::string_view command;  // empty: the control is for motion
 };
 
 // In the order of ControlId.
@@ -81,7 +81,7 @@ std::string moreRate(double now_hz) {
   return above == std::end(kRates_hz) ? "" : fmt::format("{:g}", *above);
 }
 
-// Two digits are kept: people read the number.
+// Rounds to two significant digits, since people read the number.
 double rounded(double number) {
   const double unit = std::pow(10, std::floor(std::log10(number)) - 1);
   return std::round(number / unit) * unit;
@@ -100,7 +100,8 @@ bool isMissing(const PanelContent& content, const PanelFacts& facts) {
   return std::ranges::find(facts.missing, content.name) != facts.missing.end();
 }
 
-// The name of the first content of this kind after the one that is shown.
+// Returns the name of the first content of this kind after the one that is shown; empty if there is
+// none.
 std::string nextOfKind(bool is_model, const PanelFacts& facts, const PanelOptions& options) {
   if ((facts.kind == ShownKind::kModel) == is_model) return "";
   const auto& all = options.contents;
@@ -113,14 +114,14 @@ std::string nextOfKind(bool is_model, const PanelFacts& facts, const PanelOption
   return "";
 }
 
-// Whether there is a content that can be shown instead of the one that is.
+// Returns whether a content other than the current one can be shown.
 bool hasOther(const PanelFacts& facts, const PanelOptions& options) {
   return std::ranges::any_of(options.contents, [&](const PanelContent& content) {
     return content.name != facts.content && !isMissing(content, facts);
   });
 }
 
-// The argument of a command that has one; empty: there is nothing to do.
+// Returns the argument of the control's command; empty if there is nothing to do.
 std::string argumentOf(ControlId id, const PanelFacts& facts, const PanelOptions& options) {
   switch (id) {
     case ControlId::kModel: return nextOfKind(true, facts, options);

@@ -1,5 +1,5 @@
-// The controls of the operator's panel, and what each of them asks for: a command of
-// daemon/base/commands.h, or a motion. Pure.
+// The controls of the operator's panel, and the command of daemon/base/commands.h or the motion
+// that each of them causes. Pure.
 #pragma once
 
 #include <array>
@@ -51,7 +51,8 @@ struct Request {
   bool operator==(const Request&) const = default;
 };
 
-// The kind of content that is shown: decides how it moves and what the panel's buttons say.
+// The kind of content that is shown. It decides how the content moves and what the panel's buttons
+// say.
 enum class ShownKind : std::uint8_t { kModel, kPicture, kPanorama };
 
 struct PanelContent {
@@ -61,14 +62,15 @@ struct PanelContent {
 
 // Which of the things that the panel can operate exist on this wall; constant while it runs.
 struct PanelOptions {
-  std::vector<PanelContent> contents;  // of the configuration, in their order
+  std::vector<PanelContent> contents;  // contents in the configuration, in their order
   bool snapshots = false;              // there is a folder for snapshots
   bool projectors = false, video = false, lamp = false;
 };
 
 // What the panel shows of the wall. Equal facts are drawn alike.
 struct PanelFacts {
-  std::string content, slide;        // names; no slide: empty
+  // Names of the content and of its slide; slide is empty if there is none.
+  std::string content, slide;
   std::vector<std::string> missing;  // names of contents that cannot be shown yet
   ShownKind kind = ShownKind::kModel;
   bool flies = false;  // the ball moves the viewer
@@ -79,17 +81,18 @@ struct PanelFacts {
   bool detail_by_hand = false;
   std::string detail_unit;  // "triangles"
   bool blank = false, frozen = false;
-  std::optional<std::uint32_t> lamp;      // a GpioSample::Lamp; nothing: not known
-  std::optional<std::uint32_t> video;     // 0: A, 1: B; nothing: not known
-  std::string projectors;                 // "on", "warming", "off"; empty: not known
-  std::optional<bool> projectors_wanted;  // whether they are on or become so
-  std::string notice;                     // why the last command was refused; empty: it was not
+  std::optional<std::uint32_t> lamp;   // a GpioSample::Lamp; nothing: not known
+  std::optional<std::uint32_t> video;  // 0: A, 1: B; nothing: not known
+  std::string projectors;              // "on", "warming", "off"; empty: not known
+  // Whether they are on or being switched on; nothing: not known.
+  std::optional<bool> projectors_wanted;
+  std::string notice;  // why the last command was refused; empty: it was executed
 
   bool operator==(const PanelFacts&) const = default;
 };
 
-// When a control acts. kClick: when it is released. kStep: when it is pressed, and again while it
-// is held. kMotion: as long as it is held.
+// When a control acts. kClick: when it is released. kStep: when it is pressed, and again and again
+// while it is held. kMotion: as long as it is held.
 enum class Acts : std::uint8_t { kClick, kStep, kMotion };
 
 Acts actsOf(ControlId id) noexcept;
@@ -100,13 +103,14 @@ std::string_view labelOf(ControlId id, const PanelFacts& facts, bool by_ball) no
 // control is for motion.
 std::optional<Request> requestOf(ControlId id, const PanelFacts& facts,
                                  const PanelOptions& options);
-// Whether a control's button is drawn as switched on.
+// Returns whether a control's button is drawn as switched on.
 bool isLit(ControlId id, const PanelFacts& facts, bool by_ball) noexcept;
 
-// Speed of what a control moves while it is held.
+// Speed of the motion that a control causes while it is held.
 struct Motion {
-  std::array<float, 3> way_radii_s{};  // to the right, up, nearer; in radii of the content
-  std::array<float, 3> turn_rad_s{};   // about these axes
+  // Translation to the right, up, nearer; in radii of the content a second.
+  std::array<float, 3> way_radii_s{};
+  std::array<float, 3> turn_rad_s{};  // rotation about these axes
 };
 // A model is rotated, a picture is shifted, and in a panorama the view turns. The arrows on the
 // buttons point where the content moves, or where the view of a panorama turns. Zero for controls

@@ -1,5 +1,5 @@
-// PanelInput: what pointer and ball do with the operator's panel: which control is under the
-// pointer, selected, pressed and held. Pure.
+// PanelInput: turns motions of the pointer and the ball on the operator's panel into acts of its
+// controls, and records which control is hovered, selected and pressed. Pure.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace merlin::render::panel {
 
-// What the ball does: a push to the right and up, as shares of full scale, and whether one of its
+// State of the ball: a push to the right and up, as shares of full scale, and whether one of its
 // buttons is held.
 struct BallPush {
   float right = 0, up = 0;
@@ -23,10 +23,11 @@ class PanelInput {
   // `layout` must outlive this object.
   explicit PanelInput(const PanelLayout& layout) : layout_(layout) {}
 
-  // The pointer, in pixels of the tile, and whether its button is pressed. A press counts if it
-  // begins on a control; dragged away and released elsewhere, it does nothing.
+  // Reports the pointer's position in the tile [px] and whether its button is pressed. A press
+  // counts only if it begins on a control. If the pointer is dragged away and released elsewhere,
+  // the control is not clicked.
   void point(Point in_tile, bool pressed, Timestamp now);
-  // The pointer has left the tile, or does not exist any more.
+  // Reports that the pointer has left the tile or no longer exists.
   void leave();
 
   // Called when the ball begins, or ceases, to operate the panel. The selection begins at kFirst,
@@ -34,7 +35,8 @@ class PanelInput {
   // until it is released.
   void enterByBall(Timestamp now);
   void leaveByBall();
-  // To be called once a frame while the ball operates the panel.
+  // Reports the ball's state. To be called once a frame while the ball operates the panel;
+  // otherwise it has no effect.
   void ball(const BallPush& push, Timestamp now);
 
   // To be called once a frame: what is held acts again. A pointer's press that was not reported for
@@ -48,9 +50,11 @@ class PanelInput {
   // The state that is drawn.
   bool byBall() const noexcept { return by_ball_; }
   std::optional<ControlId> hovered() const noexcept { return hovered_; }
-  std::optional<ControlId> selected() const noexcept;  // by the ball
-  std::optional<ControlId> pressed() const noexcept;   // with the pointer still on it, or by ball
-  // Whether the pointer's button is pressed, wherever it was pressed.
+  std::optional<ControlId> selected() const noexcept;  // the control that the ball has selected;
+                                                       // nothing unless the ball operates the panel
+  // The control pressed by the pointer, while it is still on it, or by the ball.
+  std::optional<ControlId> pressed() const noexcept;
+  // Returns whether the pointer's button is pressed, even if not on a control.
   bool isDown() const noexcept { return down_; }
 
   static constexpr Duration kRepeatAfter = std::chrono::milliseconds(500);
@@ -60,7 +64,8 @@ class PanelInput {
   // A push of the ball beyond this share of full scale selects the next control; less than half of
   // it counts as let go.
   static constexpr float kPush = 0.3F;
-  // What is selected when the ball enters: the middle of the arrows.
+  // The control that is selected when the ball begins to operate the panel: the middle of the
+  // arrows.
   static constexpr ControlId kFirst = ControlId::kReset;
 
  private:
@@ -77,14 +82,14 @@ class PanelInput {
   std::vector<ControlId> acts_;  // bounded: see takeActs()
   // The pointer
   std::optional<ControlId> hovered_;
-  bool down_ = false;  // its button
+  bool down_ = false;  // the pointer's button is pressed
   std::optional<Press> press_;
   // The ball
   bool by_ball_ = false;
   ControlId selected_ = kFirst;
-  bool armed_ = false;  // its buttons were released since it entered
+  bool armed_ = false;  // the ball's buttons were released since it began to operate the panel
   std::optional<Press> ball_press_;
-  std::optional<Timestamp> next_step_;  // while it is pushed: when the selection moves on
+  std::optional<Timestamp> next_step_;  // while the ball is pushed: when the selection moves on
   Timestamp used_{};
 };
 

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kLeastWidth_px = 320, kLeastHeight_px = 240;
 
-// A part of a row: a button, a value, or nothing. Its width in shares of the row's.
+// A part of a row: a button, a value, or an empty space, and its width as a share of the row's
+// width.
 struct Part {
   int share;
   std::variant<std::monostate, ControlId, FieldId> what{};

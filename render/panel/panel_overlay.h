@@ -13,18 +13,19 @@ namespace merlin::render::panel {
 
 // The panel's place: on the first tile of kind operator that has room for it.
 struct PanelPlace {
-  Rect tile;  // in the frame
+  Rect tile;  // the tile's rectangle in the frame
   PanelLayout layout;
 
-  // The panel in the frame.
+  // Returns the panel's rectangle in the frame.
   Rect inFrame() const noexcept {
     return {tile.x + layout.at.x, tile.y + layout.at.y, layout.at.width, layout.at.height};
   }
 };
-// Nothing if there is no tile of kind operator with at least 320 x 240 pixels.
+// Returns the panel's place; nothing if there is no tile of kind operator with at least 320 x 240
+// pixels.
 std::optional<PanelPlace> placePanel(const tiles::TilePlan& plan, const PanelOptions& options);
 
-// Port (an interface): where the overlay gets what it draws.
+// Port (an interface) that supplies the view of the panel that the overlay draws.
 class PanelSource {
  public:
   virtual ~PanelSource() = default;
@@ -36,8 +37,8 @@ class PanelSource {
 // Thread-bound to the wall's thread.
 class PanelOverlay final : public frame::Overlay {
  public:
-  // All must outlive this object. Costs about 60 ms for each of two sizes of text. Errors: those of
-  // text::GlyphAtlas::make().
+  // Makes the overlay; all arguments must outlive it. Costs about 60 ms for each of two sizes of
+  // text. Errors: those of text::GlyphAtlas::make().
   static Result<std::unique_ptr<PanelOverlay>> make(const tiles::TilePlan& plan,
                                                     const PanelPlace& place,
                                                     const PanelOptions& options,

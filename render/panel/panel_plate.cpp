@@ -94,7 +94,7 @@ class Painter {
   }
 
  private:
-  // A rectangle with round corners.
+  // Fills a rectangle with round corners of this radius [px].
   void rounded(const Rect& r, int radius, Colour colour) const {
     for (int y = 0; y < r.height; ++y) {
       const int from_edge = std::min(y, r.height - 1 - y);

@@ -6,7 +6,7 @@
 
 namespace merlin::render::panel {
 
-// What is drawn.
+// All that decides how the panel is drawn.
 struct PanelView {
   PanelFacts facts;
   bool by_ball = false;
@@ -19,10 +19,11 @@ struct PanelFonts {
   text::Font text, small;
 };
 
-// Em size of the small text beside text of this size [px].
+// Returns the em size of the small text that goes with text of em size `em_px` [px].
 int smallSizeFor(int em_px) noexcept;
 
-// The same view gives the same bytes. Costs about as much as filling the panel three times.
+// Draws the panel as a plate; the same view gives the same bytes. Costs about as much as filling
+// the panel three times.
 text::Plate drawPanel(const PanelView& view, const PanelLayout& layout, const PanelOptions& options,
                       const PanelFonts& fonts);
 

@@ -18,8 +18,8 @@ Eigen::Matrix3d pitch(double degrees) {
   return Eigen::AngleAxisd(degrees * kRadian<double>, Eigen::Vector3d::UnitX()).toRotationMatrix();
 }
 
-// Part of a screen. `part_m`: distances of its left and lower edge from the screen's, width and
-// height [m].
+// Returns a part of a screen. `part_m`: distances of its left and lower edge from the screen's,
+// width and height [m].
 Screen partOf(const Screen& screen, const std::array<double, 4>& part_m) {
   const Eigen::Vector3d right = screen.across.normalized(), up = screen.up.normalized();
   return {screen.corner + part_m[0] * right + part_m[1] * up, part_m[2] * right, part_m[3] * up};

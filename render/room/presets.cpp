@@ -36,19 +36,20 @@ Chain flatRow(std::size_t count) {
   return chain;
 }
 
-// Distance between the viewer and the front panel at which all panels of a bent chain are equally
-// far away.
+// Returns the distance between the viewer and the front panel [m] at which all panels of a bent
+// chain are equally far away. `hinge_deg`: angle between neighbouring panels.
 double distanceOfMiddle(double width, double hinge_deg) {
   return width / 2 / std::tan((180 - hinge_deg) / 2 * kRadian<double>);
 }
 
-// The same for a chain at whose front is a seam: the distance of the seam.
+// Returns the viewer's distance from the seam at the front of a bent chain [m] at which all panels
+// are equally far away.
 double distanceOfSeam(double width, double hinge_deg) {
   return width / 2 / std::sin((180 - hinge_deg) / 2 * kRadian<double>);
 }
 
-// The angle at which `count` equal panels fill `view_deg` of the view of somebody who is equally
-// far from all of them.
+// Returns the angle [degrees] between `count` equal panels that fill `view_deg` of the view of
+// somebody who is equally far from all of them.
 double hingeOfArc(std::size_t count, double view_deg) {
   return 180 - view_deg / static_cast<double>(count);
 }
@@ -118,7 +119,8 @@ std::vector<PanelSettings> panelsOf(const RoomPresetSettings& p) {
   return panels;
 }
 
-// The part of a length that the i-th of `count` equal, overlapping pictures covers.
+// A part of a length. stretchOf() returns the part that the i-th of `count` equal, overlapping
+// pictures covers.
 struct Stretch {
   double begin, length;
 };
@@ -128,7 +130,8 @@ Stretch stretchOf(std::size_t i, std::size_t count, double whole, double overlap
   return {static_cast<double>(i) * (length - overlap), length};
 }
 
-// Projectors whose pictures overlap on one flat screen, which is as large as the panels together.
+// Adds projectors whose pictures overlap on one flat screen, which is as large as the panels
+// together.
 void addOverlapping(const RoomPresetSettings& p, RoomSettings& room) {
   const std::vector<PanelSettings> panels = panelsOf(p);
   const std::size_t rows = p.name == RoomPreset::kSix ? 2 : 1, columns = panels.size() / rows;

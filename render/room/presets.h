@@ -14,11 +14,11 @@
 namespace merlin::render::room {
 
 // Returns the room with explicit panels and displays: the panels of its preset, and one display per
-// panel if the room has no displays; if the displays overlap, one panel is the whole screen. Half
-// of a preset's height is above the room's origin and half below.
+// panel if the room has no displays. If overlap_m is set, the panels become one panel as large as
+// all of them together. Half of a preset's height is above the room's origin and half below.
 RoomSettings withPanels(const RoomSettings& room);
 
-// Number of the preset's panels; 0 for RoomPreset::kNone.
+// Returns the number of the preset's panels; 0 for RoomPreset::kNone.
 std::size_t panelCount(const RoomPresetSettings& preset);
 
 }  // namespace merlin::render::room

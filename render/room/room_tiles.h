@@ -1,4 +1,4 @@
-// The tiles of a wall that is described as a room. Pure.
+// Computes the tiles of a wall that is described as a room. Pure.
 #pragma once
 
 #include "daemon/base/result.h"

@@ -75,8 +75,8 @@ struct DisplaySettings {
   // Bezel width on the left, right, lower and upper side: this margin of its part shows no picture,
   // and what would be seen there stays hidden, as behind a window frame [m].
   std::array<double, 4> bezel_m{};
-  tiles::TileCamera view = tiles::TileCamera::kWall;  // whose view it shows
-  tiles::FreeCamera camera{};                         // if view is kFree
+  tiles::TileCamera view = tiles::TileCamera::kWall;  // the view that it shows
+  tiles::FreeCamera camera{};                         // used if view is kFree
 
   bool operator==(const DisplaySettings&) const = default;
 };
@@ -90,7 +90,7 @@ struct RoomSettings {
 
   bool operator==(const RoomSettings&) const = default;
 
-  // Whether the configuration describes the wall as a room.
+  // Returns whether the configuration describes the wall as a room.
   bool isGiven() const { return *this != RoomSettings{}; }
   bool hasOperator() const { return operator_width > 0 || operator_height > 0; }
 };

@@ -63,7 +63,8 @@ TileFigures figuresOf(const tiles::TileSettings& settings, const tiles::Tile& ti
   return f;
 }
 
-// Length of the intersection of two intervals [low, low + length]; negative if they are disjoint.
+// Returns the length of the intersection of two intervals [low, low + length]; negative if they are
+// disjoint.
 double common(double low1, double length1, double low2, double length2) {
   return std::min(low1 + length1, low2 + length2) - std::max(low1, low2);
 }

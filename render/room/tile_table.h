@@ -20,39 +20,40 @@ struct ScreenFigures {
 struct TileFigures {
   std::string name;
   tiles::TileKind kind = tiles::TileKind::kWall;
-  int x = 0, y = 0, width = 0, height = 0;             // in the frame [px]
-  double horizontal_deg = 0, vertical_deg = 0;         // field of view; 0: parallel projection
-  double yaw_deg = 0, pitch_deg = 0;                   // of the tile's middle, left and up positive
+  int x = 0, y = 0, width = 0, height = 0;      // in the frame [px]
+  double horizontal_deg = 0, vertical_deg = 0;  // field of view; 0: parallel projection
+  double yaw_deg = 0, pitch_deg = 0;  // direction of the tile's middle; left and up are positive
   std::optional<ScreenFigures> screen = std::nullopt;  // none: the tile has no screen
   tiles::TileCamera view = tiles::TileCamera::kWall;
 
   bool followsWall() const {
     return kind == tiles::TileKind::kWall && view == tiles::TileCamera::kWall;
   }
-  // "wall", "operator", or the name of its own view.
+  // Returns what the tile shows: "wall", "operator", or the name of its own view.
   const char* shows() const {
     return kind == tiles::TileKind::kOperator ? "operator" : nameOf(view);
   }
 };
 
-// One entry per tile, in the order of the tiles. REQUIRES: `plan` is planTiles(settings).
+// Returns one entry per tile, in the order of the tiles. REQUIRES: `plan` is planTiles(settings).
 std::vector<TileFigures> tileTable(const tiles::TilesSettings& settings,
                                    const tiles::TilePlan& plan);
 
 // Two tiles that show the same part of the same plane, e.g. projectors with overlapping pictures.
 struct TileOverlap {
   std::string left, right;           // names of the tiles
-  double width_m = 0, height_m = 0;  // of the common part
-  // The common part in pixels of each, across and down.
+  double width_m = 0, height_m = 0;  // size of the common part
+  // Size of the common part in the pixels of each tile, across and down.
   std::array<int, 2> left_px{}, right_px{};
 };
 
-// Overlaps between tiles of the same eye on one plane (planeParts() of render/tiles), if at least a
-// millimetre wide and high.
+// Returns the overlaps between tiles of the same eye on one plane (planeParts() of render/tiles)
+// that are at least a millimetre wide and high.
 std::vector<TileOverlap> tileOverlaps(const tiles::TilePlan& plan);
 
-// Corners of a tile's picture in eye coordinates [m], counter-clockwise from the lower left: those
-// of its screen; without a screen, those at `distance_m` along its direction.
+// cornersOf() returns the corners of a tile's picture in eye coordinates [m], counter-clockwise
+// from the lower left: those of its screen; without a screen, those at `distance_m` along its
+// direction.
 using Corners = std::array<std::array<double, 3>, 4>;
 Corners cornersOf(const tiles::TileSettings& settings, const tiles::Tile& tile, double distance_m);
 

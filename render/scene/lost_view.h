@@ -15,13 +15,13 @@ class LostView {
   explicit LostView(double return_after_s) : return_after_(fromSeconds(return_after_s)) {}
 
   // To be called once a frame. `seen`: a tile of the wall shows a part of the content; `moving`:
-  // something moves. Returns true once if nothing was seen for return_after_s and nothing moves:
-  // the start view should be shown. It returns true again only after something was seen, since a
-  // start view that shows nothing would otherwise be restored repeatedly. REQUIRES: `now` never
-  // decreases.
+  // something moves. Returns true once, to tell that the start view should be shown, if nothing was
+  // seen for return_after_s and nothing moves. It returns true again only after something was seen,
+  // since a start view that shows nothing would otherwise be restored repeatedly. REQUIRES: `now`
+  // never decreases.
   bool update(bool seen, bool moving, Timestamp now) noexcept;
 
-  // Replaces the time; the last sighting stays.
+  // Replaces the time after which the start view returns; the time of the last sighting is kept.
   void setReturnAfter(double return_after_s) noexcept {
     return_after_ = fromSeconds(return_after_s);
   }

@@ -24,7 +24,8 @@ struct Push {
   Eigen::Vector3f way_m = Eigen::Vector3f::Zero(), turn_rad = Eigen::Vector3f::Zero();
 };
 
-// Stateless. Cost of a call: under a microsecond.
+// Port (an interface): how one kind of content and its viewer are moved. Stateless. Cost of a call:
+// under a microsecond.
 class Navigator {
  public:
   virtual ~Navigator() = default;

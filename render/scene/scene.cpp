@@ -11,11 +11,12 @@
 namespace merlin::render::scene {
 namespace {
 
-// Longest time step of ball and flight, also after a frame that took longer.
+// Longest time for which the ball and the flight move the view in one frame, even if the frame took
+// longer.
 constexpr float kLongestStep_s = 0.1F;
 constexpr float kMostShear = 1e-4F;
-// What a drag over the height of a picture does: it turns an object, or the view of a panorama, by
-// this angle; it moves a plane about as far as the pointer, at the initial distance.
+// Angle by which a drag over the height of a picture turns an object or the view of a panorama. A
+// plane moves about as far as the pointer, at the initial distance.
 constexpr float kTurnPerHeight = std::numbers::pi_v<float>;
 constexpr float kRadiiPerHeight = 1.5F;
 
@@ -61,7 +62,8 @@ Eigen::Vector3f vector(const std::array<double, 3>& a) {
 struct Ray {
   Eigen::Vector3f from, direction;  // `direction` has length 1
 
-  // The point at which the ray enters a sphere; nullopt if it misses the sphere or begins inside.
+  // Returns the point at which the ray enters a sphere; nullopt if it misses the sphere or begins
+  // inside.
   std::optional<Eigen::Vector3f> enters(const Eigen::Vector3f& centre, float radius) const {
     const Eigen::Vector3f to = centre - from;
     const float along = to.dot(direction);
@@ -70,8 +72,8 @@ struct Ray {
     return from + (along - std::sqrt(inside)) * direction;
   }
 
-  // The point at which the ray leaves a sphere about the eye. If the ray begins outside: the
-  // sphere's point in the ray's direction, as seen from the eye.
+  // Returns the point at which the ray leaves a sphere about the eye. If the ray begins outside:
+  // the sphere's point in the ray's direction, as seen from the eye.
   Eigen::Vector3f leaves(float radius) const {
     const float along = -from.dot(direction);
     const float inside = radius * radius - (from + along * direction).squaredNorm();
@@ -191,9 +193,9 @@ bool Scene::moveByStep(const SceneInput& input) {
   return true;
 }
 
-// What is touched follows the fingers. One finger turns an object, as a dragged mouse does in a
-// window; two move and turn it in the picture's plane, and bring it nearer as they move apart. A
-// plane and a panorama are moved by any number. Returns whether the fingers move.
+// Moves the content so that it follows the fingers. One finger turns an object, as a dragged mouse
+// does in a window; two move it, turn it in the picture's plane, and bring it nearer as they move
+// apart. Any number of fingers moves a plane or a panorama. Returns whether the fingers move.
 bool Scene::moveByTouch(const TouchMotion& touch) {
   if (!touch.moves()) return false;
   const float height_m = kRadiiPerHeight * static_cast<float>(settings_.model_radius_m);
@@ -215,13 +217,13 @@ bool Scene::moveByTouch(const TouchMotion& touch) {
 // Moves as fast as a ball that is pushed half way, since a key cannot be pushed less or more.
 // Returns whether anything is held.
 bool Scene::moveByHeld(const HeldMotion& held, float seconds) {
-  constexpr float kShare = 0.5F;  // of a full push
+  constexpr float kShare = 0.5F;  // share of a full push of the ball
   constexpr float kNearerPerSecond = std::numbers::ln2_v<float>;
   if (!held.moves()) return false;
   const Eigen::Vector3f way(static_cast<float>(held.right), static_cast<float>(held.up), 0);
   const Eigen::Vector3f turn(static_cast<float>(-held.turn_up), static_cast<float>(held.turn_right),
                              0);
-  // To turn the view is to turn what is seen the other way round.
+  // If the view turns, the content seems to turn in the opposite direction.
   const bool view = navigation_ == content::Navigation::kPanorama ||
                     (navigation_ == content::Navigation::kObject && mode_ == BallMode::kFly);
   const Eigen::Vector3f roll(0, 0, static_cast<float>(-held.roll_right));

@@ -41,18 +41,18 @@ struct SceneInput {
   TouchMotion touch;                            // motion of the fingers on a touch surface
   std::vector<TrackerSample> other_pointers;    // hands that point, besides `hand`
   HeldMotion held;
-  // Requested by the command move since the last frame, and applied at once. A plane cannot turn,
-  // so the rotation shifts it instead.
+  // Motion requested by the command `move` since the last frame; it is applied at once. A plane
+  // cannot turn, so the rotation shifts it instead.
   Push step;
   float turn_rad_s = 0;  // speed at which the content turns by itself: see Navigator::turn()
 };
 
-// The point at which the hand points, in metres.
+// The point at which a hand points [m].
 struct Pointed {
   Eigen::Vector3f at_eye_m = Eigen::Vector3f::Zero();    // in eye coordinates
   Eigen::Vector3f at_model_m = Eigen::Vector3f::Zero();  // in the model's coordinates
-  bool on_model = false;  // on the model's bounding sphere; else on a sphere about the eye, as far
-                          // away as the wall
+  bool on_model = false;  // the point is on the model's bounding sphere; false: on a sphere about
+                          // the eye whose radius is the distance of the wall
 };
 
 struct SceneView {
@@ -69,12 +69,13 @@ class Scene {
   // Errors: kInvalidArgument (an axis map that is not a right-handed permutation).
   static Result<Scene> make(const SceneSettings& settings);
 
-  // To be called once a frame. REQUIRES: `now` never decreases. Cost: microseconds. Whatever
-  // `input` contains, the poses of content and viewer stay rigid (orthonormal rotations) and within
-  // kWorld_m of the wall frame's origin; if a pose is not finite, the start view returns.
+  // Moves content and viewer by the input of one frame and returns the view; to be called once a
+  // frame. REQUIRES: `now` never decreases. Cost: microseconds. Whatever `input` contains, the
+  // poses of content and viewer stay rigid (orthonormal rotations) and within kWorld_m of the wall
+  // frame's origin; if a pose is not finite, the start view returns.
   SceneView update(const SceneInput& input, Timestamp now);
 
-  // The view of the last update() or reset().
+  // Returns the view of the last update() or reset().
   const SceneView& view() const noexcept { return view_; }
 
   static constexpr float kWorld_m = 10'000;

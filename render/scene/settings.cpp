@@ -7,7 +7,8 @@
 namespace merlin::render::scene {
 namespace {
 
-// Handedness (+1 or -1) of a signed permutation of x, y, z; 0 if it is not a permutation.
+// Returns the handedness (+1 or -1) of a signed permutation of x, y, z; 0 if it is not a
+// permutation.
 int handedness(const std::array<int, 3>& axes) {
   int sign = 1;
   for (std::size_t i = 0; i < 3; ++i) {

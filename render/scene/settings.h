@@ -9,7 +9,7 @@ namespace merlin::render::scene {
 
 struct SceneSettings {
   double model_radius_m = 1.0;    // the model is scaled to this bounding sphere
-  double model_distance_m = 2.0;  // distance of its centre in front of the eye
+  double model_distance_m = 2.0;  // distance of the model's centre in front of the eye
   double model_yaw_deg = 0;    // initial rotation about the vertical axis, applied after the pitch
   double model_pitch_deg = 0;  // initial rotation about the horizontal axis
 

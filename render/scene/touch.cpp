@@ -9,7 +9,8 @@
 namespace merlin::render::scene {
 namespace {
 
-// Closer than this, in heights of the surface, the direction between two fingers is not known well.
+// If two fingers are closer than this, in heights of the surface, the direction between them is too
+// uncertain to be used.
 constexpr float kTooClose = 0.01F;
 
 // A finger in two samples, in heights of the surface, x to the right and y up.
@@ -35,9 +36,9 @@ std::vector<Moved> fingersInBoth(const TouchSample& before, const TouchSample& n
   return both;
 }
 
-// The similarity about the middles that fits best: its rotation and the ratio of its lengths, from
-// the sums of the dot and cross products of the fingers' arms (least squares). The spread is added
-// to that of a mouse's wheel.
+// Adds the turn and the spread of the fingers to `motion`: rotation and scale of the similarity
+// transform about the fingers' centre that fits best, from the sums of the dot and cross products
+// of the fingers' arms (least squares). The spread of a mouse wheel is kept.
 void addTurn(const std::vector<Moved>& fingers, const Moved& middle, TouchMotion& motion) {
   float dot = 0, cross = 0, length = 0, length_now = 0;
   for (const Moved& f : fingers) {

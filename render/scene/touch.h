@@ -20,12 +20,13 @@ struct TouchMotion {
   bool moves() const { return right != 0 || up != 0 || spread != 0 || turn_rad != 0; }
 };
 
-// Compares each sample with the one before, using only the fingers that are in both: a finger that
-// appears or disappears moves nothing. A notch of the mouse wheel away from the person adds
-// kPerNotch to `spread`. Thread-bound.
+// Computes TouchMotion from one sample to the next, using only the fingers that are in both
+// samples: a finger that appears or disappears moves nothing. A notch of the mouse wheel away from
+// the person adds kPerNotch to `spread`. Thread-bound.
 class TouchFollower {
  public:
-  // `touch`: the newest sample; null: the device does not work, which counts as no finger.
+  // Returns the motion since the last call. `touch`: the newest sample; null: the device does not
+  // work, which counts as no finger.
   TouchMotion update(const TouchSample* touch);
 
   static constexpr float kPerNotch = 0.1F;  // TouchMotion::spread

@@ -69,7 +69,8 @@ class Clusters {
     return sum;
   }
 
-  // Increase of the sum of squared distances from the means if the two clusters are merged.
+  // Returns the increase of the sum of squared distances from the means if the two clusters are
+  // merged.
   double cost(std::uint32_t a, std::uint32_t b) const {
     const double n = size_[a], m = size_[b];
     return n * m / (n + m) * distance2(a, b);
@@ -90,7 +91,7 @@ class Clusters {
   double size(std::uint32_t cluster) const { return size_[cluster]; }
   double squares() const { return squares_; }
 
-  // All clusters, the largest first.
+  // Returns the numbers of all clusters, the largest first.
   std::vector<std::uint32_t> bySize() {
     std::vector<std::uint32_t> clusters;
     for (std::uint32_t v = 0; v < parent_.size(); ++v) {
@@ -152,7 +153,7 @@ std::size_t mergeNeighbours(const mesh::Mesh& mesh, Clusters& clusters, std::siz
   return left;
 }
 
-// Merges each cluster but the `keep` largest with the nearest of those.
+// Merges each cluster, except the `keep` largest, with the nearest of these.
 void joinTheRest(Clusters& clusters, std::size_t keep) {
   const std::vector<std::uint32_t> all = clusters.bySize();
   for (std::size_t i = keep; i < all.size(); ++i) {

@@ -18,7 +18,7 @@ struct SegmentSettings {
 };
 
 struct Segmentation {
-  std::vector<std::uint32_t> labels;  // by vertex: its segment; 0 is the largest
+  std::vector<std::uint32_t> labels;  // segment of each vertex; 0 is the largest
   std::vector<std::size_t> sizes;     // number of vertices of each segment, in descending order
   double error = 0;  // RMS distance of the pattern vectors from the mean of their segment
 };

@@ -6,10 +6,10 @@
 
 namespace merlin::render::stereo {
 
-// RGBA pixels of the same size. Of each pixel, red is the brightness of the left eye's picture
-// (0.299 red + 0.587 green + 0.114 blue, ITU-R BT.601), green and blue are those of the right
-// eye's, and alpha is 255: a half-colour anaglyph. Glasses: red on the left eye. `out` may be
-// `left`.
+// Composes a half-colour anaglyph of two pictures of the same size (RGBA). In each pixel of `out`,
+// red is the brightness of the left eye's picture (0.299 red + 0.587 green + 0.114 blue, ITU-R
+// BT.601), green and blue are those of the right eye's picture, and alpha is 255. The glasses are
+// red on the left eye. `out` may be `left`.
 void composeAnaglyph(std::span<const std::uint8_t> left, std::span<const std::uint8_t> right,
                      std::span<std::uint8_t> out);
 

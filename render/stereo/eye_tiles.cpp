@@ -16,7 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kWholeFrame = ~std::size_t{0};  // it stands for no placed tile
+// The output shows the whole frame, so the tile stands for no placed tile.
+constexpr std::size_t kWholeFrame = ~std::size_t{0};
 
 std::string nameFor(tiles::Eye eye, const std::string& tile) {
   return fmt::format("{}.{}", tile, eye == tiles::Eye::kLeft ? 'L' : 'R');
@@ -113,7 +114,7 @@ tiles::TilesSettings inPairs(const StereoSettings& stereo, tiles::TilesSettings 
   return wall;
 }
 
-// Returns what an output shows in place of a configured tile, which may have become two.
+// Returns the tiles that an output shows for one configured tile, which may have become two.
 std::vector<out::PlacedTile> shown(const StereoSettings& stereo, const out::PlacedTile& placed,
                                    const tiles::TilesSettings& pairs) {
   const auto left = std::ranges::find(pairs.tiles, nameFor(tiles::Eye::kLeft, placed.tile),
@@ -132,7 +133,7 @@ std::vector<out::PlacedTile> shown(const StereoSettings& stereo, const out::Plac
   return {placed};
 }
 
-// Whether the output shows an anaglyph of the whole frame, which is one of all its tiles.
+// Returns whether the output shows an anaglyph of the whole frame, which is one of all its tiles.
 bool showsAllTiles(const StereoSettings& stereo, const out::OutputSettings& output) {
   return stereo.mode == StereoMode::kAnaglyph && output.kind != out::OutputKind::kSharedMemory &&
          output.tiles.empty();
@@ -147,13 +148,13 @@ std::vector<out::PlacedTile> placedOn(const StereoSettings& stereo,
   return all;
 }
 
-// Where an output's tiles are in its signal, by the eye that they are for.
+// The places of an output's tiles in its signal, by the eye for which they are drawn.
 struct PlacesByEye {
   std::vector<out::Rectangle> left, right;
   bool of_both = false;  // there is a tile for both eyes
 
-  // Whether the right eye's tiles are those of the left eye moved by `by`, and the left eye's tiles
-  // end where the right eye's half begins.
+  // Returns whether the right eye's tiles are those of the left eye moved by `by`, and the left
+  // eye's tiles end where the right eye's half begins.
   bool areHalves(int width, int height, std::array<int, 2> by) const {
     if (left.size() != right.size() || width % 2 != 0 || height % 2 != 0) return false;
     const int right_end = by[0] > 0 ? by[0] : width, bottom_end = by[1] > 0 ? by[1] : height;
@@ -215,7 +216,7 @@ EyeTiles eyeTiles(const StereoSettings& stereo, const tiles::TilesSettings& tile
 std::optional<correct::SignalParts> signalParts(const out::OutputSettings& output,
                                                 const tiles::TilesSettings& tiles) {
   constexpr correct::SignalParts kOne{1, 1}, kBeside{2, 1}, kBelow{1, 2};
-  if (output.kind == out::OutputKind::kSharedMemory) return kOne;  // it is not corrected
+  if (output.kind == out::OutputKind::kSharedMemory) return kOne;  // this kind is never corrected
   const PlacesByEye places = placesByEye(output, tiles);
   const auto size = out::pictureSize(output, tiles);
   if (!size || places.left.empty() || places.right.empty()) return kOne;

@@ -1,4 +1,4 @@
-// Head: where the viewer's eyes are, from a tracker station on the head. Pure.
+// Head: computes the places of the viewer's eyes from a tracker station on the head. Pure.
 #pragma once
 
 #include <optional>

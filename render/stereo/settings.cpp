@@ -106,8 +106,8 @@ std::optional<SettingFault> faultOfTile(const StereoSettings& s, const tiles::Ti
                                   t.name, half.what, half.pixels)};
 }
 
-// The eyes must be nearer to each other than the screen is to their middle: then both are in front
-// of it.
+// Finds eyes that are further apart than their middle is from the screen; otherwise both are in
+// front of the screen.
 std::optional<SettingFault> faultOfEyes(const StereoSettings& s, const tiles::TileSettings& left) {
   const Eigen::Matrix3d corners = Eigen::Map<const Eigen::Matrix3d>(left.screen_m.data());
   const Vector3d across = corners.col(1) - corners.col(0), up = corners.col(2) - corners.col(0);
@@ -177,8 +177,8 @@ bool isOnItsSide(const out::PlacedTile& p) {
   return p.turn == out::Turn::k90 || p.turn == out::Turn::k270;
 }
 
-// Finds pairs on their side, which would be packed along the wrong edge of the signal, and pairs in
-// mode two_outputs.
+// Finds pairs of eye pictures that are rotated by 90 or 270 degrees, which would be packed along
+// the wrong edge of the signal, and pairs in mode two_outputs.
 SettingFaults faultsOfPlaced(const StereoSettings& s,
                              const std::vector<out::OutputSettings>& outputs,
                              const EyeTiles& eyes) {
@@ -207,14 +207,15 @@ SettingFaults faultsOfPlaced(const StereoSettings& s,
   return faults;
 }
 
-// Whether the correction moves or covers parts of the picture, so that it depends on their place.
+// Returns whether the correction moves or covers parts of the picture, so that it depends on their
+// place.
 bool dependsOnPlace(const correct::CorrectionSettings& c) {
   return c.corners != decltype(c.corners){} || !c.mesh.isOff() || !c.mpcdi.empty() ||
          c.blend.hasRamp() || !c.black.isOff();
 }
 
-// A correction applies to the whole signal or to each half of it. So one that depends on places is
-// a fault if the eyes' pictures are not these halves.
+// Finds corrections that depend on places in the picture, on outputs where the eyes' pictures are
+// not the halves of the signal: a correction applies to the whole signal or to each half of it.
 SettingFaults faultsOfCorrections(const StereoSettings& s, const EyeTiles& eyes) {
   SettingFaults faults;
   for (std::size_t i = 0; i < eyes.outputs.size(); ++i) {
@@ -231,7 +232,7 @@ SettingFaults faultsOfCorrections(const StereoSettings& s, const EyeTiles& eyes)
   return faults;
 }
 
-// Numbers of the outputs that show a tile by name.
+// Returns the numbers of the outputs that name the tile.
 std::vector<std::size_t> outputsOf(const std::string& tile,
                                    const std::vector<out::OutputSettings>& outputs) {
   std::vector<std::size_t> found;

@@ -34,7 +34,7 @@ inline constexpr const char* kEyeSizeNames[] = {"half", "full"};
 
 // The head tracker: its place in the room, and the noise that does not count as motion.
 struct HeadSettings {
-  std::string tracker;  // its name; empty: the first tracker
+  std::string tracker;  // name of the tracker; empty: the first tracker
   int station = 0;      // the tracker's station on the viewer's head; 0: none
   // Position of the eyes in the room when the tracker measures (0, 0, 0): that of its transmitter
   // minus the vector from the eyes to the receiver on the head [m].
@@ -51,7 +51,8 @@ struct StereoSettings {
   StereoMode mode = StereoMode::kOff;
   EyeSize size = EyeSize::kHalf;
   double eye_separation_m = 0.063;
-  double screen_distance_m = 0;  // of tiles without a screen; 0: the wall's distance
+  // Distance of the screens of tiles that have none; 0: the wall's distance.
+  double screen_distance_m = 0;
   // Direction from the left to the right eye of a viewer who is not tracked, a vector of any length
   // (x right, y up, z towards the person). All 0: along the tile in the middle of the wall.
   std::array<double, 3> eyes_direction{};
@@ -73,8 +74,8 @@ struct StereoSettings {
 SettingFaults validate(const StereoSettings& stereo, const tiles::TilesSettings& tiles,
                        const std::vector<out::OutputSettings>& outputs, double wall_distance_m);
 
-// Values that can be shown, but are probably not meant: eyes at one place, and distances that seem
-// to be given in centimetres or millimetres. Pointers as of validate(). Pure.
+// Reports values that can be shown, but are probably not meant: eyes at one place, and distances
+// that seem to be given in centimetres or millimetres. Pointers as for validate(). Pure.
 SettingFaults doubtsOf(const StereoSettings& stereo);
 
 }  // namespace merlin::render::stereo

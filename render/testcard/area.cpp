@@ -44,7 +44,7 @@ void Area::line(int x0, int y0, int x1, int y1, Colour colour) {
 
 namespace {
 
-// Half the width of an ellipse at `y` from its middle; 0 beyond it.
+// Returns half the width of an ellipse at distance `y` from its middle; 0 beyond the ellipse.
 double halfWidth(const Pitch& radii, double y) {
   const double share = radii.y > 0 ? y / radii.y : 1;
   return std::abs(share) < 1 ? radii.x * std::sqrt(1 - share * share) : 0;

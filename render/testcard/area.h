@@ -40,16 +40,17 @@ class Area {
   void set(int x, int y, Colour colour);
   void fill(int x, int y, int width, int height, Colour colour);
   void fillAll(Colour colour) { fill(0, 0, width_, height_, colour); }
-  // The border of a rectangle, a pixel wide, inside it.
+  // Draws the border of a rectangle, one pixel wide, inside the rectangle.
   void frame(int x, int y, int width, int height, Colour colour);
   void line(int x0, int y0, int x1, int y1, Colour colour);
-  // An elliptical ring around a point, whose coordinates count from pixel corners: (1, 1) is where
-  // the first four pixels meet. `outer`: its outer radii; `thick`: its width.
+  // Draws an elliptical ring around (x, y). These coordinates count from pixel corners: (1, 1) is
+  // where the first four pixels meet. `outer`: the outer radii [px]; `thick`: width of the ring
+  // [px].
   void ring(double x, double y, const Pitch& outer, double thick, Colour colour);
-  // Text in which a pixel of the font is `scale` pixels wide and high, so 8 * scale high; (x, y) is
-  // its upper left corner.
+  // Draws text whose upper left corner is (x, y). A pixel of the font is `scale` pixels wide and
+  // high, so the text is 8 * scale pixels high.
   void text(int x, int y, int scale, std::string_view text, Colour colour);
-  // The same around a point, on a black box.
+  // Draws text like text(), with (x, y) as its middle and on a black box.
   void label(int x, int y, int scale, std::string_view text, Colour colour);
 
  private:

@@ -19,7 +19,8 @@ constexpr Colour kStrip{70, 0, 70}, kStripEdge{255, 0, 255}, kMark{255, 90, 0};
 constexpr int kGridColumns = 16;
 constexpr int kGreySteps = 17;
 
-// Returns the largest scale of a text within a share of the area, 1 or more.
+// Returns the largest scale, at least 1, at which a text fits into these shares of the area's width
+// and height.
 int scaleFor(const Area& a, std::string_view text, double width_share, double height_share) {
   const double columns = std::max(textWidth(text, 1), kGlyphSize);
   const double scale =
@@ -27,7 +28,7 @@ int scaleFor(const Area& a, std::string_view text, double width_share, double he
   return std::max(1, static_cast<int>(scale));
 }
 
-// The part of its plane that a tile shows.
+// Returns the part of its plane that a tile shows; without a plane, the whole tile.
 CardPart partOf(const CardTile& t) {
   if (t.part.width > 0) return t.part;
   const double w = t.width, h = t.height;
@@ -151,7 +152,7 @@ void drawRamps(Area& a, const CardPart& p) {
       return std::min(static_cast<int>((first + x) / (last + 1) * steps), steps - 1);
     };
     a.fill(x, from(4), 1, from(5) - from(4), grey(255 * stepOf(kGreySteps) / (kGreySteps - 1)));
-    // 0, 2 ... 14 on the left half, 241, 243 ... 255 on the right one.
+    // The values are 0, 2 ... 14 on the left half, 241, 243 ... 255 on the right one.
     const int patch = stepOf(16);
     a.fill(x, from(5), 1, h - from(5), grey(patch < 8 ? 2 * patch : 241 + 2 * (patch - 8)));
   }
@@ -163,7 +164,7 @@ void drawNames(Area& a, const CardTile& t, std::size_t number) {
   const int w = a.width(), h = a.height();
   a.fillAll(kBackgrounds[number % std::size(kBackgrounds)]);
   a.frame(0, 0, w, h, kWhite);
-  const int arrow = h / 12;  // points up
+  const int arrow = h / 12;  // height of an arrow that points up [px]
   for (int y = 0; y < arrow; ++y) a.fill(w / 2 - y, h / 24 + y, 2 * y + 1, 1, kWhite);
   const int scale = scaleFor(a, t.name, 0.8, 0.3);
   a.text(w / 2 - textWidth(t.name, scale) / 2, h * 2 / 5 - kGlyphSize * scale / 2, scale, t.name,
@@ -176,7 +177,8 @@ void drawNames(Area& a, const CardTile& t, std::size_t number) {
   }
 }
 
-// Black and white sectors around a point: where they run into one grey says how sharp it is.
+// Draws black and white sectors around a point. The size of the spot in which they blur into grey
+// shows how sharp the picture is.
 void drawStar(Area& a, int cx, int cy, int radius) {
   constexpr int kSectors = 36;
   for (int y = -radius; y < radius; ++y) {
@@ -222,7 +224,7 @@ void drawFocus(Area& a, const CardTile& t) {
   a.label(w / 2, (ys[1] + ys[2]) / 2, 2, t.name + " 0123456789", kWhite);
 }
 
-// A triangle in the corner.
+// Draws a triangle in a corner of the area.
 void drawMark(Area& a, std::size_t corner) {
   const int w = a.width(), h = a.height(), size = std::max(4, std::min(w, h) / 6);
   const bool right = corner % 2 != 0, low = corner / 2 != 0;

@@ -1,4 +1,4 @@
-// Test cards: what a wall shows while somebody sets up its projectors and displays. Pure.
+// Test cards: patterns that a wall shows while somebody sets up its projectors and displays. Pure.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ std::optional<Card> cardNamed(std::string_view name);
 
 // The part of a plane that a tile shows, from the plane's upper left corner. The plane is what the
 // tiles on one flat screen show together, so that a card's lines meet from one to the next, also
-// where they overlap. In metres, or for a tile without a screen in its pixels.
+// where they overlap. Lengths are in metres; for a tile without a screen, in its pixels.
 struct CardPart {
   double left = 0, top = 0, width = 0, height = 0;
   double plane_width = 0, plane_height = 0;
@@ -29,13 +29,13 @@ struct CardPart {
 struct CardTile {
   std::string name;
   int x = 0, y = 0, width = 0, height = 0;  // in the canvas [px]
-  std::vector<std::string> lines{};         // further lines of the card names
+  std::vector<std::string> lines{};  // lines that the card "names" shows below the tile's name
   // Strips at its borders that a neighbour shows as well [px].
   int left = 0, right = 0, top = 0, bottom = 0;
   CardPart part{};  // if its width is 0: the tile is a plane of its own
 };
 
-// A corner of a tile that is marked: 2 * row + column.
+// A corner of a tile that is marked. `tile`: index; `corner`: 2 * row + column.
 struct MarkedCorner {
   std::size_t tile = 0, corner = 0;
 };

@@ -1,4 +1,4 @@
-// CardOverlay: a test card over everything that the wall shows.
+// CardOverlay: draws a test card over all that the wall shows.
 #pragma once
 
 #include <atomic>
@@ -16,14 +16,15 @@ namespace merlin::render::testcard {
 // show() and isShown() are for any thread; the rest for the wall's.
 class CardOverlay final : public frame::Overlay {
  public:
-  // `width` x `height`: of the canvas [px].
+  // `width`, `height`: size of the canvas [px].
   CardOverlay(int width, int height, std::vector<CardTile> tiles);
 
-  // Shows a card from the next frame on, or none. Draws the card in this call, and needs memory for
-  // two pictures of the canvas's size as long as it is shown.
+  // Shows a card from the next frame on, or none. Draws the card in this call, on the calling
+  // thread. A card needs memory for two pictures of the canvas's size, which is freed by a later
+  // call of show() after the card was removed or replaced.
   void show(std::optional<Card> card, std::optional<MarkedCorner> mark = std::nullopt);
 
-  // Whether a card is drawn, or will be with the next frame.
+  // Returns whether a card is drawn, or will be with the next frame.
   bool isShown() const noexcept { return wanted_; }
 
   bool hasChanged() const override { return waiting_; }

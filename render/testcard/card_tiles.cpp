@@ -39,7 +39,8 @@ std::vector<Shown> shownBy(const out::OutputSettings& output, const tiles::TileP
   return all;
 }
 
-// Where a tile's corner (0 or 1 each way) is in its place on the output.
+// Returns which corner of the tile's place on the output (column, row; each 0 or 1) is this corner
+// of the tile.
 std::pair<int, int> cornerOnOutput(const frame::TileAxes& axes, int column, int row) {
   const auto along = [&](int by_column, int by_row) {
     const int step = by_column != 0 ? by_column : by_row;
@@ -49,7 +50,7 @@ std::pair<int, int> cornerOnOutput(const frame::TileAxes& axes, int column, int 
   return {along(axes.column.x, axes.row.x), along(axes.column.y, axes.row.y)};
 }
 
-// The side of an output (0 left, 1 right, 2 top, 3 bottom) on which a step ends.
+// Returns the side of an output (0 left, 1 right, 2 top, 3 bottom) to which a step leads.
 std::size_t sideOf(const frame::TileAxes::Step& step) {
   if (step.x != 0) return step.x > 0 ? 1 : 0;
   return step.y > 0 ? 3 : 2;
@@ -86,8 +87,8 @@ std::string nameForBothEyes(const tiles::Tile& tile) {
   return tile.eye == tiles::Eye::kMiddle ? tile.name : tile.name.substr(0, tile.name.rfind('.'));
 }
 
-// Whether the tile is in an anaglyph, where both eyes' tiles lie over one another and have to say
-// the same.
+// Returns whether the tile is in an anaglyph, where both eyes' tiles are shown at the same place
+// and so must show the same text.
 bool isInAnaglyph(const tiles::Tile& tile, const std::vector<out::OutputSettings>& outputs) {
   return std::ranges::any_of(outputs, [&](const out::OutputSettings& output) {
     return std::ranges::any_of(output.tiles, [&](const out::PlacedTile& placed) {
@@ -97,7 +98,8 @@ bool isInAnaglyph(const tiles::Tile& tile, const std::vector<out::OutputSettings
   });
 }
 
-// The tiles on their planes, with the strips that neighbours there show as well.
+// Returns the tiles with their parts of their planes, and with the strips that neighbours on the
+// plane show as well.
 std::vector<CardTile> placedTiles(const tiles::TilePlan& plan) {
   const auto parts = tiles::planeParts(plan);
   const auto strips = tiles::sharedStrips(plan, parts);

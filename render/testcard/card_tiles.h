@@ -1,5 +1,5 @@
-// What test cards show of a wall's tiles: the outputs that show each, its strips of overlap, and
-// which of its corners is a corner of an output's picture. Pure.
+// Computes what test cards show of a wall's tiles: the outputs that show each tile, its strips of
+// overlap, and which of its corners is a corner of an output's picture. Pure.
 #pragma once
 
 #include <map>
@@ -13,8 +13,9 @@
 
 namespace merlin::render::testcard {
 
-// `panels`: maps the names of tiles to those of the panels that they are on, if the wall has any.
-// An output of kind shared_memory, which nobody looks at, is not named.
+// Returns one entry per tile of the plan. `panels`: maps the names of tiles to those of the panels
+// that they are on, if the wall has any. Outputs of kind shared_memory are not named, since nobody
+// looks at them.
 std::vector<CardTile> cardTiles(const tiles::TilePlan& plan,
                                 const std::vector<out::OutputSettings>& outputs,
                                 const std::map<std::string, std::string>& panels);

@@ -107,7 +107,7 @@ constexpr std::uint8_t kGlyphs[][8] = {
 };
 static_assert(std::size(kGlyphs) == kLast - kFirst + 1);
 
-// A box, for what is no character of the font.
+// A box, drawn for bytes that are not characters of the font.
 constexpr std::uint8_t kUnknown[8] = {0x7F, 0x41, 0x41, 0x41, 0x41, 0x41, 0x7F, 0x00};
 
 }  // namespace

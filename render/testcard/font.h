@@ -8,7 +8,8 @@ namespace merlin::render::testcard {
 
 inline constexpr int kGlyphSize = 8;  // [px], with the space to the next one
 
-// Rows of a character from the top; bit i is the pixel of column i. A box for any other byte.
+// Returns the rows of a character from the top; bit i is the pixel of column i. Returns a box for
+// any other byte.
 std::span<const std::uint8_t, 8> glyph(char c);
 
 }  // namespace merlin::render::testcard

@@ -1,6 +1,6 @@
 #include "render/text/font_file.h"
 
-// The assembler reads the file, so that the compiler need not parse 760,000 bytes.
+// The assembler includes the font file, so that the compiler need not parse 760,000 bytes.
 asm(".pushsection .rodata\n"
     ".balign 16\n"
     ".global merlin_font_begin\n"

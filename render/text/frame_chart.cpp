@@ -12,7 +12,8 @@ std::int64_t columnOf(Timestamp at) { return toNanoseconds(at) / kChartColumn.co
 
 }  // namespace
 
-// A frame that takes several periods is seen in each of their columns, as are its late deadlines.
+// A frame that takes several periods is entered into each column of its time, and so are the
+// deadlines that it missed.
 void FrameChart::add(const Frame& frame) {
   if (frame.period <= Duration::zero() || toNanoseconds(frame.began) < 0) return;
   const double share = 1 + toSeconds(frame.ended - frame.deadline) / toSeconds(frame.period);

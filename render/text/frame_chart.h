@@ -9,7 +9,8 @@
 
 namespace merlin::render::text {
 
-// What one column of the chart shows: the longest frame that was being drawn during its time.
+// One column of the chart. It shows the longest frame that was being drawn during the column's
+// time.
 struct ChartColumn {
   // When the frame was finished, in percent of its period: 100 at its deadline, at most 255; 0:
   // there was no frame, because nothing moved.
@@ -35,7 +36,7 @@ class FrameChart {
   // Adds a frame that was drawn while something moved. Frames come in the order of time.
   void add(const Frame& frame);
 
-  // The columns up to that of `now`, the oldest first.
+  // Returns the columns up to that of `now`, the oldest first.
   Columns at(Timestamp now) const;
 
  private:

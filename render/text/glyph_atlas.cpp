@@ -12,7 +12,7 @@
 namespace merlin::render::text {
 namespace {
 
-constexpr int kWidth_px = 1024;  // of the atlas
+constexpr int kWidth_px = 1024;  // width of the atlas's picture
 
 struct Range {
   char32_t first, last;

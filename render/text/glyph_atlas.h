@@ -1,5 +1,5 @@
-// GlyphAtlas: pictures of all characters of a font that MERLIN draws, in the sizes in use, in one
-// picture.
+// GlyphAtlas: holds pictures of all characters of a font that MERLIN draws, in all sizes in use, in
+// one picture.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@
 namespace merlin::render::text {
 
 struct Glyph {
-  int x = 0, y = 0, width = 0, height = 0;  // its picture in the atlas [px]
+  int x = 0, y = 0, width = 0, height = 0;  // place of the glyph's picture in the atlas [px]
   int left = 0;                             // from the pen to the picture's left edge [px]
   int top = 0;                              // from the base line up to its upper edge [px]
-  int advance = 0;                          // from the pen to that of the next character [px]
+  int advance = 0;                          // from the pen to the pen of the next character [px]
 };
 
 struct FontSize {
@@ -34,14 +34,15 @@ class GlyphAtlas {
 
   // `size`: index in `sizes_px`.
   const FontSize& size(std::size_t size) const noexcept { return sizes_[size]; }
-  // A box for a character that the atlas lacks. Costs O(log n).
+  // Returns the glyph of a character; a box if the atlas lacks it. Costs O(log n).
   const Glyph& glyph(std::size_t size, char32_t character) const noexcept;
   bool has(char32_t character) const noexcept;
 
-  // Coverage 0..255 of the glyph's row, counted from the top.
+  // Returns the coverage, 0..255, of each pixel of one row of the glyph's picture. `row`: counted
+  // from the top.
   std::span<const std::uint8_t> row(const Glyph& glyph, int row) const noexcept;
 
-  // Bytes that its picture takes.
+  // Returns the size of the atlas's picture [bytes].
   std::size_t bytes() const noexcept { return coverage_.size(); }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Colour kNoticeGround{10, 14, 20, 215}, kNoticeText{244, 246, 248};
 
-// The first tile of the wall with room for it.
+// Returns the rectangle of the first tile of kind wall that has room for a notice.
 std::optional<Rect> noticeTile(const tiles::TilePlan& plan) {
   for (const tiles::Tile& t : plan.tiles) {
     if (t.kind == tiles::TileKind::kWall && t.width >= kLeastTileWidth_px &&
@@ -40,7 +40,7 @@ Plate drawNotice(std::string_view text, const Font& font, const Rect& tile) {
 NoticeOverlay::NoticeOverlay(const tiles::TilePlan& plan, const Clock& clock)
     : clock_(clock), tile_(noticeTile(plan)), cover_(plan.frame_width) {}
 
-// Draws here, on the caller's thread, so that the wall's has only to blend.
+// The plate is drawn on the caller's thread, so that the wall's thread only has to blend it.
 Result<Ok> NoticeOverlay::show(std::string_view text, Timestamp until) {
   if (!tile_) return Ok{};
   Shown plate;

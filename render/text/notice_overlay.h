@@ -1,4 +1,5 @@
-// NoticeOverlay: a sentence on a plate at the lower edge of the wall's first tile, for a while.
+// NoticeOverlay: shows a sentence for some time, on a plate at the lower edge of the wall's first
+// tile.
 #pragma once
 
 #include <memory>
@@ -30,12 +31,12 @@ class NoticeOverlay final : public frame::Overlay {
   NoticeOverlay(const tiles::TilePlan& plan, const Clock& clock);
 
   // Shows the sentence until the time `until`, in place of the one before; an empty text removes
-  // it. The first call costs about 60 ms, for the font; each draws the plate. Errors: those of
-  // GlyphAtlas::make().
+  // it. Each call draws the plate on the calling thread; the first one also prepares the font,
+  // about 60 ms. Errors: those of GlyphAtlas::make().
   Result<Ok> show(std::string_view text, Timestamp until);
 
   bool hasChanged() const override { return visible() != drawn_; }
-  // Costs the blending of the plate's pixels, and erase() a copy of them.
+  // Blends the plate's pixels onto the canvas; erase() copies the covered pixels back.
   void draw(std::span<std::uint8_t> canvas) override;
   void erase(std::span<std::uint8_t> canvas) override { cover_.erase(canvas); }
 
@@ -44,7 +45,7 @@ class NoticeOverlay final : public frame::Overlay {
   Shown visible() const;
 
   const Clock& clock_;
-  std::optional<Rect> tile_;  // in the frame
+  std::optional<Rect> tile_;  // the tile's rectangle in the frame; nothing: no tile has room
   PlateCover cover_;
   Shown drawn_;
   std::mutex atlas_mutex_;

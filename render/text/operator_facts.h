@@ -1,4 +1,4 @@
-// OperatorFacts: what the operator's tile says about the wall.
+// OperatorFacts: the facts about the wall that the operator's tile shows.
 #pragma once
 
 #include <cstdint>
@@ -34,9 +34,10 @@ struct OperatorFacts {
   double late_percent = 0;  // late frames in the last minute
   FrameChart::Columns chart{};
 
-  std::uint32_t cost = 0, full_cost = 0;  // of the detail that is shown, and of full detail
-  std::uint32_t budget = 0;               // for moving frames
-  bool budget_by_hand = false;            // the budget was set by a person
+  // Cost of the detail that is shown, and of full detail, in cost_unit.
+  std::uint32_t cost = 0, full_cost = 0;
+  std::uint32_t budget = 0;     // budget of frames while something moves, in cost_unit
+  bool budget_by_hand = false;  // the budget was set by a person
   bool full_detail = false;
   std::string cost_unit;  // "triangles"
 
@@ -44,7 +45,7 @@ struct OperatorFacts {
   std::string mode;                   // what the ball moves
   std::string posture;                // empty: none
   std::vector<DeviceFact> devices;    // those that are configured
-  bool devices_missing = false;       // some are configured, and nothing is known of them
+  bool devices_missing = false;       // devices are configured, but nothing is known about them
   std::vector<MessageFact> messages;  // the newest first
 
   bool operator==(const OperatorFacts&) const = default;

@@ -1,4 +1,4 @@
-// OperatorOverlay: puts the wall's state over the operator's tiles.
+// OperatorOverlay: draws the wall's state over the operator's tiles.
 #pragma once
 
 #include <atomic>
@@ -26,14 +26,13 @@ class OperatorOverlay final : public frame::Overlay {
   static Result<std::unique_ptr<OperatorOverlay>> make(const tiles::TilePlan& plan,
                                                        OperatorSource& source, const Clock& clock);
 
-  // Whether it is drawn from the next frame on.
+  // Sets whether the overlay is drawn from the next frame on; it is initially.
   void show(bool shown) noexcept { asked_.store(shown); }
   bool isShown() const noexcept { return asked_.load(); }
 
-  // Checks the facts at most twice a second, so that a wall that stands still is not presented more
-  // often.
-  // Once after the last frames of a motion it checks earlier, if draw() did not read the facts for
-  // these.
+  // Reads the facts at most twice a second, so that a wall that stands still is not presented more
+  // often. Only if the last draw() did not read them, they are read once earlier, so that the
+  // plates show the last frames of a motion.
   bool hasChanged() const override;
   // Reads the facts and redraws the plates at most ten times a second; otherwise it costs the
   // blending of the plates' pixels. erase() costs a copy of them.
@@ -42,7 +41,7 @@ class OperatorOverlay final : public frame::Overlay {
 
  private:
   struct TilePlates {
-    Rect tile;  // in the frame
+    Rect tile;  // the tile's rectangle in the frame
     PlateFonts fonts;
     std::vector<Plate> plates;
   };
@@ -58,8 +57,8 @@ class OperatorOverlay final : public frame::Overlay {
   std::vector<TilePlates> tiles_;
   OperatorFacts facts_;
   Timestamp read_at_{};            // when the facts that are drawn were read
-  mutable Timestamp looked_at_{};  // when hasChanged() last looked at them
-  mutable bool behind_ = false;    // draw() was called since then, and did not read them
+  mutable Timestamp looked_at_{};  // when hasChanged() last read the facts
+  mutable bool behind_ = false;    // draw() was called since looked_at_ and did not read the facts
   bool drawn_ = false;
   std::atomic<bool> asked_{true};
 };

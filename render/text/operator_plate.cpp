@@ -20,7 +20,7 @@ Colour colourOf(DeviceLight light) {
   return light == DeviceLight::kWaiting ? kWaiting : kBad;
 }
 
-// 1234567 as "1,234,567".
+// Formats 1234567 as "1,234,567".
 std::string grouped(std::uint32_t number) {
   const std::string digits = std::to_string(number);
   std::string text;
@@ -36,13 +36,13 @@ Plate makePlate(const Rect& at) {
                                         static_cast<std::size_t>(at.height))};
 }
 
-// Puts row under row into a plate.
+// Draws rows of a plate, one below the other.
 class Rows {
  public:
   Rows(const Surface& surface, const PlateFonts& fonts, const Rect& inside)
       : surface_(surface), fonts_(fonts), left_(inside) {}
 
-  // Returns the next `height_px` of the plate.
+  // Returns the rectangle of the next row, which is `height_px` high.
   Rect take(int height_px) {
     const Rect taken{left_.x, left_.y, left_.width, std::min(height_px, left_.height)};
     left_.y += taken.height;
@@ -71,7 +71,8 @@ class Rows {
   }
 
   int lineHeight() const { return lineHeightOf(fonts_.text); }
-  // Wide enough for "triangles", and for "tracker" behind its dot.
+  // Returns the place of the column of values [px]: far enough for "triangles", and for "tracker"
+  // behind its dot.
   int valueColumn() const { return fonts_.text.metrics().em_px * 11 / 2; }
   static int lineHeightOf(const Font& font) { return font.metrics().em_px * 29 / 20; }
 

@@ -10,7 +10,7 @@
 
 namespace merlin::render::text {
 
-// A picture to be put over the tile's: premultiplied RGBA.
+// A picture to be blended over a tile's picture: premultiplied RGBA, rows from top to bottom.
 struct Plate {
   Rect at;  // in the tile; not empty
   std::vector<std::uint8_t> rgba;
@@ -20,15 +20,15 @@ struct PlateFonts {
   Font text, heading;
 };
 
-// A tile smaller than this has no plates: they would hide all of it.
+// A smaller tile has no plates, since they would hide all of it.
 inline constexpr int kLeastTileWidth_px = 320, kLeastTileHeight_px = 240;
 
-// Em size of text on a tile of this height [px].
+// Returns the em size of text on a tile of this height [px].
 int textSizeFor(int tile_height_px) noexcept;
 int headingSizeFor(int tile_height_px) noexcept;
 
-// Draws all plates; the same facts give the same bytes. `tile`: its size. Costs about as much as
-// filling the plates twice.
+// Draws all plates; the same facts give the same bytes. `tile`: only its size is used. Costs about
+// as much as filling the plates twice.
 std::vector<Plate> drawPlates(const OperatorFacts& facts, const PlateFonts& fonts,
                               const Rect& tile);
 

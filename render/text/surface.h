@@ -12,9 +12,9 @@ struct Rect {
   bool operator==(const Rect&) const = default;
 };
 
-// The intersection; a rectangle without pixels if they do not overlap.
+// Returns the intersection of two rectangles; one without pixels if they do not overlap.
 Rect common(const Rect& a, const Rect& b) noexcept;
-// The rectangle without a margin of `by` pixels on each side.
+// Returns the rectangle without a margin of `by` pixels on each side.
 Rect shrunk(const Rect& r, int by) noexcept;
 
 struct Point {
@@ -25,7 +25,7 @@ struct Colour {
   std::uint8_t red = 0, green = 0, blue = 0;
   std::uint8_t alpha = 255;  // 255: opaque
 };
-// The same, more transparent: alpha times `share`, 0..1.
+// Returns the colour with its alpha multiplied by `share`, 0..1.
 Colour faded(Colour colour, float share) noexcept;
 
 // Borrows the pixels: RGBA, premultiplied by alpha, rows from the top without gaps. Each call
@@ -36,18 +36,18 @@ class Surface {
   // REQUIRES: rgba.size() is 4 * width * height.
   Surface(std::span<std::uint8_t> rgba, int width, int height) noexcept;
 
-  // The same pixels, of which only those inside `clip` are drawn.
+  // Returns a surface of the same pixels that draws only inside `clip`.
   Surface clippedTo(const Rect& clip) const noexcept;
   const Rect& clip() const noexcept { return clip_; }
 
   void fill(const Rect& area, Colour colour) const noexcept;
-  // Gives all pixels this colour, also outside the clip, whatever is there. As quick as a memset.
+  // Sets all pixels to this colour, also outside the clip, without blending. As quick as a memset.
   void fillWhole(Colour colour) const noexcept;
-  // A disc of `diameter_px` with a smooth edge, in the middle of `area`.
+  // Draws a disc with a smooth edge in the middle of `area`.
   void disc(const Rect& area, int diameter_px, Colour colour) const noexcept;
-  // Puts `colour` over one pixel with a coverage of 0..255. Outside the clip nothing happens.
+  // Blends `colour` over one pixel with a coverage of 0..255. Outside the clip nothing happens.
   void cover(int x, int y, std::uint8_t coverage, Colour colour) const noexcept;
-  // The same for pixels side by side, from `at` to the right.
+  // Blends `colour` over a row of pixels that begins at `at`, with one coverage of 0..255 for each.
   void coverRow(Point at, std::span<const std::uint8_t> coverage, Colour colour) const noexcept;
 
  private:
@@ -58,7 +58,7 @@ class Surface {
   Rect clip_;
 };
 
-// x / 255, rounded. REQUIRES: x <= 255 * 255.
+// Returns x / 255, rounded. REQUIRES: x <= 255 * 255.
 constexpr std::uint8_t by255(std::uint32_t x) noexcept {
   return static_cast<std::uint8_t>((x + 128 + ((x + 128) >> 8)) >> 8);
 }

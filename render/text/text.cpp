@@ -38,7 +38,7 @@ int textWidth(const Font& font, std::string_view text) noexcept {
 
 Point drawText(const Surface& surface, const Font& font, Point pen, std::string_view text,
                Colour colour) noexcept {
-  // A glyph may begin a little left of its pen.
+  // The margin of one em allows for glyphs that begin to the left of their pen.
   const int end = surface.clip().x + surface.clip().width + font.metrics().em_px;
   while (!text.empty() && pen.x < end) {
     const Glyph& glyph = font.atlas->glyph(font.size, takeCharacter(text));
@@ -48,8 +48,8 @@ Point drawText(const Surface& surface, const Font& font, Point pen, std::string_
   return pen;
 }
 
-// The ascent of a font includes accents over capitals; letters alone look central if they stand on
-// a line at 36 % of the size below the middle.
+// A font's ascent includes accents over capitals, so the text is not centred by it: letters look
+// central if their base line is 36 % of the em size below the middle.
 int drawTextIn(const Surface& surface, const Font& font, const Rect& box, std::string_view text,
                Colour colour, Align align) noexcept {
   const Surface clipped = surface.clippedTo(box);

@@ -1,8 +1,8 @@
 // Draws text into a surface. Pure.
 //
-// From left to right, a character after another: no kerning, no ligatures, no combining marks, no
-// line breaks. A character that the atlas lacks, a control character and a byte that is not UTF-8
-// are drawn as boxes.
+// Text runs from left to right, one character after the other: no kerning, no ligatures, no
+// combining marks, no line breaks. A character that the atlas lacks, a control character and a byte
+// that is not UTF-8 are drawn as boxes.
 #pragma once
 
 #include <string_view>
@@ -20,18 +20,19 @@ struct Font {
   const FontSize& metrics() const noexcept { return atlas->size(size); }
 };
 
-// Sum of the characters' advances [px]; at most about a million, beyond which it stops.
+// Returns the sum of the characters' advances [px]. The sum stops at about a million.
 int textWidth(const Font& font, std::string_view text) noexcept;
 
-// Draws from `pen`, which is on the base line. Returns the pen behind the text; text beyond the
-// right edge of the clip is left out.
+// Draws from `pen`, which is on the base line. Returns the pen's position after the text; text
+// beyond the right edge of the clip is left out.
 Point drawText(const Surface& surface, const Font& font, Point pen, std::string_view text,
                Colour colour) noexcept;
 
 enum class Align { kLeft, kMiddle, kRight };
 
-// Draws one line in a box, in the middle of its height, nothing outside. A text that is too wide
-// begins at the left edge and ends with an ellipsis. Returns the width that it takes [px].
+// Draws one line of text in the middle of a box's height; nothing is drawn outside the box. A text
+// that is too wide begins at the left edge and ends with an ellipsis. Returns the width that it
+// takes [px].
 int drawTextIn(const Surface& surface, const Font& font, const Rect& box, std::string_view text,
                Colour colour, Align align = Align::kLeft) noexcept;
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kLeast_m = 0.001;
 
-// A plane, with the rectangle around the tiles on it so far: from the corner of the first one, to
-// the right and up.
+// A plane, with the rectangle around its tiles so far. The rectangle is measured from the lower
+// left corner of the first tile, to the right and up.
 struct Plane {
   Eigen::Vector3d corner, right, up;
   double left = 0, end = 0, low = 0, high = 0;  // [m]
@@ -47,8 +47,8 @@ PlanePart addTo(Plane& plane, std::size_t number, const Screen& screen) {
   return {number, left, low + height, width, height};
 }
 
-// Returns how much of the strip from `from` to `to` another one covers at its lower end; 0 unless
-// the other one begins before it and ends within it.
+// Returns how much of the interval from `from` to `to` another interval covers at its lower end; 0
+// unless the other one begins before it and ends within it.
 double coveredFrom(double from, double to, double other_from, double other_to) {
   const bool begins_before = other_from < from - kLeast_m, ends_within = other_to < to - kLeast_m;
   return begins_before && ends_within ? std::max(0.0, other_to - from) : 0;

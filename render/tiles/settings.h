@@ -25,8 +25,8 @@ enum class TileKind {
 enum class TileCamera {
   kWall,   // a part of the wall's view, as seen from its eye
   kTop,    // the whole content from above, in parallel projection
-  kSide,   // the same from the right
-  kFront,  // the same from the front
+  kSide,   // the whole content from the right, in parallel projection
+  kFront,  // the whole content from the front, in parallel projection
   kFree,   // the view of a FreeCamera
 };
 inline constexpr const char* kTileCameraNames[] = {"wall", "top", "side", "front", "free"};
@@ -68,10 +68,11 @@ struct TileSettings {
   // All 0: no screen.
   std::array<double, 9> screen_m{};
   TileCamera view = TileCamera::kWall;
-  FreeCamera camera{};     // if view is kFree
-  Eye eye = Eye::kMiddle;  // render/stereo sets the others
+  FreeCamera camera{};  // used if view is kFree
+  // The eye that the tile is drawn for; only render/stereo sets another one.
+  Eye eye = Eye::kMiddle;
 
-  // Whether it shows a part of the wall's view.
+  // Returns whether the tile shows a part of the wall's view.
   bool followsWall() const { return kind == TileKind::kWall && view == TileCamera::kWall; }
   bool hasFrustum() const { return frustum_deg != std::array<double, 4>{}; }
   bool hasScreen() const { return screen_m != std::array<double, 9>{}; }
@@ -81,7 +82,7 @@ struct TileSettings {
 struct TilesSettings {
   int tile_width = 640, tile_height = 480;     // [px]
   int frame_width = 1280, frame_height = 960;  // [px]
-  double field_of_view_deg = 40;               // of one tile, horizontally
+  double field_of_view_deg = 40;               // horizontal, of one tile
   double near_m = 0.05, far_m = 50;            // clipping planes
   // [GOURLEY98] figure 2.15: upper left, upper right, lower left, lower right.
   std::vector<TileSettings> tiles = {{"left", TileKind::kWall, 0, 0, 1},
@@ -93,8 +94,9 @@ struct TilesSettings {
   std::array<double, 3> eyes_m{};
 };
 
-// Finds the fault of a tile's own view: it is the operator's tile, has a direction or a screen as
-// well, or its camera is invalid. Pure.
+// Returns a fault of a tile's own view (any other than kWall) or of its camera: the tile is the
+// operator's, it has turns, a direction, a frustum or a screen as well, the camera is set without
+// view kFree, or it is invalid. Nothing if there is no fault. Pure.
 std::optional<std::string> faultOfView(const TileSettings& tile);
 
 // Checks for: a tile outside the frame; two tiles that overlap in the frame (their views may

@@ -11,8 +11,8 @@
 namespace merlin::render::tiles {
 namespace {
 
-// View matrix (eye to view coordinates) of TileSettings::direction_deg: the inverse of the rotation
-// by yaw, pitch and roll, in this order.
+// Returns the view matrix (eye to view coordinates) of TileSettings::direction_deg: the inverse of
+// the rotation by yaw, pitch and roll, in this order.
 Eigen::Matrix4f directionView(const std::array<double, 3>& degrees) {
   const auto radian = [&](std::size_t i) {
     return static_cast<float>(degrees[i] * kRadian<double>);
@@ -52,7 +52,7 @@ void lookThroughScreen(const Eigen::Vector3d& eye, double nearest_m, double fart
     tile.view.block<3, 1>(0, 3) = -tile.view.topLeftCorner<3, 3>() * eye.cast<float>();
 }
 
-// Whether an eye sees the front of a screen, less than 179 degrees wide and high.
+// Returns whether an eye sees the front of a screen, less than 179 degrees wide and high.
 bool seesFront(const std::array<double, 9>& screen, const Eigen::Vector3d& eye) {
   constexpr double kWidest = 179 * kRadian<double>;
   const Eigen::Vector3d corner = Eigen::Vector3d(&screen[0]) - eye;
@@ -121,7 +121,7 @@ Tile tileOf(const TileSettings& t, const TilesSettings& s) {
   return tile;
 }
 
-// Whether all eight corners lie outside the same one of the six planes of the clip volume.
+// Returns whether all eight corners lie outside the same one of the six planes of the clip volume.
 bool isBeyondOne(const Eigen::Matrix4f& clip_from_box) noexcept {
   int beyond[6] = {};
   for (unsigned corner = 0; corner < 8; ++corner) {

@@ -33,7 +33,7 @@ struct Tile {
   std::array<double, 9> screen_m{};  // as in TileSettings; all 0: none
 
   bool followsWall() const { return kind == TileKind::kWall && camera == TileCamera::kWall; }
-  // Whether its view follows from the content: see matricesOf().
+  // Returns whether the tile's view is fitted to the content: see matricesOf().
   bool isFitted() const {
     return kind == TileKind::kOperator ||
            (camera != TileCamera::kWall && camera != TileCamera::kFree);
@@ -47,11 +47,11 @@ struct TilePlan {
   double near_m = 0, far_m = 0;
 };
 
-// Where the viewer's eyes are, relative to the place of the eye that the plan was made for (x
-// right, y up, z towards the person) [m].
+// Position of the viewer's eyes relative to the eye that the plan was made for (x right, y up, z
+// towards the person) [m].
 struct Viewer {
   Eigen::Vector3d place_m = Eigen::Vector3d::Zero();  // the middle between the eyes
-  Eigen::Vector3d eyes_m = Eigen::Vector3d::Zero();   // from the left to the right one
+  Eigen::Vector3d eyes_m = Eigen::Vector3d::Zero();   // vector from the left to the right eye
 
   Eigen::Vector3d placeOf(Eye eye) const {
     return eye == Eye::kMiddle
@@ -60,7 +60,7 @@ struct Viewer {
   }
 };
 
-// Errors: kInvalidArgument: the first fault that validate() finds.
+// Computes the plan. Errors: kInvalidArgument: the first fault that validate() finds.
 Result<TilePlan> planTiles(const TilesSettings& settings);
 
 // Moves the viewer: each tile that follows the wall and has a screen gets the off-axis frustum of
@@ -69,17 +69,17 @@ Result<TilePlan> planTiles(const TilesSettings& settings);
 // high.
 bool placeViewer(TilePlan& plan, const Viewer& viewer);
 
-// Symmetric projection with a horizontal field of view (radians) and an aspect ratio (width /
+// Returns a symmetric projection with a horizontal field of view and an aspect ratio (width /
 // height).
 Eigen::Matrix4f perspective(float field_of_view_rad, float aspect, float near_m, float far_m);
 
-// Off-axis projection. `left`, `right`, `lower`, `upper`: tangents of the angles between the view
-// direction and the edges; those to the left and below are negative.
+// Returns an off-axis projection. `left`, `right`, `lower`, `upper`: tangents of the angles between
+// the view direction and the edges; those to the left and below are negative.
 Eigen::Matrix4f offAxis(float left, float right, float lower, float upper, float near_m,
                         float far_m);
 
-// View matrix of the operator's view of a sphere (centre and radius in eye coordinates, metres):
-// from the front, at the distance at which all of it is visible with this projection.
+// Returns the view matrix of the operator's view of a sphere (centre and radius in eye coordinates,
+// metres): from the front, at the distance at which all of it is visible with this projection.
 Eigen::Matrix4f operatorView(const Eigen::Matrix4f& projection, const Eigen::Vector3f& centre,
                              float radius);
 
@@ -88,10 +88,10 @@ struct TileMatrices {
   Eigen::Matrix4f projection, view;
 };
 
-// A parallel projection of a sphere (centre and radius in eye coordinates, metres), along an axis
-// of the wall: the sphere fits into the tile, wherever it is. In the view from above, the viewer's
-// side is at the lower edge; in the view from the right, at the left edge. REQUIRES: `camera` is
-// kTop, kSide or kFront.
+// Returns a parallel projection of a sphere (centre and radius in eye coordinates, metres), along
+// an axis of the wall: the sphere fits into the tile, wherever it is. In the view from above, the
+// viewer's side is at the lower edge; in the view from the right, at the left edge. REQUIRES:
+// `camera` is kTop, kSide or kFront.
 TileMatrices parallelMatrices(TileCamera camera, float aspect, const Eigen::Vector3f& centre,
                               float radius);
 
@@ -103,12 +103,12 @@ TileMatrices matricesOf(const Tile& tile, const Eigen::Vector3f& centre, float r
 // direction. A tile that is fitted to other contents (isFitted()) looks straight ahead.
 TileMatrices panoramaMatrices(const Tile& tile);
 
-// Whether any part of a box may be visible in a tile that follows the wall or has a free camera:
-// false if, for each of them, the whole box is outside one plane of the frustum, or if its matrix
-// contains NaN. `T_eye_box` takes the cube -1..1 to eye coordinates.
+// Returns whether any part of a box may be visible in a tile that follows the wall or has a free
+// camera: false if, for each of them, the whole box is outside one plane of the frustum, or if its
+// matrix contains NaN. `T_eye_box` takes the cube -1..1 to eye coordinates.
 bool seesBox(const TilePlan& plan, const Eigen::Matrix4f& T_eye_box) noexcept;
 
-// View matrix of a camera turned to the left by `yaw_rad`.
+// Returns the view matrix of a camera that is turned to the left by `yaw_rad`.
 Eigen::Matrix4f yawView(float yaw_rad);
 
 }  // namespace merlin::render::tiles

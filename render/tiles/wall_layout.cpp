@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kSame = 1e-4;  // places that differ by less are equal [rad or m]
 
-// What a tile covers along one axis. `rank`: `middle` in steps of kSame, so that rounding does not
-// change the order of tiles.
+// The range that a tile covers along one axis. `rank`: `middle` in steps of kSame, so that rounding
+// does not change the order of tiles.
 struct Extent {
   double middle = 0, half = 0;
   std::int64_t rank() const { return std::llround(middle / kSame); }
@@ -32,7 +32,7 @@ struct SeenTile {
   Extent across, down;  // positive to the right and downwards
 };
 
-// Direction through a point of the tile's picture; x and y in -1..1, right and up.
+// Returns the direction through a point of the tile's picture; x and y in -1..1, right and up.
 Vector3d directionOf(const Tile& tile, double x, double y) {
   const Eigen::Matrix4d p = tile.projection.cast<double>();
   const Vector3d inside((x + p(0, 2)) / p(0, 0), (y + p(1, 2)) / p(1, 1), -1);

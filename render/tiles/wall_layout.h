@@ -1,4 +1,5 @@
-// The wall's picture: all tiles that follow the wall, in rows and columns as they are seen. Pure.
+// Computes the layout of the wall's picture: all tiles that follow the wall, in rows and columns as
+// they are seen. Pure.
 #pragma once
 
 #include "render/tiles/tile_plan.h"

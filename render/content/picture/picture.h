@@ -29,15 +29,17 @@ struct Picture {
 // Opens a pyramid and decodes its coarsest level: a few milliseconds. Errors: those of
 // PyramidFile::open() and PyramidReader::readTile().
 Result<std::shared_ptr<const Picture>> openPicture(const std::string& path, ShowAs as);
-// The same for a pyramid that is open.
+// Makes a picture of a pyramid that is open already, and decodes its coarsest level. Errors: those
+// of PyramidReader::readTile().
 Result<std::shared_ptr<const Picture>> makePicture(std::shared_ptr<const image::PyramidFile> file,
                                                    ShowAs as);
 
-// A picture of one pixel that is not drawn, for a wall that has nothing to show yet.
+// Returns a picture of one pixel that is not drawn, for a wall that has nothing to show yet.
 std::shared_ptr<const Picture> noPicture();
 
-// Reads a tile for drawing as `kind`: a panorama continues beyond its right edge with its left
-// edge.
+// Reads a tile into `pixels`, which gets image::kTileBytes bytes. In a panorama, a tile that
+// reaches beyond the right edge continues with the pixels of the left edge. Errors: those of
+// PyramidReader::readTile().
 Result<Ok> readPictureTile(image::PyramidReader& reader, PictureKind kind,
                            const image::TilePlace& place, TilePixels& pixels);
 

@@ -19,11 +19,11 @@ constexpr std::size_t kTexelsPerPixel = 2;
 // are few enough that their upload (0.1 ms each, in each context) makes no frame late; while it
 // stands still, the upload is divided into slices, which bound the time.
 constexpr std::size_t kTakenMoving = 6, kTakenStill = 64;
-// Share of the slots that one frame's tiles may take; the rest is for coarser ones and for what was
-// seen just now.
+// Share of the slots that the tiles of one frame may take; the others hold coarser tiles and tiles
+// that were seen recently.
 constexpr double kFrameShare = 0.7;
 constexpr std::size_t kMostAsked = 512;
-// Memory for tiles on their way: in the loader, and until every context has them.
+// Memory for tiles that are in the loader, or in the cache and not uploaded by every context yet.
 constexpr std::size_t kOnTheirWay = (TileLoader::kMostLoaded + kTakenStill) * image::kTileBytes;
 // Interior edges of tiles overlap by this part of a texel, which the textures' borders continue
 // into, so that no background shows between tiles of different levels.
@@ -195,7 +195,7 @@ void PictureContent::addPieces(std::span<const ContentView> views) {
     list_.pieces[tile].clear();
     if (picture_->is_nothing) continue;
     for (const TilePlace& leaf : leaves_[i]) addPiece(leaf, list_.pieces[tile]);
-    // Sorts the pieces by texture: see PictureRenderer.
+    // Sorts the pieces by texture, so that PictureRenderer changes textures rarely.
     std::ranges::stable_sort(list_.pieces[tile], {},
                              [](const TilePiece& p) { return p.slot / kSlotsPerTexture; });
   }

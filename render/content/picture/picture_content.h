@@ -21,7 +21,7 @@ namespace merlin::render::content {
 // wall. Costs are in units of 1024 texels and depend on the wall only, not on the picture.
 class PictureDetail final : public DetailAxis {
  public:
-  // `wall_px`: pixels of all tiles.
+  // `wall_px`: number of pixels of all the wall's tiles together.
   explicit PictureDetail(std::size_t wall_px) noexcept;
 
   std::size_t steps() const noexcept override { return kSteps; }
@@ -30,8 +30,8 @@ class PictureDetail final : public DetailAxis {
   std::size_t leastUseful() const noexcept override { return costOf(kSteps - 1); }
   std::string_view unit() const noexcept override { return "kilotexels"; }
 
-  // Largest size of a texel in the view [px]. With level steps of 2, texels are up to half as
-  // large.
+  // Returns the largest size that a texel may have in the view at this step [px]. Since the levels
+  // of a pyramid differ by a factor of 2, texels are between half this size and this size.
   static double texelSize(std::size_t step) noexcept;
   static constexpr std::size_t kSteps = 9;
 
@@ -56,7 +56,7 @@ struct TilePiece {
 };
 struct PictureVertex {
   float x = 0, y = 0, z = 0;  // content coordinates [m]
-  float u = 0, v = 0;         // in the slot's texture, 0..1
+  float u = 0, v = 0;         // texture coordinates in the slot's texture, 0..1
 };
 struct PictureDrawList {
   std::vector<PictureVertex> vertices;
@@ -90,10 +90,11 @@ class PictureContent final : public Content {
   const PictureDrawList& drawList() const noexcept { return list_; }
 
  private:
-  // A tile that a view needs, and the view in which it is largest.
+  // A tile that a view needs and the cache lacks.
   struct Wanted {
     image::TilePlace place;
-    double distance = 0;  // from the middle of the view, in units of half its size
+    double distance = 0;  // from the middle of the tile to the middle of that view, in units of
+                          // half the view's size
   };
   void takeLoaded(std::size_t held);
   void chooseLeaves(double texel_px, std::span<const ContentView> views);

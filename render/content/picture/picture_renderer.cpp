@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kUploadsPerSlice = 8;  // of 0.1 ms each on llvmpipe
 constexpr std::size_t kPiecesPerSlice = 8;   // of up to 256 x 256 pixels each
 
-// What is drawn has no depth: its order is that of the draw list. Depth 0 also keeps the near and
-// far planes from cutting it.
+// The pieces are drawn without a depth test, in the order of the draw list. Depth 0 also keeps the
+// near and far planes from cutting them.
 constexpr const char* kVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec2 in_texture;
@@ -82,7 +82,7 @@ void PictureRenderer::beginFrame() {
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(list_.indices.size() * sizeof(std::uint32_t)),
                  list_.indices.data(), GL_STREAM_DRAW);
-  // A context that draws no tile of this frame still takes up what is new.
+  // Even a context that draws no tile of this frame uploads what is new.
   uploadSome(kUploadsPerSlice);
 }
 

@@ -18,7 +18,7 @@ struct PixelRect {
 // One tile's view of a picture.
 struct PictureView {
   Eigen::Matrix4d clip_from_metres = Eigen::Matrix4d::Identity();  // content coordinates to clip
-  double width_px = 0, height_px = 0;                              // of the tile
+  double width_px = 0, height_px = 0;                              // size of the tile [px]
 };
 
 // Immutable and reentrant.
@@ -26,16 +26,17 @@ class Surface {
  public:
   virtual ~Surface() = default;
 
-  // Position of a pixel, in content coordinates [m].
+  // Returns the position of a pixel, in content coordinates [m].
   virtual Eigen::Vector3d at(double x, double y) const = 0;
-  // Whether any part of the rectangle may be visible; true in doubt.
+  // Returns whether any part of the rectangle may be visible; true in doubt.
   virtual bool maySee(const PictureView& view, const PixelRect& rect) const = 0;
-  // The largest size of a picture's pixel in the view, within the rectangle [px of the tile].
-  // Infinite if the rectangle reaches behind the eye or is too large for an estimate.
+  // Returns the largest size [px of the tile] that a pixel of the picture within the rectangle has
+  // in the view. Infinite if the rectangle reaches behind the eye or is too large for an estimate.
   virtual double pixelSize(const PictureView& view, const PixelRect& rect) const = 0;
-  // Number of flat pieces, in each direction, into which the rectangle is divided for drawing.
+  // Returns the number of flat pieces, in each direction, into which the rectangle is divided for
+  // drawing.
   virtual int pieces(const PixelRect& rect) const = 0;
-  // Whether the right edge joins the left one.
+  // Returns whether the picture's right edge joins its left one, as in a panorama.
   virtual bool joins() const = 0;
 };
 

@@ -14,7 +14,8 @@ constexpr std::size_t kInnerSide = kTileSide;
 constexpr std::size_t kTexel = 4;
 constexpr std::uint64_t kAlways = ~std::uint64_t{0};  // TileSlot::used of the coarsest level
 
-// The outermost texels of a tile of which `width` columns and `height` rows belong to the picture.
+// Returns the outermost texels of a tile, `width` columns and `height` rows of which belong to the
+// picture.
 TileBorder edgesOf(const TilePixels& pixels, std::size_t width, std::size_t height) {
   TileBorder edges;
   const auto texel = [&](std::size_t x, std::size_t y) {
@@ -119,7 +120,8 @@ void TileCache::refreshBorders(const TilePlace& place) {
   }
 }
 
-// Where a neighbour is missing, the tile's own edge is repeated.
+// Copies the neighbours' outermost texels into the slot's border; if a neighbour is missing, the
+// tile's own edge is repeated.
 void TileCache::refreshBorder(TileSlot& slot) {
   const auto beside = [&](int right, int down) {
     const TileSlot* const other = neighbour(*slot.place, right, down);

@@ -1,5 +1,5 @@
-// TileCache: the tiles of the picture shown that are kept for drawing. Each has a slot, which is
-// also its place in the textures of every context. No OpenGL.
+// TileCache: keeps tiles of the picture that is shown. Each tile has a slot, which is also its
+// place in the textures of every context. No OpenGL.
 //
 // A texture holds one texel more on each side than the tile: the border, which continues into the
 // neighbours, so that filtering shows no seam between tiles. Only the edges of a tile are kept in
@@ -29,14 +29,16 @@ struct TileBorder {
 };
 
 struct TileSlot {
-  std::optional<image::TilePlace> place;          // none: the slot is free
-  TilePixels pixels;                              // empty once all contexts have them
-  TileBorder border, edges;                       // `edges`: the tile's own outermost texels
-  std::uint32_t version = 0, border_version = 0;  // change with the pixels and the border
-  std::uint64_t used = 0;                         // frame in which it was last used
+  std::optional<image::TilePlace> place;  // none: the slot is free
+  TilePixels pixels;                      // empty once all contexts have them
+  TileBorder border, edges;               // `edges`: the tile's own outermost texels
+  // Increased with each change of the pixels, of the border.
+  std::uint32_t version = 0, border_version = 0;
+  std::uint64_t used = 0;  // frame in which it was last used
 };
 
-// What one context has uploaded, by slot. Written by the context's thread while a frame is drawn.
+// The versions of pixels and borders (see TileSlot) that one context has uploaded, by slot. Written
+// by the context's thread while a frame is drawn.
 struct UploadedVersions {
   std::vector<std::uint32_t> pixels, borders;
 };
@@ -49,10 +51,11 @@ class TileCache {
   // coarsest level has at most.
   explicit TileCache(std::size_t slots);
 
-  // Largest number of slots whose textures take at most `bytes` in all `contexts` together.
+  // Returns the largest number of slots whose textures take at most `bytes` in all `contexts`
+  // together, but at least kSlotsPerTexture.
   static std::size_t slotsWithin(std::size_t bytes, std::size_t contexts) noexcept;
 
-  // Forgets all tiles and puts those of this picture's coarsest level, which are never replaced.
+  // Removes all tiles and puts in those of this picture's coarsest level, which are never replaced.
   void show(const Picture& picture);
 
   void beginFrame() noexcept { ++frame_; }
@@ -68,7 +71,8 @@ class TileCache {
   std::size_t used() const noexcept { return by_place_.size(); }
   const TileSlot& slot(std::size_t i) const noexcept { return slots_[i]; }
 
-  // Called when a context begins or ceases to draw from this cache. Thread-safe.
+  // join() is called when a context begins to draw from this cache, and returns where it records
+  // what it has uploaded; leave() is called when it ceases to. Thread-safe.
   UploadedVersions& join();
   void leave(const UploadedVersions& who);
 

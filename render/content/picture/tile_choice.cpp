@@ -14,8 +14,8 @@ const PyramidLevel& levelOf(Levels levels, const TilePlace& place) {
   return levels[static_cast<std::size_t>(place.level)];
 }
 
-// The range of tiles of the next finer level, in one direction: a coarser level that was rounded
-// down may have fewer than half as many.
+// A range of tiles in one direction. finer() returns the tiles of the next finer level that a tile
+// covers; the last tile takes all that are left, since a coarser level is rounded down.
 struct Range {
   std::int32_t first, end;
 };

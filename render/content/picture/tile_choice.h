@@ -13,11 +13,12 @@ namespace merlin::render::content {
 
 using Levels = std::span<const image::PyramidLevel>;
 
-// The part of the picture that a tile covers. The last column and row reach to the picture's edge,
-// which their level may round off.
+// Returns the part of the picture that a tile covers, in pixels of the finest level. The last
+// column and row reach to the picture's edge, which rounding may have cut off from a coarser level.
 PixelRect rectOf(Levels levels, const image::TilePlace& place);
 
-// The tile of the next coarser level that covers it. REQUIRES: place.level + 1 < levels.size().
+// Returns the tile of the next coarser level that covers this tile. REQUIRES: place.level + 1 <
+// levels.size().
 image::TilePlace parentOf(Levels levels, const image::TilePlace& place);
 
 // Adds the tiles that cover the part of the picture that the view may show, each once, such that

@@ -118,7 +118,8 @@ void TileLoader::load(std::unique_lock<std::mutex>& lock,
     loaded_.push_back(std::move(tile));
     return;
   }
-  // The wall draws without this tile. It is told so only once, since it draws again each time.
+  // The wall draws without this tile. It is notified only once, since each notice makes it draw a
+  // frame.
   if (unreadable_.count(place) == 0) loaded_.push_back({picture, place, {}});
   noteFault(place, fault);
   if (unreadable_.count(place) > 0) again_.push_back(place);

@@ -35,10 +35,10 @@ class TileSource {
                    std::span<const image::TilePlace> places) = 0;
   // Returns a tile that was loaded, if there is one. It may be one that nobody asks for any more.
   virtual std::optional<LoadedTile> take() = 0;
-  // Whether take() would return a tile.
+  // Returns whether take() would return a tile.
   virtual bool hasLoaded() const = 0;
-  // Whether tiles that were asked for may still come: neither loaded nor found to be unreadable
-  // yet.
+  // Returns whether a tile that was asked for is still to be loaded, i.e. is neither loaded nor
+  // found to be unreadable yet.
   virtual bool isLoading() const = 0;
 };
 
@@ -57,7 +57,7 @@ class TileLoader final : public TileSource {
   bool hasLoaded() const override;
   bool isLoading() const override;
 
-  // Sentences about tiles that could not be read since the last call: one for each picture.
+  // Returns a sentence for each picture of which a tile could not be read since the last call.
   std::vector<std::string> takeFaults();
 
   static constexpr std::size_t kMostLoaded = 32;  // tiles that wait for take()

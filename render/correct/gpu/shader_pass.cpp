@@ -11,7 +11,7 @@
 namespace merlin::render::correct {
 namespace {
 
-// A triangle that covers the target.
+// Draws one triangle that covers the whole target.
 constexpr const char* kVertexShader = R"(#version 330 core
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
@@ -70,7 +70,7 @@ void main() {
 constexpr const char* kSamplers[] = {"picture", "source_x", "source_y", "gain", "black", "runs"};
 constexpr std::size_t kPicture = 0;
 
-// The shader with the constants of correction_map.h.
+// Returns the fragment shader's source, with the constants of correction_map.h.
 std::string fragmentShader() {
   std::string source = kFragmentShader;
   const std::string define = "#define RUN " + std::to_string(kRun) + "\n#define NOTHING " +
@@ -89,14 +89,16 @@ std::size_t bytesOf(int width, int height) {
   return std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
-constexpr int kRounding = 1;  // of 255: formats of memory may round differently
+// Largest allowed difference, of 255: memory formats may round differently.
+constexpr int kRounding = 1;
 
 struct Comparison {
-  bool same = true, lit = false;  // but for kRounding; lit: not black
+  // same: differs by at most kRounding; lit: the signal is not black.
+  bool same = true, lit = false;
 };
 
-// Compares a signal with the pixels of a memory, which end with the signal's right column and lower
-// row. The fourth channel is not displayed.
+// Compares a signal with the pixels of a display's memory, whose last column and row are the
+// signal's last ones. The fourth channel is ignored, since it is not displayed.
 Comparison comparisonOf(std::span<const std::uint8_t> signal, int width,
                         std::span<const std::uint8_t> memory, const out::DrawPlace& place) {
   Comparison result;
@@ -155,7 +157,7 @@ std::string ShaderPass::drawFault() const {
   return draw_fault_;
 }
 
-// Called when the buffers, or what is known of them, have changed.
+// Sets draw_fault_; called after each change of lent_ or of its faults.
 void ShaderPass::tellDrawFault() {
   const auto refused = std::ranges::find_if(lent_, [](const Lent& l) { return !l.fault.empty(); });
   const std::lock_guard lock(mutex_);
@@ -245,8 +247,8 @@ ShaderPass::Lent* ShaderPass::lentOf(const std::shared_ptr<const DmaBuf>& buffer
 
 // Compares what was drawn into a display's memory with what the shader draws elsewhere, since a
 // driver may import the memory and draw nothing there, or something else. Refuses the memory if
-// they differ. That a driver has drawn into a copy of the memory is for the checks of the picture
-// to find, which read the memory as the display does.
+// they differ. If a driver has drawn into a copy of the memory, only PictureChecks finds this,
+// which reads the memory as the display does.
 bool ShaderPass::isDrawnRight(Lent& lent, const out::DrawPlace& place, const Tables& tables,
                               const CorrectionMap& map) {
   std::vector<std::uint8_t> meant(bytesOf(map.width, map.height));
@@ -310,7 +312,8 @@ bool ShaderPass::draw(const std::shared_ptr<const CorrectionMap>& map,
   for (std::size_t i = 0; i < lent.size(); ++i)
     drawAt(*lent[i]->target, places[i].x, places[i].y, *tables, *map);
   readRows(*lent.front()->target, places.front(), map->width, rows, signal);
-  // The display's card need not know when a GPU has finished, so nothing is handed over before.
+  // The display's card may not wait for the GPU, so the buffer is handed over only when drawing has
+  // finished.
   gl_->Finish();
   if (context_->wasReset()) return false;
   for (std::size_t i = 0; i < lent.size(); ++i)

@@ -36,40 +36,42 @@ class ShaderPass final : public CorrectionPass {
   // Switches the pass off again. Call it before the context is destroyed.
   void end();
 
-  // The first call with a map creates its textures: 24 bytes for each pixel. The textures of maps
-  // that nobody holds any more are deleted.
+  // The first call with a map creates its textures and its render target: about 20 bytes for each
+  // pixel. The textures of maps that nobody holds any more are deleted.
   bool run(const std::shared_ptr<const CorrectionMap>& map, std::span<const std::uint8_t> picture,
            std::span<std::uint8_t> signal) override;
 
   bool canDraw() const override { return gl_ && draws_; }
-  // The first call with a buffer imports it, and compares what was drawn there with what is drawn
-  // elsewhere, which costs two read-backs; so do the next calls as long as the signal is black.
-  // Buffers that nobody holds any more are released, by run() too. A buffer that the context
-  // refuses, or that held another picture, is not tried again.
+  // The first call with a buffer imports it, draws there, and compares the result with a picture
+  // drawn into a render target, which costs two read-backs; if the signal was black, the next call
+  // compares again. Buffers that nobody holds any more are released, also by run(). A buffer that
+  // the context refuses, or that held another picture than was drawn, is not tried again.
   bool draw(const std::shared_ptr<const CorrectionMap>& map, std::span<const std::uint8_t> picture,
             std::span<const out::DrawPlace> places, std::span<const int> rows,
             std::span<std::uint8_t> signal) override;
 
-  // Why a display's memory was refused that somebody still holds; empty: none was. Thread-safe.
+  // Returns why the memory of a display was refused, while somebody still holds that memory; empty:
+  // none was refused. Thread-safe.
   std::string drawFault() const;
 
-  // Why run() last returned false although it is on, for example because an output is larger than
-  // OpenGL's textures; empty: it has not, unless the GPU was reset (GlContext::wasReset()).
-  // Thread-safe.
+  // Returns the last reason why the pass could not compute a map's signal although it is on, for
+  // example that an output is larger than OpenGL's textures; empty: this has not happened. A reset
+  // of the GPU is not reported here (see GlContext::wasReset()). Thread-safe.
   std::string fault() const;
 
  private:
-  // One map's textures, in the order of kSamplers, and where its signal is drawn.
+  // The textures of one map, in the order of kSamplers, and the target into which its signal is
+  // drawn.
   struct Tables {
     std::weak_ptr<const CorrectionMap> map;
     std::vector<gl::DataTexture> textures;
     gl::RenderTarget signal;
   };
-  // A display's memory as a target; nothing if it was refused.
+  // A display's memory, and the render target that it is; no target if the memory was refused.
   struct Lent {
     std::weak_ptr<const DmaBuf> buffer;
     std::optional<gl::RenderTarget> target{};
-    bool is_right = false;  // a picture that was drawn there was the one that was meant
+    bool is_right = false;  // a picture that was not black was drawn there and read back correctly
     std::string fault{};    // why it was refused
   };
   Result<Tables> makeTables(const std::shared_ptr<const CorrectionMap>& map) const;
@@ -91,7 +93,8 @@ class ShaderPass final : public CorrectionPass {
   bool draws_ = false;
   GLuint program_ = 0, vertices_ = 0;
   std::list<Tables> tables_;
-  std::list<std::weak_ptr<const CorrectionMap>> refused_;  // maps that it cannot compute
+  // Maps for which no textures could be made.
+  std::list<std::weak_ptr<const CorrectionMap>> refused_;
   std::list<Lent> lent_;
   std::optional<gl::ReadBack> row_reader_;
   std::vector<std::uint8_t> row_pixels_;

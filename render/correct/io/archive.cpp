@@ -13,13 +13,13 @@ namespace {
 
 constexpr zip_uint16_t kFirstDay = 1 << 5 | 1;  // 1980-01-01 in DOS format: a fixed date
 
-// Whether the name has no folder: all entries of an MPCDI archive are at its root.
+// Returns whether the name has no folder: all entries of an MPCDI archive are at its root.
 bool isPlain(std::string_view name) {
   return !name.empty() && name != "." && name != ".." &&
          name.find_first_of("/\\:") == std::string_view::npos;
 }
 
-// A name from the file, shortened and on one line, for messages.
+// Returns a name from the file for messages: shortened and on one line.
 std::string shown(std::string_view name) { return oneLine(excerpt(name)); }
 
 std::string messageOf(zip_error_t& error) {

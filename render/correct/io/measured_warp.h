@@ -9,10 +9,10 @@
 
 namespace merlin::render::correct {
 
-// v, which points upwards in the file as in OpenGL, points downwards in the result. A cell of two
-// NaN means that nothing was measured there. `region`: its id, for messages. Errors: kMalformed
-// (less than 2 x 2 cells; a cell that has an infinite number or only one NaN; a warp that shows
-// nothing, or at most a line of the picture).
+// Converts a map. Its v, which points upwards as in OpenGL, points downwards in the result. A cell
+// of two NaN means that nothing was measured there. `region`: the region's id, for messages.
+// Errors: kMalformed (less than 2 x 2 cells; a cell that has an infinite number or only one NaN; a
+// warp that shows nothing, or at most a line of the picture).
 Result<MeasuredWarp> measuredWarp(const FloatMap& map, MeshInterpolation between,
                                   const std::string& region);
 

@@ -22,7 +22,7 @@ inline constexpr std::size_t kMostMeasuredCells = std::size_t{1} << 24;
 struct MpcdiRegion {
   std::string buffer, id;
   int width = 0, height = 0;  // [px]
-  double gamma = 0;           // of its colours; 0: not in the file
+  double gamma = 0;           // gamma of the region's colours; 0: not in the file
   // The part of the buffer's picture that the warp's range 0..1 stands for, as the region's
   // attributes say ("x 0.5, y 0, xSize 0.5, ySize 1"); empty: the whole. Not used: see README.md.
   std::string part{};
@@ -41,12 +41,12 @@ class Mpcdi {
   Mpcdi& operator=(Mpcdi&&) noexcept;
   ~Mpcdi();
 
-  // All regions, in the file's order; at least one.
+  // Returns all regions, in the file's order; at least one.
   std::vector<MpcdiRegion> regions() const;
 
-  // Reads the maps of the region with that id; "": of the only region. Errors: kInvalidArgument
-  // (there is no such region, or several and none is named); kNotFound, kMalformed, kUnsupported
-  // (from its maps).
+  // Reads the maps of the region with this id; if it is empty, of the only region. Errors:
+  // kInvalidArgument (there is no such region, or several and none is named); kNotFound,
+  // kMalformed, kUnsupported (from its maps).
   Result<MeasuredCorrection> measured(const std::string& region) const;
 
  private:
@@ -55,11 +55,12 @@ class Mpcdi {
   std::unique_ptr<Content> content_;
 };
 
-// Reads a region's maps from a copy of the file at `path`. Errors: those of FileCopy::read() and
-// those above, with the file's name.
+// Reads the maps of a region from a copy of the file at `path`. Errors: those of FileCopy::read(),
+// kUnsupported (more than 1 GiB), and those of Mpcdi::open() and Mpcdi::measured(), with the file's
+// name.
 Result<MeasuredCorrection> readMeasured(const std::string& path, const std::string& region);
 
-// What is written to a file for one output.
+// The data of one output that are written to an MPCDI file.
 struct MpcdiOutput {
   std::string name;           // id of its buffer and of its region
   int width = 0, height = 0;  // [px]
@@ -70,7 +71,8 @@ struct MpcdiOutput {
   bool measured = false;  // the shares come from a measured correction, not from ramps
 };
 
-// Computes what is written for an output from its settings. REQUIRES: as makeCorrectionMap().
+// Computes, from an output's settings, what mpcdiBytes() writes for it. REQUIRES: as for
+// makeCorrectionMap().
 MpcdiOutput mpcdiOutput(const std::string& name, const CorrectionSettings& settings, int width,
                         int height, const MeasuredCorrection* measured, Threads threads);
 

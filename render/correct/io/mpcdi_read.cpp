@@ -60,7 +60,7 @@ std::string attribute(const pugi::xml_node& node, std::string_view name) {
   return find(node, name).value();
 }
 
-// The text of a child element, without surrounding white space.
+// Returns the text of a child element, without surrounding white space.
 std::string textOf(const pugi::xml_node& node, std::string_view name) {
   const std::string text = child(node, name).child_value();
   const auto from = text.find_first_not_of(" \t\r\n");
@@ -115,7 +115,8 @@ Result<MapFile> mapFile(const pugi::xml_node& fileset, const char* name, const s
   return file;
 }
 
-// The gamma with which the colours of a region are decoded; 0 if the file does not define one.
+// Returns the gamma with which the colours of a region are decoded; 0 if the file does not define
+// one.
 Result<double> gammaOf(const pugi::xml_node& region, const std::string& id) {
   const pugi::xml_node decode = child(child(region, "color"), "decode");
   if (!has(decode, "gamma")) return 0.0;
@@ -126,7 +127,7 @@ Result<double> gammaOf(const pugi::xml_node& region, const std::string& id) {
                                shownText(gamma), kLeastGamma, kMostGamma));
 }
 
-// The region's place in its buffer, as text; empty if it is the whole buffer.
+// Returns the region's place in its buffer, as text; empty if it is the whole buffer.
 std::string partOf(const pugi::xml_node& region) {
   std::vector<std::string> texts;
   bool whole = true;
@@ -268,7 +269,7 @@ bool isGrey(const Pixel& level) {
   return std::ranges::all_of(level, [&](double l) { return std::abs(l - level[0]) <= kTellable; });
 }
 
-// The maximum of each channel.
+// Returns the maximum of each channel, as linear light.
 Pixel mostOf(const image::Levels& levels, double gamma) {
   std::array<std::uint16_t, 3> most{};
   for (std::size_t i = 0; i < levels.values.size(); ++i)

@@ -22,7 +22,7 @@ class Head {
  public:
   explicit Head(std::string_view text) : text_(text) {}
 
-  // The next word; empty at the end.
+  // Returns the next word; empty at the end of the text.
   std::string_view word() {
     while (at_ < text_.size() && isSpace(text_[at_])) ++at_;
     const std::size_t from = at_;
@@ -37,7 +37,7 @@ class Head {
     if (error != std::errc{} || end != w.data() + w.size()) return std::nullopt;
     return value;
   }
-  // Where the floats begin: after one white space character.
+  // Returns the position of the floats, after one white space character [bytes].
   std::size_t end() const { return at_ + 1; }
 
  private:

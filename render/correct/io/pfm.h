@@ -20,8 +20,8 @@ struct FloatMap {
   std::vector<std::array<float, 3>> cells{};  // row by row from the top; any floats, NaN included
 };
 
-// Errors: kMalformed (no valid header, or not as many bytes as it declares), kUnsupported (one
-// float per cell, or more than `most_cells`).
+// Parses a PFM. Errors: kMalformed (no valid header, or not as many bytes as it declares),
+// kUnsupported (one float per cell, or more than `most_cells` cells).
 Result<FloatMap> parsePfm(std::span<const std::byte> bytes, std::size_t most_cells);
 
 // Returns a little-endian PFM.

@@ -1,4 +1,5 @@
-// BufferTurns: which of a display's three buffers is written, waits, is on its way or is shown.
+// BufferTurns: records for each of a display's three buffers whether it is free, being written,
+// ready to be committed, committed, or shown.
 #pragma once
 
 #include <array>
@@ -7,14 +8,14 @@
 
 namespace merlin::render::out::kms {
 
-// One buffer is shown, one may be on its way to the display, and one is left, so that the wall can
-// always write. Pure; reentrant.
+// At most one buffer is shown and one is committed but not shown yet, so the wall always has a
+// third one to write into. Pure; reentrant.
 class BufferTurns {
  public:
   static constexpr std::size_t kCount = 3;
 
-  // The buffer to write the next picture into. `replaces`: a picture waited that was never
-  // committed; the new one takes its place.
+  // The buffer to write the next picture into. `replaces`: true if this buffer held a picture that
+  // was never committed and is now overwritten.
   struct Write {
     std::size_t buffer = 0;
     bool replaces = false;
@@ -22,16 +23,16 @@ class BufferTurns {
   Write beginWrite();
   void endWrite(std::size_t buffer) { states_[buffer] = State::kReady; }
 
-  // The buffer with the picture that waits to be committed.
+  // Returns the buffer whose picture waits to be committed; nothing if none waits.
   std::optional<std::size_t> ready() const { return find(State::kReady); }
-  // Between commit() and flipped() the picture is on its way to the display. commit() REQUIRES:
-  // ready() returns a buffer.
+  // commit(): the waiting picture was committed. flipped(): the display now shows the committed
+  // picture, and the buffer shown before is free. REQUIRES for commit(): ready() returns a buffer.
   void commit() { states_[*ready()] = State::kPending; }
   void flipped();
   // Undoes a commit() that failed: the picture waits again, or is dropped if a newer one waits.
   void uncommit();
 
-  // Drops the picture that waits.
+  // Drops the picture that waits to be committed, if there is one.
   void drop();
 
   bool isPending() const { return find(State::kPending).has_value(); }

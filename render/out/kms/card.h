@@ -1,5 +1,5 @@
-// Port (an interface): a graphics card's displays, as the kernel's mode setting (KMS) offers them.
-// Implemented by drm_card and, in tests, by a fake.
+// Card: the port (an interface) to a graphics card's displays, modelled on the kernel's mode
+// setting (KMS). Implemented by drm_card and, in tests, by a fake.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,10 @@ using Id = std::uint32_t;  // the kernel's id of an object; 0: none
 struct Mode {
   int width = 0, height = 0;  // [px]
   double refresh_hz = 0;
-  bool preferred = false;   // the display prefers it
-  bool interlaced = false;  // never chosen unless named
-  int index = 0;            // in the kernel's list of the connector's modes
+  bool preferred = false;  // the display reports it as its preferred mode
+  // Chosen only if it is named, or if no progressive mode has the picture's size.
+  bool interlaced = false;
+  int index = 0;  // position in the kernel's list of the connector's modes
 
   bool sameTiming(const Mode& o) const {
     return width == o.width && height == o.height && refresh_hz == o.refresh_hz &&
@@ -34,17 +35,18 @@ struct Mode {
 struct Connector {
   Id id = 0;
   std::string name;        // "HDMI-A-1"
-  bool connected = false;  // a display is plugged in
-  bool link_bad = false;   // the display has lost the signal until its mode is set again
+  bool connected = false;  // true: a display is plugged in
+  bool link_bad = false;   // true: the display gets no signal until its mode is set again
   std::vector<Mode> modes{};
   std::uint32_t crtcs = 0;  // bit i: CardContents::crtcs[i] can drive it
 };
 
-// A CRTC scans out a plane's buffer to a connector.
+// What a card has. A CRTC reads the buffer of a plane and sends it to a connector (scans it out).
 struct CardContents {
   std::vector<Connector> connectors;
   std::vector<Id> crtcs;
-  std::vector<Id> primary_planes;  // of each CRTC in `crtcs`; 0: none takes XRGB
+  // Primary plane of each CRTC in `crtcs`; 0: it has none for XRGB8888.
+  std::vector<Id> primary_planes;
 };
 
 // A buffer that a CRTC can scan out: bytes B, G, R, unused; rows from top to bottom.
@@ -54,27 +56,28 @@ class Buffer {
   virtual Id id() const = 0;
   virtual std::span<std::uint8_t> bytes() = 0;
   virtual std::size_t pitch() const = 0;  // [bytes] from one row to the next
-  // The same memory for a GPU that draws into it; null if the card's driver does not share it.
+  // Returns the buffer's memory for a GPU to draw into; null if the card's driver does not share
+  // it.
   virtual std::shared_ptr<const DmaBuf> shared() const { return nullptr; }
-  // Why shared() is null; for a person.
+  // Explains to a person why shared() is null.
   virtual std::string unsharedReason() const {
     return "the driver of the display's card does not share the memory that is displayed";
   }
 };
 
-// One display's share of a commit.
+// The settings of one display in a commit.
 struct Lit {
   Id connector = 0, crtc = 0, plane = 0, buffer = 0;
   Mode mode{};
-  bool sets_mode = false;  // otherwise only the buffer is changed
+  bool sets_mode = false;  // true: sets mode, CRTC and plane; false: changes only the buffer
 };
 
 enum class Committed {
   kDone,
   kBusy,       // an earlier flip is not finished: try again later
-  kNotMaster,  // another program has the displays
+  kNotMaster,  // this program is not DRM master, so another one controls the displays
   kRefused,    // the card cannot do this
-  kGone,       // the card is not there any more
+  kGone,       // the card no longer exists
 };
 
 struct CommitResult {
@@ -82,7 +85,7 @@ struct CommitResult {
   std::string why{};  // the reason for kRefused and kGone
 };
 
-// A page flip: the CRTC's display shows the committed buffer since `when`.
+// A completed page flip: the CRTC's display has shown the committed buffer since `when`.
 struct Flip {
   Id crtc = 0;
   Timestamp when{};
@@ -90,9 +93,9 @@ struct Flip {
 
 // What a CRTC scans out, as the kernel reports it.
 struct ScannedOut {
-  bool is_on = false;    // it has a mode, is active, and its plane has a buffer
-  bool covered = false;  // another plane is shown on it as well
-  Id buffer = 0;         // the buffer of its plane
+  bool is_on = false;    // the CRTC is active, and at least one of its planes has a buffer
+  bool covered = false;  // another plane of the CRTC has a buffer too
+  Id buffer = 0;         // buffer of the plane that was asked about; 0: it has none
   bool operator==(const ScannedOut&) const = default;
 };
 
@@ -101,10 +104,11 @@ struct ScannedOut {
 class Scanout {
  public:
   virtual ~Scanout() = default;
-  // Errors: kIo: the card is not there any more.
+  // Returns the state of a CRTC and of the plane that the wall uses on it. Errors: kIo: the card no
+  // longer exists.
   virtual Result<ScannedOut> look(Id crtc, Id plane) = 0;
-  // Returns the digest of the picture in the middle of one of the wall's buffers, which it maps
-  // separately. Errors: kIo: another program is DRM master, or the card is not there any more.
+  // Maps one of the wall's buffers anew and returns the digest of the picture of this size [px] in
+  // its middle. Errors: kIo: another program is DRM master, or the card no longer exists.
   virtual Result<PictureDigest> read(Id buffer, int picture_width, int picture_height) = 0;
   // Programs that have the card open besides this one, "Xorg (812)"; empty if none is seen.
   virtual std::vector<std::string> others() const = 0;
@@ -113,39 +117,41 @@ class Scanout {
 // Thread-bound, except wake() and the destruction of buffers, which may outlive the card.
 class Card {
  public:
-  virtual ~Card() = default;  // restores what the displays showed before open(), if it is master
+  virtual ~Card() = default;  // restores, if DRM master, what the displays showed at the first
+                              // becomeMaster(), unless its device file is kept for the next process
 
   virtual const std::string& path() const = 0;
 
-  // `probe`: asks the displays for their modes again, which may take 0.1 s each.
-  // Errors: kIo: the card is not there any more.
+  // Lists the card's connectors with their modes. `probe`: asks the displays for their modes again,
+  // which may take 0.1 s each. Errors: kIo: the card no longer exists.
   virtual Result<CardContents> look(bool probe) = 0;
 
-  // A black buffer. Errors: kIo.
+  // Makes a black buffer of this size [px]. Errors: kIo: the card has no memory for it.
   virtual Result<std::shared_ptr<Buffer>> makeBuffer(int width, int height) = 0;
 
-  // Only one program at a time, the DRM master, may change what a card shows. Returns whether this
-  // one is or has become it. Call it before the first commit, even if isMaster(): it saves what the
-  // displays show, to be restored at the end.
+  // Tries to become DRM master, the only program that may change what the card's displays show.
+  // Returns whether this program is DRM master now. To be called before the first commit even if
+  // isMaster(), since it saves what the displays show, which is restored at the end.
   virtual bool becomeMaster() = 0;
   virtual bool isMaster() const = 0;
   // Programs that have the card open besides this one, "Xorg (812)"; empty if none is seen.
   virtual std::vector<std::string> others() const = 0;
 
-  // Changes all these displays in one atomic commit and does not wait; a Flip follows for each.
-  // `test_only`: only checks whether the card can do it and changes nothing.
+  // Changes all these displays in one atomic commit and does not wait; a Flip follows for each
+  // display. `test_only`: only checks whether the card can do this, and changes nothing.
   virtual CommitResult commit(std::span<const Lit> lit, bool test_only) = 0;
 
-  // Waits for flips until one arrives, `longest` is over or wake() is called.
+  // Waits until a flip arrives, `longest` is over or wake() is called. Returns the flips that have
+  // arrived.
   virtual std::vector<Flip> wait(Duration longest) = 0;
   virtual void wake() = 0;  // thread-safe
 
-  // Null if what the displays are sent cannot be read. Create a new one each time this program
-  // becomes DRM master.
+  // Returns a reader of what the displays are sent; null if this cannot be read. To be called again
+  // each time this program becomes DRM master.
   virtual std::shared_ptr<Scanout> scanout() { return nullptr; }
 
-  // True if this CRTC counts vertical blanks, so that the times of its flips are those of its
-  // display. A virtual machine's card often flips at once.
+  // Returns true if this CRTC counts vertical blanks, so that the times of its flips are those of
+  // its display. A virtual machine's card often flips at once.
   virtual bool hasVblank(Id crtc) const = 0;
 };
 

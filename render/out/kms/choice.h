@@ -1,4 +1,5 @@
-// Which mode, connector and CRTC an output gets. Pure.
+// Chooses the mode, connector and CRTC of an output, and copies a picture into a display's buffer.
+// Pure.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +13,18 @@
 
 namespace merlin::render::out::kms {
 
-// Returns the index of the mode for a picture of this size. If `wanted` is empty, this is a mode of
-// the picture's size (the preferred one, or else the fastest), or if there is none, the display's
-// preferred mode. If `wanted` has no rate: the preferred or else the fastest mode of the wanted
-// size. If it has a rate: the mode of that size whose rate is nearest, within 0.5 Hz. Errors:
-// kNotFound, with a list of the modes; kInvalidArgument: the picture is larger than the mode.
+// Returns the index in connector.modes of the mode for a picture of this size [px]. `wanted` is
+// WIDTHxHEIGHT@HZ (of the modes of that size, the one with the nearest rate, less than 0.5 Hz
+// away), WIDTHxHEIGHT (the preferred, or else the fastest mode of that size), or empty. If it is
+// empty, the preferred, or else the fastest progressive mode of the picture's size is chosen; if
+// there is none, the display's preferred mode, or else its first. Errors: kNotFound, with a list of
+// the modes; kInvalidArgument: the picture is larger than the mode.
 Result<std::size_t> chooseMode(const Connector& connector, const std::string& wanted,
                                int picture_width, int picture_height);
 
-// Index of the connector named `wanted`; empty: the first connected one, or else the first.
-// Errors: kNotFound, with the name `card` and a list of its connectors.
+// Returns the index of the connector named `wanted`; if `wanted` is empty, of the first connector
+// with a display, or else of the first one. Errors: kNotFound; the message has the name `card` and
+// lists the connectors.
 Result<std::size_t> chooseConnector(std::span<const Connector> connectors,
                                     const std::string& wanted, const std::string& card);
 
@@ -32,11 +35,12 @@ Result<std::size_t> chooseConnector(std::span<const Connector> connectors,
 std::vector<std::optional<std::size_t>> assignCrtcs(std::span<const std::uint32_t> masks,
                                                     std::uint32_t usable);
 
-// "640x480@60, 800x600@60 and 5 more": distinct modes, at most `most` of them.
+// Lists modes for a message, as in "640x480@60, 800x600@60 and 5 more": each name once, and at most
+// `most` names.
 std::string listOf(std::span<const Mode> modes, std::size_t most);
 std::string listOf(std::span<const Connector> connectors);
 
-// Where the upper left pixel of a picture is that lies in the middle of a larger one [px].
+// Position of a picture's upper left pixel in the larger picture in whose middle it lies [px].
 struct Corner {
   int x = 0, y = 0;
 };
@@ -45,7 +49,8 @@ constexpr Corner middle(int width, int height, int outer_width, int outer_height
 }
 
 // Writes a picture (RGBA, rows without padding) into the middle of a buffer (BGRX); the rest of the
-// buffer is left as it is. REQUIRES: the picture is not larger than the buffer.
+// buffer is left as it is. `pitch`: from one row of the buffer to the next [bytes]. REQUIRES: the
+// picture is not larger than the buffer.
 void writePicture(std::span<const std::uint8_t> rgba, int width, int height,
                   std::span<std::uint8_t> bgrx, std::size_t pitch, int buffer_width,
                   int buffer_height);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Duration kLookEvery = std::chrono::seconds(1);
 constexpr Duration kRetryRefused = std::chrono::seconds(10);
-// A display that shows no frame for so long is lit again.
+// If a display has not shown a committed frame after this time, its mode is set again.
 constexpr Duration kOverdue = std::chrono::seconds(1);
 constexpr Duration kBusyPause = std::chrono::milliseconds(2);
 constexpr std::size_t kProgramsNamed = 2;
@@ -279,8 +279,8 @@ void Displays::lightAgain(Screen& screen) {
   screen.wants_frame = true;
 }
 
-// Leaves on the CRTC what the display last showed: that costs nothing, and a projector that is
-// switched on again shows it at once.
+// The CRTC keeps what the display last showed: this costs nothing, and a projector that is switched
+// on again shows it at once.
 void Displays::darken(Screen& screen, const std::string& fault) {
   screen.lit = false;
   screen.wants_frame = false;
@@ -345,8 +345,8 @@ void Displays::settle(std::vector<Share>& shares, const CommitResult& result, Ti
   if (result.outcome == Committed::kRefused) refuse(shares, result.why, now);
 }
 
-// Leaves out the displays that the card refuses, alone or beside the others; the rest is committed
-// in the next step.
+// Finds the displays that the card refuses, alone or together with the others, and leaves them out;
+// the others are committed in the next step.
 void Displays::refuse(std::vector<Share>& shares, const std::string& why, Timestamp now) {
   const auto takes = [&](std::span<const Lit> lit) {
     return card_->commit(lit, true).outcome == Committed::kDone;

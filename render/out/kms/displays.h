@@ -1,4 +1,4 @@
-// Displays: the displays of one card that the wall uses: finds them, lights them, and commits each
+// Displays: finds the displays of one card that the wall uses, sets their modes, and commits each
 // frame for all of them at once.
 #pragma once
 
@@ -24,10 +24,10 @@
 
 namespace merlin::render::out::kms {
 
-// The wall's thread calls present(), one thread step(), and one readBack(), for the object's whole
-// life; the rest is thread-safe. No fault ends it: neither a missing card, connector or mode, nor
-// an unplugged display, nor another program that has the displays. present() returns the fault as
-// an error for the outputs that it concerns, and the fault is checked again once a second.
+// beginDrawing() and present() are called by the wall's thread, step() by a second one and
+// readBack() by a third; the rest is thread-safe. A missing card, connector or mode, an unplugged
+// display or another program that is DRM master does not end the work: present() returns the fault
+// for the outputs that it concerns, and step() checks once a second whether it is gone.
 class Displays {
  public:
   using OpenCard = std::function<Result<std::unique_ptr<Card>>()>;
@@ -38,63 +38,68 @@ class Displays {
   Displays(const Displays&) = delete;
   Displays& operator=(const Displays&) = delete;
 
-  // Adds an output and returns its number. To be called before the first present() and step(). An
-  // output with the connector "*" (KmsSettings::isEvery()) is shown on each connector that has a
-  // display and that no other output names, up to kMostOfEvery. It is no fault of such an output if
-  // there is no such connector, or no card.
+  // Adds an output whose picture has this size [px] and returns its number, counted from 0. To be
+  // called before the first present() and step(). An output with the connector "*"
+  // (KmsSettings::isEvery()) is shown on each connector that has a display and that no other output
+  // names, up to kMostOfEvery. Such an output has no fault if there is no such connector or no
+  // card.
   std::size_t add(const KmsSettings& settings, int picture_width, int picture_height);
   static constexpr std::size_t kMostOfEvery = 16;
 
-  // Where the next picture of output i may be drawn by a GPU: a buffer of each of its displays that
-  // is neither shown nor on its way to the display. A place's buffer is null if the card's driver
-  // does not share its memory. Returns no place if none of the output's displays takes part in
-  // commits. Once a picture was not drawn into the places that were returned, or showAgain() was
-  // called, returns none until the display has other buffers. Called by present()'s thread, which
-  // then calls present() for this output next; nothing is committed meanwhile.
+  // Returns where a GPU may draw the next picture of output i: for each of its displays that takes
+  // part in commits, a buffer that is neither shown nor committed. A place's buffer is null if the
+  // card's driver does not share its memory. Returns no place if no display takes part. Also
+  // returns none after a picture was not drawn into the returned places, or after showAgain(),
+  // until the display has other buffers. Called by present()'s thread, whose next call must be
+  // present() for this output; nothing is committed in between.
   std::vector<DrawPlace> beginDrawing(std::size_t i);
 
-  // Why pictures are copied to a display of output i that takes part in commits, with the display's
-  // name: the card's driver does not share its memory, or showAgain() was called after a picture
-  // had been drawn there. Empty: neither is so.
+  // Returns why pictures are copied to a display of output i that takes part in commits, after the
+  // display's name: the card's driver does not share its memory, or showAgain() was called after a
+  // picture had been drawn there. Empty: neither is the case.
   std::string copyReason(std::size_t i) const;
 
-  // Writes the picture (RGBA, rows from top to bottom without padding) of frame `sequence` into a
-  // buffer of each display of output i; `rgba` empty: it is drawn into those of beginDrawing(). A
-  // frame is committed when all outputs have their pictures of it. Never waits for a display. Cost:
-  // one pass over the pixels for each. Returns when the picture was handed over; nothing if it
-  // replaced one that was not committed yet, or if the card was not looked at yet. Errors: why the
-  // output shows no picture.
+  // Hands over the picture of frame `sequence` to each display of output i. `rgba`: its pixels,
+  // RGBA, rows from top to bottom without padding, which are copied; empty: it was drawn into the
+  // places of beginDrawing(). Outputs present a frame in the order of their numbers; step() commits
+  // it after the last one. Never waits for a display. Cost: one pass over the pixels for each
+  // display. Returns when the picture was handed over; nothing if no display took it, or if it only
+  // replaced pictures that were not committed yet. Errors: kIo: why the output shows no picture.
   Result<std::optional<Timestamp>> present(std::size_t i, std::span<const std::uint8_t> rgba,
                                            std::uint64_t sequence);
 
-  // True if output i could show a picture and has none.
+  // Returns true if a display of output i is ready and needs a picture, since its mode is to be
+  // set.
   bool wantsFrame(std::size_t i) const;
 
-  // Why output i shows no picture; empty: it shows one, or the card was not looked at yet.
+  // Returns why output i shows no picture; empty if it does, or if step() has not looked for the
+  // card yet.
   std::string fault(std::size_t i) const;
 
-  // What a display of an output was found to show.
+  // The picture that a display of an output was found to show.
   struct Reading {
     std::string connector;
     FoundPicture found;
     std::string programs{};  // if the picture is foreign: other programs that have the card open
   };
-  // Reads from the kernel, and not from this object's records, what is shown by each display of
-  // output i that shows its frames. Takes milliseconds; no frame waits for it. Errors: the first
-  // reason why a display cannot be read.
+  // Returns what each display of output i shows, as the kernel reports it; this object's records
+  // are not used. Displays whose mode is still to be set are left out. Takes milliseconds; no frame
+  // waits for it. Errors: the first reason why a display cannot be read (kIo, kBusy).
   Result<std::vector<Reading>> readBack(std::size_t i);
-  // Sets the modes of output i's displays again with its next frame, and asks for that frame.
+  // Makes step() set the modes of output i's displays again with the next frame, and wantsFrame()
+  // ask for that frame. From then on pictures are copied to these displays, not drawn.
   void showAgain(std::size_t i);
 
-  // The last vertical blank of the first display that counts them, and the time between two.
+  // The last vertical blank of the first display whose CRTC counts vertical blanks, and the time
+  // between two blanks.
   struct Blanks {
     Timestamp last{};
     Duration period{};
   };
   std::optional<Blanks> blanks() const;
 
-  // Looks for changes if a second has passed, commits the frame that is due, and waits for at most
-  // `longest` for something to do.
+  // Looks for the card and its displays if the last look was a second ago, commits the frame that
+  // is complete, and waits at most `longest` for a page flip or wake().
   void step(Duration longest);
   void wake();
   // Waits until step() has looked for the card for the first time, but at most `longest`.
@@ -105,29 +110,31 @@ class Displays {
   struct Place {
     Id connector = 0, crtc = 0, plane = 0;
     Mode mode{};
-    std::string name{};  // of the connector
+    std::string name{};  // name of the connector
     std::array<std::shared_ptr<Buffer>, BufferTurns::kCount> buffers{};
     BufferTurns turns{};
-    // Nothing is drawn into its buffers: a try has failed, or the checks found another picture.
+    // True: pictures are copied into the buffers, since a picture was not drawn there, or the
+    // checks found another picture.
     bool copies = false;
-    bool was_drawn = false;     // into one of its buffers
-    std::string copy_reason{};  // for copyReason()
+    bool was_drawn = false;     // a picture was drawn into one of the buffers
+    std::string copy_reason{};  // see Displays::copyReason(); empty: no reason
   };
   struct Screen {
     KmsSettings settings{};
     std::size_t output = 0;
-    std::optional<std::size_t> nth{};  // connector "*": which of the free connectors
-    int width = 0, height = 0;         // of the picture [px]
+    // For connector "*": index among the connectors that no output names.
+    std::optional<std::size_t> nth{};
+    int width = 0, height = 0;  // of the picture [px]
     // Shared with present(), which may still write when a display gets another mode.
     std::shared_ptr<Place> place{};
     bool lit = false;                     // takes part in commits
-    bool sets_mode = false;               // in the next commit
+    bool sets_mode = false;               // the next commit sets its mode
     std::string fault{};                  // why no picture is shown; empty: one is
     std::optional<Timestamp> retry_at{};  // when to try again after the card refused it
     std::atomic<bool> wants_frame{false};
     bool again = false;  // showAgain() was called
   };
-  // A picture on its way into a buffer of a display. `replaces`: as in BufferTurns::Write.
+  // A picture that is being written into a display's buffer. `replaces`: as in BufferTurns::Write.
   struct Write {
     std::shared_ptr<Place> place;
     std::size_t buffer = 0;
@@ -139,7 +146,7 @@ class Displays {
     std::shared_ptr<Place> place;
     int width = 0, height = 0;  // of the picture [px]
   };
-  // A screen's share of a commit.
+  // The part of a commit that concerns one screen.
   struct Share {
     Screen* screen = nullptr;
     Lit lit;
@@ -176,9 +183,12 @@ class Displays {
   const Clock& clock_;
   mutable std::mutex mutex_;  // guards all below except the atomics; not held during slow calls
   std::condition_variable idle_;
-  std::unique_ptr<Card> card_;        // replaced by step() with the mutex held, used by it without
-  std::shared_ptr<Scanout> scanout_;  // of card_, since it became master; shared with readBack()
-  std::deque<Screen> screens_;        // by output; a deque, since a Screen cannot be moved
+  // Replaced by step() with the mutex held, and used by step() without the mutex.
+  std::unique_ptr<Card> card_;
+  // Reads card_'s displays; null unless card_ is DRM master; shared with readBack().
+  std::shared_ptr<Scanout> scanout_;
+  // In the order of their outputs; a deque, since a Screen cannot be moved.
+  std::deque<Screen> screens_;
   std::size_t outputs_ = 0;
   bool looked_ = false;  // step() has looked for a card at least once
   bool master_ = false;

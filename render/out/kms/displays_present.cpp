@@ -33,8 +33,8 @@ Result<std::optional<Timestamp>> Displays::present(std::size_t i,
   return shown ? Shown(clock_.now()) : Shown();
 }
 
-// Begins a picture for the screen; nothing if it takes no part in commits. REQUIRES: the mutex is
-// held.
+// Chooses the buffer for the screen's next picture; returns nothing if the screen takes no part in
+// commits. REQUIRES: the mutex is held.
 std::optional<Displays::Write> Displays::beginWrite(Screen& screen) {
   screen.wants_frame = false;
   if (!screen.lit || !screen.place) return std::nullopt;
@@ -72,7 +72,7 @@ std::vector<DrawPlace> Displays::beginDrawing(std::size_t i) {
     places.push_back({buffer.shared(), corner.x, corner.y});
     if (!places.back().buffer) place.copy_reason = place.name + ": " + buffer.unsharedReason();
     begun_.push_back(*write);
-    whole_ = false;  // what waits on the other displays is not to be shown without this one
+    whole_ = false;  // the frame must not be committed without this output's picture
   }
   return places;
 }
@@ -86,8 +86,8 @@ std::string Displays::copyReason(std::size_t i) const {
   return {};
 }
 
-// Ends what beginDrawing() has begun; copies the picture if it was not drawn. Returns whether a
-// display shows it without skipping one that waited.
+// Ends the writes that beginDrawing() has begun, and copies the picture if it was not drawn.
+// Returns whether at least one display replaces no picture that was still to be committed.
 bool Displays::endDrawing(std::unique_lock<std::mutex>& lock, std::span<const std::uint8_t> rgba) {
   bool shown = false;
   for (const Write& write : std::exchange(begun_, {})) {

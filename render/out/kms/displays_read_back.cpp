@@ -71,8 +71,8 @@ void Displays::showAgain(std::size_t i) {
   if (card_) card_->wake();
 }
 
-// From now on pictures are copied to these displays: nobody knows whether what was wrong was the
-// way in which a GPU drew there.
+// Sets the modes again of the displays for which showAgain() was called. From now on pictures are
+// copied to them, since the GPU's way of drawing may have been the fault.
 void Displays::lightAskedFor() {
   const std::lock_guard lock(mutex_);
   for (Screen& screen : screens_) {

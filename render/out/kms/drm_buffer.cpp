@@ -67,8 +67,8 @@ class DumbBuffer final : public Buffer {
     return true;
   }
 
-  // The kernel says that no acceleration is promised for "dumb" memory; whether the GPU draws there
-  // is for its driver to say, when it imports it.
+  // Exports the buffer's memory for a GPU. The kernel promises no acceleration for "dumb" memory;
+  // the GPU's driver decides at the import whether it draws there.
   void share(std::uint32_t handle, std::uint32_t width, std::uint32_t height) {
     int fd = -1;
     struct stat node {};

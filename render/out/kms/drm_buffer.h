@@ -1,4 +1,5 @@
-// Buffers in the computer's memory that a card scans out ("dumb" ones, in the kernel's words).
+// makeDumbBuffer(): makes buffers that the CPU writes and a card scans out (the kernel's "dumb
+// buffers").
 #pragma once
 
 #include <atomic>
@@ -10,17 +11,18 @@
 
 namespace merlin::render::out::kms {
 
-// The device file. Shared by the card and its buffers, which may outlive the card.
+// A card's open device file. Shared by the card and its buffers, which may outlive the card.
 struct DeviceFile : UniqueFd {
   using UniqueFd::UniqueFd;
   explicit DeviceFile(UniqueFd file) : UniqueFd(std::move(file)) {}
 
-  // Set by the card when it ends: the displays go on showing the buffers, so none is removed.
+  // Set by the card's destructor if the displays go on showing its buffers; the buffers'
+  // destructors then remove no frame buffer from the kernel.
   std::atomic<bool> stays_shown{false};
 };
 using DrmFile = std::shared_ptr<DeviceFile>;
 
-// A black buffer. Errors: kIo: the card has no memory for it.
+// Makes a black buffer of this size [px]. Errors: kIo: the card has no memory for it.
 Result<std::shared_ptr<Buffer>> makeDumbBuffer(const DrmFile& file, int width, int height);
 
 }  // namespace merlin::render::out::kms

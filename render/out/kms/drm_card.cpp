@@ -130,7 +130,7 @@ class DrmCard final : public Card {
   DrmProperties properties_;
   bool was_master_ = false;
   const std::string kept_name_ = keptName(path_);
-  bool is_kept_ = false;       // file_, in kept_files_
+  bool is_kept_ = false;       // kept_files_ keeps file_
   bool is_inherited_ = false;  // file_ was opened by the previous process
   bool is_gone_ = false;       // the card no longer exists
   // Frame buffers of the previous process, until no display shows them any more.
@@ -211,7 +211,8 @@ bool DrmCard::becomeMaster() {
   return true;
 }
 
-// A primary plane that the CRTC can show, that takes the buffers' format and is not used yet.
+// Returns a primary plane that the CRTC can show, that takes the buffers' format and is not used
+// yet; 0 if there is none.
 Id DrmCard::primaryPlane(std::size_t crtc, const std::set<Id>& used) {
   for (const Id id : planes_) {
     const auto plane = planeOf(fd(), id);
@@ -353,7 +354,8 @@ CommitResult DrmCard::commit(std::span<const Lit> lit, bool test_only) {
   std::uint32_t flags = sets_mode ? DRM_MODE_ATOMIC_ALLOW_MODESET : 0;
   flags |=
       test_only ? DRM_MODE_ATOMIC_TEST_ONLY : DRM_MODE_ATOMIC_NONBLOCK | DRM_MODE_PAGE_FLIP_EVENT;
-  // Marks our events: those with another value answer a commit of the previous process.
+  // Marks the events of our commits; those with another value belong to a commit of the previous
+  // process.
   void* const ours = reinterpret_cast<void*>(static_cast<std::uintptr_t>(::getpid()));
   const int rc = drmModeAtomicCommit(fd(), request.get(), flags, ours);
   const int error = rc != 0 ? errno : 0;

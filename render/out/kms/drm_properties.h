@@ -11,7 +11,8 @@
 
 namespace merlin::render::out::kms {
 
-// Thread-bound. The kernel never changes a property's id, so each object is queried only once.
+// Thread-bound. Looks up properties by name; `type` is the object's DRM_MODE_OBJECT_ constant. The
+// kernel never changes a property's id, so the ids of an object are read only once.
 class DrmProperties {
  public:
   // idOf() returns 0, and valueOf() nothing, if the object has no property of this name.

@@ -1,4 +1,4 @@
-// DrmSavedState: what the displays of a card showed before the wall.
+// DrmSavedState: saves what the displays of a card show, and restores it.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,8 @@ class DrmSavedState {
   DrmSavedState() = default;
   DrmSavedState(int fd, DrmProperties& properties);
 
-  // Shows it again; CRTCs that were off are switched off. REQUIRES: DRM master.
+  // Sets the saved mode, buffer and connectors of each CRTC again; CRTCs that were off are switched
+  // off. REQUIRES: DRM master.
   void restore(int fd);
 
  private:

@@ -1,4 +1,4 @@
-// What a card of the Linux kernel sends to its displays.
+// makeDrmScanout(): the Scanout of the Linux kernel's DRM devices.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace merlin::render::out::kms {
 
-// `file`: the open device file of the card at `path`. Buffers can be read only while it is DRM
+// `file`: the open device file of the card at `path`. Buffers can be read only while `file` is DRM
 // master.
 std::shared_ptr<Scanout> makeDrmScanout(DrmFile file, std::string path);
 

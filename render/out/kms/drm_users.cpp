@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Numbers of a process's descriptors of the file.
+// Returns the numbers of the descriptors by which a process has the file open. `process`: its
+// folder in /proc.
 std::vector<int> descriptorsOf(const fs::path& process, const std::string& path) {
   std::vector<int> descriptors;
   std::error_code ignored;

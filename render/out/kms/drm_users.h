@@ -1,4 +1,4 @@
-// Who has a card open.
+// Finds the programs, and the descriptors of this process, that have a card's device file open.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace merlin::render::out::kms {
 
-// Programs that have the file open, "Xorg (812)", except this one and its parent. A process that is
-// not root's may not see all of them.
+// Returns the programs that have the file open, each as "Xorg (812)" with its process id, except
+// this process and its parent. Without root's rights, some may not be found.
 std::vector<std::string> programsWith(const std::string& path);
 
 // Gives up being DRM master on this process's other descriptors of the card. Mesa's software

@@ -11,7 +11,7 @@ namespace merlin::render::out::kms {
 inline constexpr const char* kEveryConnector = "*";
 
 struct KmsSettings {
-  std::string card{};  // its device file; empty: the first card that has connectors
+  std::string card{};  // path of its device file; empty: the first card that has connectors
   // Name of the connector, "HDMI-A-1"; empty: the first one with a display; kEveryConnector: all
   // connectors of the card.
   std::string connector{};
@@ -21,12 +21,13 @@ struct KmsSettings {
   bool operator==(const KmsSettings&) const = default;
 };
 
-// What a mode's name asks for.
+// The mode that a name such as "1920x1080@60" asks for.
 struct WantedMode {
   int width = 0, height = 0;  // [px]
   double refresh_hz = 0;      // 0: any
 };
-// Nothing if `name` is not WIDTHxHEIGHT or WIDTHxHEIGHT@HZ.
+// Parses a mode's name, WIDTHxHEIGHT or WIDTHxHEIGHT@HZ. Returns nothing if it is malformed, a side
+// exceeds 32768 px, or the rate exceeds 1000 Hz.
 std::optional<WantedMode> parseMode(const std::string& name);
 
 // Checks for: a card that is not the path of a device file, a mode's name that parseMode() cannot

@@ -9,8 +9,9 @@
 namespace merlin::render::out {
 
 struct DrawPlace {
-  // Shared, so that whoever has imported it sees when nobody uses it any more; the same object for
-  // the same memory. Null: the card's driver does not share its memory.
+  // The memory to draw into; the same memory is always the same object. It is shared, so that an
+  // importer notices when nobody else uses it any more. Null: the card's driver does not share its
+  // memory.
   std::shared_ptr<const DmaBuf> buffer{};
   int x = 0, y = 0;  // [px] where the picture's upper left pixel is in the buffer
 };

@@ -14,7 +14,7 @@ namespace merlin::render::out {
 enum class PictureVerdict {
   kUnchecked,  // nothing was read back
   kRight,
-  kBlack,    // black, although no black frame was meant
+  kBlack,    // black or switched off, although no black frame was meant
   kFrozen,   // an older frame, although newer ones were handed over long ago
   kTorn,     // parts of two frames
   kForeign,  // another program's picture, or one that the wall never made
@@ -48,9 +48,10 @@ struct FoundPicture {
 // An output may still show a frame this long after the next one was handed over.
 inline constexpr Duration kLongestLag = std::chrono::seconds(1);
 
-// `meant`: the last frames, oldest first, each different from the one before. `last_right`: what
-// was found when the verdict was last kRight. `began`: when reading began. kUnchecked if nothing
-// was meant yet. Cost: at most one comparison of digests for each pair of frames in `meant`.
+// Judges what a display was found to show. `meant`: the last frames that its output was handed,
+// oldest first, each different from the one before. `last_right`: the digest that was found when
+// the verdict was last kRight. `began`: when the reading began. Returns kUnchecked if `meant` is
+// empty. Cost: at most one comparison of digests for each pair of frames in `meant`.
 PictureVerdict judgePicture(std::span<const MeantPicture> meant, const FoundPicture& found,
                             const std::optional<PictureDigest>& last_right, Timestamp began);
 
@@ -60,7 +61,8 @@ class SteadyVerdict {
  public:
   PictureVerdict update(PictureVerdict reading);
   PictureVerdict current() const noexcept { return current_; }
-  // The last reading disagrees, so the next one should follow soon.
+  // Returns true if the last reading disagrees with current(), so that the next reading should
+  // follow soon.
   bool isUnsettled() const noexcept { return isWrong(last_) != isWrong(current_); }
 
  private:

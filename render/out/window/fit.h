@@ -15,9 +15,9 @@ struct PixelRectangle {
   bool operator==(const PixelRectangle&) const = default;
 };
 
-// Returns the rectangle that the whole picture covers, in the middle of the window. `scaled`: the
-// largest one that fits and has the picture's proportions; otherwise the picture's own size, which
-// may be larger than the window. REQUIRES: all sizes are positive.
+// Returns the rectangle that the whole picture covers in the middle of the window [px]. `scaled`:
+// the largest rectangle that fits and has the picture's proportions; otherwise it has the picture's
+// own size, which may be larger than the window. REQUIRES: all sizes are positive.
 inline PixelRectangle fit(const PixelSize& picture, const PixelSize& window, bool scaled) {
   PixelSize size = picture;
   if (scaled) {

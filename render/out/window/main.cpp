@@ -16,7 +16,8 @@
 namespace merlin::render::out {
 namespace {
 
-constexpr int kEventStep_ms = 8;  // how long a key or a motion waits, at most, while no frame comes
+// Longest time until a key or a motion is handled while no frame comes.
+constexpr int kEventStep_ms = 8;
 
 void send(int socket, WindowEvent::Kind kind, std::string_view text = {}) {
   WindowEvent event;

@@ -34,7 +34,7 @@ struct WindowEvent {
   enum Kind : std::uint32_t {
     kOpened = 1,  // the window is there
     kShown = 2,   // the frame of the last FrameReady is in the window
-    kClosed = 3,  // a person closed the window; the program ends
+    kClosed = 3,  // a person has closed the window; the program ends
     kFault = 4,   // `text`: why there is no window; the program ends
     kCommand =
         5,  // `text`: a command of daemon/base/commands.h that a person gave: "NAME ARGUMENT"
@@ -46,7 +46,7 @@ struct WindowEvent {
 static_assert(std::is_trivially_copyable_v<WindowForm> &&
               std::is_trivially_copyable_v<WindowEvent>);
 
-// Copies a text into a field, cut to its size.
+// Copies a text into a field and terminates it; a text that is too long is cut off.
 template <std::size_t N>
 void copyText(std::string_view from, char (&to)[N]) {
   const std::size_t length = std::min(from.size(), N - 1);
@@ -54,7 +54,7 @@ void copyText(std::string_view from, char (&to)[N]) {
   std::fill(to + length, to + N, '\0');
 }
 
-// The text of a field, also if its terminator is missing.
+// Returns the text of a field, up to its terminator or, if that is missing, the field's end.
 template <std::size_t N>
 std::string_view textOf(const char (&field)[N]) {
   return {field, static_cast<std::size_t>(std::find(field, field + N, '\0') - field)};

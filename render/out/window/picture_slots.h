@@ -31,7 +31,8 @@ class PictureSlots {
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
   int fd() const noexcept { return memory_.get(); }
-  // RGBA, rows from top to bottom, no padding. REQUIRES: i < kCount; written to only after make().
+  // Returns the pixels of picture i: RGBA, rows from top to bottom, no padding. REQUIRES: i <
+  // kCount; only the process that called make() writes to them.
   std::span<std::uint8_t> slot(std::uint32_t i) const noexcept {
     return {pixels_ + i * bytes(), bytes()};
   }

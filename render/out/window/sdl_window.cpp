@@ -13,7 +13,7 @@ Error sdlError(const char* what) {
   return {Errc::kIo, fmt::format("{}: {}", what, SDL_GetError())};
 }
 
-// Returns the environment's display in words, for a message.
+// Returns which display the environment names, in words for a message.
 std::string displayName() {
   for (const char* name : {"WAYLAND_DISPLAY", "DISPLAY"}) {
     const char* const value = std::getenv(name);
@@ -40,7 +40,7 @@ std::uint32_t flagsOf(const WindowForm& form) {
   return flags;
 }
 
-// Returns where the window is when it is not fullscreen.
+// Returns the window's place and size while it is not fullscreen [px].
 SDL_Rect normalPlaceOf(const WindowForm& form, const SDL_Rect& monitor) {
   const auto middle =
       static_cast<int>(SDL_WINDOWPOS_CENTERED_DISPLAY(static_cast<std::uint32_t>(form.monitor)));
@@ -141,7 +141,7 @@ bool SdlWindow::handle(const SDL_Event& event) {
   if (event.type == SDL_WINDOWEVENT) {
     const auto what = event.window.event;
     if (what == SDL_WINDOWEVENT_CLOSE) return false;
-    // A fault shows at the next frame, which reports it.
+    // A fault is ignored here, since the next show() reports it.
     if (what == SDL_WINDOWEVENT_EXPOSED || what == SDL_WINDOWEVENT_SIZE_CHANGED)
       static_cast<void>(draw().ok());
   }

@@ -29,12 +29,14 @@ class SdlWindow {
   SdlWindow(const SdlWindow&) = delete;
   SdlWindow& operator=(const SdlWindow&) = delete;
 
-  // Shows a picture of the form's size, RGBA. Returns when the display has it. Errors: kIo.
+  // Shows a picture of the form's size, RGBA, rows from top to bottom without padding. Returns when
+  // the display has it. Errors: kIo.
   Result<Ok> show(std::span<const std::uint8_t> pixels);
 
   // Handles what has happened since the last call. Returns false if a person closed the window.
   bool handleEvents();
-  // What the person asked for: see WindowCommands.
+  // Returns the commands that a person has given since the last call, each "NAME ARGUMENT": motions
+  // of the pointer on the operator's panel, then those of WindowCommands::take().
   std::vector<std::string> takeCommands();
 
  private:

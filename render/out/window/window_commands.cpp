@@ -11,9 +11,9 @@
 namespace merlin::render::out {
 namespace {
 
-// The largest motion of one command: see `move`.
+// Limits of the arguments of one command `move`.
 constexpr double kMostRadii = 10, kMostDegrees = 360;
-// The same values as in merlin-rfb.
+// Turn and shift of a drag over the whole height of the window; merlin-rfb uses the same values.
 constexpr double kDegreesPerHeight = 180, kRadiiPerHeight = 1.5;
 constexpr double kRadiiPerNotch = 0.1;
 constexpr double kDegreesPerKey = 5, kRadiiPerKey = 0.05;
@@ -33,7 +33,7 @@ constexpr Key kKeys[] = {{"Home", "reset_view"},
                          {"T", "next_testcard"},
                          {"B", "blank"},
                          {"F", "freeze"}};
-// With Ctrl: the keys of `merlin wall align`.
+// Keys that are pressed with Ctrl; they are those of `merlin wall align`.
 constexpr Key kCtrlKeys[] = {{"N", "align_output_next"},
                              {"Tab", "align_corner_next"},
                              {"Left", "align_left", true},

@@ -1,4 +1,4 @@
-// WindowCommands: what a person does in a window with mouse and keys, as commands of
+// WindowCommands: translates what a person does in a window with mouse and keys into commands of
 // daemon/base/commands.h. Pure.
 #pragma once
 
@@ -12,19 +12,22 @@ namespace merlin::render::out {
 struct PressedKey {
   std::string_view name;
   bool shift = false, ctrl = false;
-  bool repeats = false;  // it is held: the keyboard repeats it
+  bool repeats = false;  // the key is held, and the keyboard repeats it
 };
 
 // Thread-bound.
 class WindowCommands {
  public:
-  // The pointer moves with a button held, to the right and down [px]. A drag along the whole height
-  // of the window turns what the ball moves by half a turn, or shifts it by 1.5 of its radii.
+  // Handles a motion of the pointer with a button held, by right_px and down_px [px]. A drag over
+  // the whole height of the window turns what the command `move` moves by 180 degrees, or shifts it
+  // by 1.5 of its radii.
   enum class Drag { kTurn, kShift };
   void drag(Drag what, double right_px, double down_px, int window_height);
-  // Notches of the wheel; away from the person brings the content nearer.
+  // Handles a turn of the mouse wheel; positive notches (away from the person) bring the content
+  // nearer.
   void wheel(double notches);
-  // README.md lists the keys. A held key repeats motions only.
+  // Handles a key; README.md lists the keys. A held key repeats only motions and the steps of the
+  // alignment.
   void press(const PressedKey& key);
 
   // Returns the commands since the last call, "NAME ARGUMENT", in the order in which keys were

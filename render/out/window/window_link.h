@@ -1,8 +1,8 @@
 // WindowLink: hands pictures to a separate program, which shows them in a window on a desktop.
 //
 // The window belongs to the program merlin-window, because the libraries of a desktop end their
-// process when the X server goes away, handle signals and may wait without limit. A thread here
-// starts the program, and starts it again every kRetry while there is no display.
+// process when the X server goes away, handle signals and may wait without limit. A thread of this
+// class starts the program, and if it ends starts it again, at most once every kRetry.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@
 
 namespace merlin::render::out {
 
-// What merlind does for the person at a window. Called on the threads of the outputs.
+// Functions of merlind that a person at a window can cause. Called on the threads of the outputs.
 struct WindowActs {
   // Executes a command of daemon/base/commands.h. Errors: why it was not executed.
   std::function<Result<std::string>(const std::string& name, const std::string& argument)> command =
@@ -56,9 +56,9 @@ class WindowLink {
   // (fault(), or no memory for the pictures).
   Result<bool> show(int width, int height, std::span<const std::uint8_t> pixels);
 
-  // Why there is no window, or why it shows nothing; empty: no fault is known.
+  // Returns why there is no window, or why it shows nothing; empty if no fault is known.
   std::string fault() const;
-  // A person closed the window; it stays closed.
+  // Returns true once a person has closed the window; it then stays closed.
   bool isClosed() const;
 
  private:
@@ -85,7 +85,7 @@ class WindowLink {
   std::uint32_t newest_ = 0;           // slot of the newest frame
   std::uint32_t in_flight_ = 0;        // slot of the frame that the program was sent last
   std::uint64_t frames_ = 0, sent_ = 0;  // number of the newest frame; of the one sent last
-  bool opened_ = false;                  // there is a window
+  bool opened_ = false;                  // the program has reported that its window is open
   bool closed_ = false;                  // a person closed it
   std::string fault_;                    // empty: none is known
 

@@ -1,4 +1,4 @@
-// WindowProcess: a running merlin-window, its socket, and its end.
+// WindowProcess: starts merlin-window, exchanges messages with it, and ends it.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace merlin::render::out {
 
-// Path of merlin-window, which is in the same folder as this program. Errors: kUnsupported (it is
-// not there, since MERLIN was built or installed without SDL2).
+// Returns the path of merlin-window, which is in the same folder as this program. Errors:
+// kUnsupported (it is not there, since MERLIN was built or installed without SDL2).
 Result<std::string> windowProgram();
 
 // Thread-bound; no call waits. If the thread that started it ends, so does the program.
@@ -27,13 +27,15 @@ class WindowProcess {
   WindowProcess(const WindowProcess&) = delete;
   WindowProcess& operator=(const WindowProcess&) = delete;
 
-  // Readable when there is an event or the program has ended.
+  // Returns the socket's descriptor, which is readable when there is an event or the program has
+  // ended.
   int socket() const noexcept { return socket_.get(); }
 
-  // Errors: kClosed (the program has ended or takes nothing).
+  // Announces a frame to the program. Errors: kClosed (the program has ended, or does not read its
+  // messages).
   Result<Ok> send(const FrameReady& frame);
 
-  // The next event; nothing if there is none now. Errors: kClosed (the program has ended).
+  // Returns the next event; nothing if there is none now. Errors: kClosed (the program has ended).
   Result<std::optional<WindowEvent>> receive();
 
  private:
