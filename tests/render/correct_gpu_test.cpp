@@ -176,6 +176,9 @@ TEST_P(ShaderOf, WhatItCannotDoTheCpuDoes) {
   for (int frame = 0; frame < 2; ++frame)
     EXPECT_EQ(signalOf(asked, picture), signalOf(cpu, picture));
   EXPECT_NE(pass_.fault().find(std::to_string(most + 8)), std::string::npos) << pass_.fault();
+  asked = correct::OutputCorrection(mapOf(s, kWidth, kHeight), 1, &pass_);
+  signalOf(asked, noise(kWidth, kHeight));
+  EXPECT_EQ(pass_.fault(), "") << "nobody holds the map that was refused";
 }
 
 TEST_P(ShaderOf, IsOffBeforeAndAfter) {

@@ -140,7 +140,7 @@ void ShaderPass::end() {
   tables_.clear();
   refused_.clear();
   lent_.clear();
-  tellDrawFault();
+  tellFaults();
   row_reader_.reset();
   gl_->DeleteProgram(program_);
   gl_->DeleteVertexArrays(1, &vertices_);
@@ -157,11 +157,12 @@ std::string ShaderPass::drawFault() const {
   return draw_fault_;
 }
 
-// Sets draw_fault_; called after each change of lent_ or of its faults.
-void ShaderPass::tellDrawFault() {
-  const auto refused = std::ranges::find_if(lent_, [](const Lent& l) { return !l.fault.empty(); });
+// Sets fault_ and draw_fault_; called after each change of refused_, of lent_ or of its faults.
+void ShaderPass::tellFaults() {
+  const auto lent = std::ranges::find_if(lent_, [](const Lent& l) { return !l.fault.empty(); });
   const std::lock_guard lock(mutex_);
-  draw_fault_ = refused == lent_.end() ? std::string() : refused->fault;
+  fault_ = refused_.empty() ? std::string() : refused_.back().fault;
+  draw_fault_ = lent == lent_.end() ? std::string() : lent->fault;
 }
 
 Result<ShaderPass::Tables> ShaderPass::makeTables(
@@ -195,7 +196,6 @@ Result<ShaderPass::Tables*> ShaderPass::tablesOf(const std::shared_ptr<const Cor
     if (isOf(tables.map, map)) return &tables;
   }
   tables_.remove_if([](const Tables& t) { return t.map.expired(); });
-  refused_.remove_if([](const auto& held) { return held.expired(); });
   auto made = makeTables(map);
   if (!made) return made.error();
   tables_.push_back(*std::move(made));
@@ -215,18 +215,19 @@ void ShaderPass::setLight(const Light& light) const {
 // Returns null if this map was refused, now or before.
 ShaderPass::Tables* ShaderPass::tablesUnlessRefused(
     const std::shared_ptr<const CorrectionMap>& map) {
-  if (std::ranges::any_of(refused_, [&](const auto& held) { return isOf(held, map); }))
+  if (std::ranges::any_of(refused_, [&](const Refused& r) { return isOf(r.map, map); }))
     return nullptr;
   const auto tables = tablesOf(map);
   if (tables) return *tables;
-  refused_.push_back(map);
-  const std::lock_guard lock(mutex_);
-  fault_ = tables.error().what;
+  refused_.push_back({map, tables.error().what});
+  tellFaults();
   return nullptr;
 }
 
 void ShaderPass::releaseUnheld() {
-  if (lent_.remove_if([](const Lent& l) { return l.buffer.expired(); }) > 0) tellDrawFault();
+  const auto maps = refused_.remove_if([](const Refused& r) { return r.map.expired(); });
+  const auto buffers = lent_.remove_if([](const Lent& l) { return l.buffer.expired(); });
+  if (maps + buffers > 0) tellFaults();
 }
 
 // Returns null if this buffer was refused, now or before, or is null.
@@ -240,7 +241,7 @@ ShaderPass::Lent* ShaderPass::lentOf(const std::shared_ptr<const DmaBuf>& buffer
       lent->target.emplace(*std::move(target));
     else
       lent->fault = target.error().what;
-    tellDrawFault();
+    tellFaults();
   }
   return lent->target ? &*lent : nullptr;
 }
@@ -261,7 +262,7 @@ bool ShaderPass::isDrawnRight(Lent& lent, const out::DrawPlace& place, const Tab
   if (!comparison.same) {
     lent.target.reset();
     lent.fault = "the driver has drawn another picture into the display's memory than was meant";
-    tellDrawFault();
+    tellFaults();
     return false;
   }
   // New memory is black, so that a black picture proves nothing.

@@ -54,9 +54,9 @@ class ShaderPass final : public CorrectionPass {
   // none was refused. Thread-safe.
   std::string drawFault() const;
 
-  // Returns the last reason why the pass could not compute a map's signal although it is on, for
-  // example that an output is larger than OpenGL's textures; empty: this has not happened. A reset
-  // of the GPU is not reported here (see GlContext::wasReset()). Thread-safe.
+  // Returns why the pass cannot compute a map's signal although it is on, for example that an
+  // output is larger than OpenGL's textures, while somebody still holds that map; empty: no map was
+  // refused. A reset of the GPU is not reported here (see GlContext::wasReset()). Thread-safe.
   std::string fault() const;
 
  private:
@@ -74,6 +74,11 @@ class ShaderPass final : public CorrectionPass {
     bool is_right = false;  // a picture that was not black was drawn there and read back correctly
     std::string fault{};    // why it was refused
   };
+  // A map for which no textures could be made.
+  struct Refused {
+    std::weak_ptr<const CorrectionMap> map;
+    std::string fault{};
+  };
   Result<Tables> makeTables(const std::shared_ptr<const CorrectionMap>& map) const;
   Result<Tables*> tablesOf(const std::shared_ptr<const CorrectionMap>& map);
   Tables* tablesUnlessRefused(const std::shared_ptr<const CorrectionMap>& map);
@@ -86,15 +91,14 @@ class ShaderPass final : public CorrectionPass {
               const CorrectionMap& map) const;
   void readRows(const gl::RenderTarget& target, const out::DrawPlace& place, int width,
                 std::span<const int> rows, std::span<std::uint8_t> signal);
-  void tellDrawFault();
+  void tellFaults();
 
   const gl::GlContext* context_ = nullptr;
   const gl::GlApi* gl_ = nullptr;  // null: off
   bool draws_ = false;
   GLuint program_ = 0, vertices_ = 0;
   std::list<Tables> tables_;
-  // Maps for which no textures could be made.
-  std::list<std::weak_ptr<const CorrectionMap>> refused_;
+  std::list<Refused> refused_;
   std::list<Lent> lent_;
   std::optional<gl::ReadBack> row_reader_;
   std::vector<std::uint8_t> row_pixels_;
