@@ -29,7 +29,8 @@ void checkName(const Settings& s, LoadedSettings& loaded) {
         fmt::format("is \"{}\"; allowed are 1 to 32 letters, digits, - and _", s.instance));
 }
 
-// The samples from another machine are encrypted, so the wall's input from it needs keys.
+// Checks /wall/input: the address must be valid, and keys are necessary, because the samples from
+// another machine are encrypted.
 void checkInput(const InputSettings& in, LoadedSettings& loaded) {
   if (in.endpoint.empty()) return;
   if (!parseTcpAddress(in.endpoint)) {
@@ -58,16 +59,17 @@ void checkProjectors(const DevicesSettings& d, LoadedSettings& loaded) {
     loaded.addFinding("/projector_schedule", fmt::format("needs {}", kProjectorsNeeded));
 }
 
-// As of a device without a driver; a name that is no action's was found while the file was read.
+// Adds a finding if the binding has no action. An unknown name of an action is reported when the
+// file is read, not here.
 void checkHasAction(const Binding& binding, const std::string& at, LoadedSettings& loaded) {
   if (!binding.action.empty() || loaded.lines.contains(at + "/action")) return;
   loaded.addFinding(at, fmt::format("has no action: name one in \"action\", one of {}",
                                     fmt::join(kActions, ", ")));
 }
 
-// Finds bindings without an action, or whose action could never have an effect. Walls on other
-// machines, which receive actions through /serve/samples_endpoint, may have the folder that this
-// wall lacks. The next content may be the next slide of a folder that somebody shows.
+// Finds bindings without an action, and actions that could never have an effect. The snapshot
+// folder and the operator's panel may be missing here if /serve/samples_endpoint is set, because
+// walls on other machines receive the actions through it and may have them.
 void checkBindings(const Settings& s, LoadedSettings& loaded) {
   addFaults(validate(s.devices.bindings), "/bindings", loaded);
   const bool other_walls = !s.serve.samples_endpoint.empty();
@@ -116,7 +118,9 @@ void checkStereo(const WallSettings& wall, LoadedSettings& loaded) {
   addFaults(of_outputs, "/wall/outputs", loaded);
 }
 
-// Computes the blend ramps that follow from where the screens are.
+// Computes the blend ramps of outputs with automatic blending from the positions of the screens.
+// Adds a finding if the stereo mode puts both eyes' pictures side by side or one above the other
+// into one output.
 void checkBlends(WallSettings& wall, LoadedSettings& loaded) {
   using render::stereo::StereoMode;
   const StereoMode mode = wall.stereo.mode;
@@ -134,8 +138,8 @@ void checkBlends(WallSettings& wall, LoadedSettings& loaded) {
   addFaults(fillBlends(wall.outputs, wall.tiles), "/wall/outputs", loaded);
 }
 
-// Makes the tiles of a wall that is described as a room. A wall whose room is at fault has no tiles
-// that others could be checked with.
+// Computes the tiles if a room is given, then checks the tiles, the blend ramps and stereo. Stops
+// after the first of these steps that has a fault, because the later ones need valid tiles.
 void checkTiles(LoadedSettings& loaded) {
   WallSettings& wall = loaded.settings.wall;
   if (wall.room.isGiven()) {
@@ -151,7 +155,8 @@ void checkTiles(LoadedSettings& loaded) {
   checkStereo(wall, loaded);
 }
 
-// Each entry names one of its kinds of file, and `merlin show` finds it by its name.
+// Checks that no content names more than one file, and that no two have the same name, by which
+// `merlin show` finds them.
 void checkContents(const WallSettings& wall, LoadedSettings& loaded) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < wall.contents.size(); ++i) {

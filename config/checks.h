@@ -1,12 +1,14 @@
-// Checks of settings beyond range and type, in particular of values that depend on each other.
+// Checks of settings beyond their type and range, in particular of settings that depend on each
+// other.
 #pragma once
 
 #include "config/loader.h"
 
 namespace merlin {
 
-// Adds a finding to `loaded` for each fault. Replaces the settings of the tiles by those of the
-// room, if one is given, and completes the devices (config/devices.h).
+// Adds a finding to `loaded` for each fault. Also completes the devices (config/devices.h),
+// replaces the tile settings by those computed from the room if a room is given, and computes
+// automatic blend ramps.
 void checkTogether(LoadedSettings& loaded);
 
 }  // namespace merlin

@@ -1,5 +1,5 @@
-// The only description of every setting: its key, range and meaning. The loader, the schema and
-// `merlind --print-config` are generated from it.
+// describe(): presents every setting with its key, range and meaning. The loader, the schema, the
+// manual page and `merlind --print-config` all use this only description.
 #include "config/describe_devices.h"
 #include "config/describe_page.h"
 #include "config/describe_wall.h"

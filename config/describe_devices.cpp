@@ -21,7 +21,7 @@ void describePerson(std::string& person, SettingsVisitor& v) {
          "the input of the others does not move what is shown (see /people/turn_s).");
 }
 
-// A device without a driver has an empty name of it.
+// Describes the setting "driver"; its value is empty if the file names no driver.
 void describeDriver(std::string& driver, SettingsVisitor& v) {
   static const std::vector<const char*> kNames = [] {
     std::vector<const char*> names;
@@ -62,8 +62,8 @@ void describeLine(LineSettings& line, SettingsVisitor& v) {
             "neither serial: nor pty:.");
 }
 
-// The settings of all drivers; only those of the device's own driver count. While no driver is
-// given, which is a fault of its own, each of them may be the right one.
+// Describes the settings of all drivers; only those of the device's own driver are allowed. If the
+// device has no driver, which is reported elsewhere, the settings of every driver are allowed.
 void describeOwn(DeviceSettings& d, SettingsVisitor& v) {
   for (const DriverEntry& entry : drivers()) {
     if (!entry.describe) {
@@ -149,7 +149,8 @@ void describeGestures(DevicesSettings& d, SettingsVisitor& v) {
          "that setting too.");
 }
 
-// Description of the setting action: lists all actions with the help text of each.
+// Returns the description of the setting "action", which lists all bindable actions with their help
+// texts.
 std::string actionsHelp() {
   std::string held, once;
   for (const CommandInfo& c : kCommands) {

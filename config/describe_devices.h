@@ -1,5 +1,6 @@
-// The parts of describe() that are about input: /devices, /hands, /postures, /bindings, /people,
-// /gpio, the projectors, and what concerns all devices.
+// The part of describe() (config/visitor.h) that covers input: /devices, /hands, /postures,
+// /gestures, /bindings, /people, /gpio, /projectors, /projector_schedule, /cpu_latency_us and
+// /script.
 #pragma once
 
 #include "config/settings.h"

@@ -1,4 +1,4 @@
-// The part of describe() that is /wall/outputs.
+// The part of describe() (config/visitor.h) that covers /wall/outputs.
 #pragma once
 
 #include <vector>

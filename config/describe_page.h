@@ -1,4 +1,5 @@
-// The parts of describe() that are /page, the operator's web page, and /alarms.
+// The parts of describe() (config/visitor.h) that cover /page (the operator's web page) and
+// /alarms.
 #pragma once
 
 #include "config/visitor.h"

@@ -1,4 +1,4 @@
-// The part of describe() that is /gpio.
+// The part of describe() (config/visitor.h) that covers /gpio, the control panel.
 #pragma once
 
 #include "config/visitor.h"

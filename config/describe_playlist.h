@@ -1,4 +1,4 @@
-// The part of describe() that is /wall/playlist.
+// The part of describe() (config/visitor.h) that covers /wall/playlist.
 #pragma once
 
 #include "config/visitor.h"

@@ -1,4 +1,4 @@
-// The part of describe() that is /projectors and /projector_schedule.
+// The part of describe() (config/visitor.h) that covers /projectors and /projector_schedule.
 #pragma once
 
 #include "config/settings.h"

@@ -1,4 +1,4 @@
-// The part of describe() that is the room: /wall/room.
+// The part of describe() (config/visitor.h) that covers /wall/room.
 #pragma once
 
 #include "config/visitor.h"

@@ -1,4 +1,4 @@
-// The parts of describe() that are /wall/scene and /wall/render.
+// The parts of describe() (config/visitor.h) that cover /wall/scene and /wall/render.
 #pragma once
 
 #include "config/visitor.h"

@@ -1,4 +1,4 @@
-// The part of describe() that is /wall/shown.
+// The part of describe() (config/visitor.h) that covers /wall/shown.
 #pragma once
 
 #include "config/visitor.h"

@@ -1,5 +1,5 @@
-// The part of describe() that covers stereo (/wall/stereo), and "view" and "camera", with which a
-// tile or a display shows another view than the wall's.
+// The parts of describe() (config/visitor.h) that cover /wall/stereo, and the settings "view" and
+// "camera", which give a tile or a display its own view of the model.
 #pragma once
 
 #include "config/visitor.h"
@@ -10,7 +10,8 @@ namespace merlin {
 
 void describeView(render::tiles::TileCamera& view, render::tiles::FreeCamera& camera,
                   SettingsVisitor& visitor);
-// `from_room`: a room is given, which determines the distance of each screen.
+// `from_room`: whether the configuration has a room, which then determines the distance of each
+// screen.
 void describeStereo(render::stereo::StereoSettings& stereo, bool from_room,
                     SettingsVisitor& visitor);
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kTileKinds[] = {"wall", "operator"};
 
-// What a room computes, if there is one.
+// Describes frame size and field of view, which are computed instead if a room is given.
 void describeFrame(render::tiles::TilesSettings& t, SettingsVisitor& v) {
   constexpr Range kFrame{16, render::tiles::kLargestFrame_px};
   v.integer("frame_width", t.frame_width, kFrame,

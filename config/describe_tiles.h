@@ -1,4 +1,4 @@
-// The part of describe() that is /wall/tiles.
+// The part of describe() (config/visitor.h) that covers /wall/tiles.
 #pragma once
 
 #include "config/visitor.h"
@@ -6,7 +6,8 @@
 
 namespace merlin {
 
-// `from_room`: a room is given, from which the frame and the tiles are computed.
+// `from_room`: whether the configuration has a room, from which the frame and the tiles are then
+// computed, so that their settings are not allowed.
 void describeTiles(render::tiles::TilesSettings& tiles, bool from_room, SettingsVisitor& visitor);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// The part of describe() that is /wall.
+// The part of describe() (config/visitor.h) that covers /wall.
 #pragma once
 
 #include "config/settings.h"

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kLongestName = 16;
 
-// Names in shared memory and of inputs that are no device's.
+// Names that no device or hand may have, because they are used otherwise in shared memory and in
+// the names of inputs.
 constexpr const char* kReserved[] = {"posture",
                                      "posture_state",
                                      "postures",
@@ -46,8 +47,8 @@ bool isName(const std::string& name) {
          });
 }
 
-// Whether there are no more devices and hands than merlind has places for; if not, a finding for
-// each excess.
+// Returns whether the numbers of devices, of devices of each kind and of hands are allowed; adds a
+// finding for each number that is too large.
 bool checkNumbers(const DevicesSettings& d, LoadedSettings& loaded) {
   const auto check = [&](const char* at, const std::string& what, std::size_t n, std::size_t most) {
     if (n <= most) return true;
@@ -70,7 +71,8 @@ bool checkNumbers(const DevicesSettings& d, LoadedSettings& loaded) {
   return check("/hands", "hands", d.hands.size(), kMostHands) && good;
 }
 
-// The names that are taken, each with the rest of a sentence "is NAME, ..." that says by what.
+// Maps each name in use to its owner, as a text that continues the sentence "is NAME, ...", such as
+// "the name of the hand at /hands/0".
 using TakenNames = std::map<std::string, std::string>;
 
 void takeName(const std::string& name, const std::string& at, const std::string& owner,
@@ -87,7 +89,8 @@ void takeName(const std::string& name, const std::string& at, const std::string&
                       fmt::format("is \"{}\", {}; give it another name", name, first->second));
 }
 
-// A tracker takes the names of its stations in shared memory as well.
+// Adds the names of a tracker's stations in shared memory ("tracker1") to `taken`; adds a finding
+// for each name that is in use already.
 void takeStations(const std::string& name, const std::string& at, TakenNames& taken,
                   LoadedSettings& loaded) {
   for (std::size_t station = 1; station <= kStations; ++station) {
@@ -120,7 +123,8 @@ void checkNames(const DevicesSettings& d, LoadedSettings& loaded) {
   }
 }
 
-// Whether both are devices of one server, which gives each reader a connection of its own.
+// Returns whether both devices may be read at the same port, because it is that of a server that
+// accepts a connection from each of them.
 bool shareServer(const DeviceSettings& a, const DeviceSettings& b, const PortAddress& port) {
   const auto shares = [](const DeviceSettings& device) {
     const DriverEntry* const driver = findDriver(device.line.driver);
@@ -129,8 +133,9 @@ bool shareServer(const DeviceSettings& a, const DeviceSettings& b, const PortAdd
   return port.kind == PortKind::kTcp && shares(a) && shares(b);
 }
 
-// Two drivers on one serial line would each read only a part of the device's bytes. Two paths of
-// one device are found where files may be read: daemon/devices/device_checks.
+// Adds a finding for each port that two devices share, because each driver would read only a part
+// of the bytes. Different paths of one device file are detected in daemon/devices/device_checks,
+// which may read files.
 void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
   std::vector<std::pair<PortAddress, std::size_t>> taken;
   for (std::size_t i = 0; i < d.list.size(); ++i) {
@@ -154,7 +159,8 @@ void checkPortsDiffer(const DevicesSettings& d, LoadedSettings& loaded) {
   }
 }
 
-// A device that is read from MERLIN's own socket would feed itself.
+// Adds a finding if the device is to be read from merlind's own spnav socket, because merlind would
+// read its own output.
 void checkOwnSocket(const DeviceSettings& device, const std::string& at, LoadedSettings& loaded) {
   const std::string& own = loaded.settings.serve.spnav_socket;
   if (own.empty() || device.line.port != "unix:" + own) return;
@@ -165,7 +171,8 @@ void checkOwnSocket(const DeviceSettings& device, const std::string& at, LoadedS
                                 own));
 }
 
-// The same of a device that is read from MERLIN's own VRPN server.
+// Adds a finding if the device is to be read from merlind's own VRPN server, because merlind would
+// read its own output.
 void checkOwnVrpn(const DeviceSettings& device, const std::string& at, LoadedSettings& loaded) {
   const auto port = parsePort(device.line.port);
   const bool of_vrpn = device.line.driver == "vrpn" || device.line.driver == "vrpn_pad";
@@ -200,8 +207,9 @@ std::string namesOf(const DevicesSettings& d, SampleKind kind) {
   return names;
 }
 
-// `at`: of a setting that names a device of the kind; empty: none in particular. On a wall that
-// uses the devices of another machine, the name is of that machine's configuration.
+// Adds a finding if no device of the kind has the name `name`; an empty name is always valid. `at`:
+// pointer of the setting that contains the name. On a wall that uses the devices of another
+// machine, nothing is checked, because those devices are not in this configuration.
 void checkNamed(const std::string& name, SampleKind kind, const std::string& at,
                 LoadedSettings& loaded) {
   const Settings& s = loaded.settings;
@@ -218,7 +226,8 @@ SampleKind kindOf(const actions::Input& input) {
   return input.kind == actions::Input::Kind::kPinch ? SampleKind::kTouch : SampleKind::kGlove;
 }
 
-// A gesture of a hand that is not there, or whose gestures are not recognised.
+// Adds a finding if there is no hand of that name, or if its gestures are not recognised. `text`:
+// the input, as the binding names it.
 void checkGesture(const std::string& text, const std::string& hand, const std::string& at,
                   LoadedSettings& loaded) {
   const std::vector<HandSettings>& hands = loaded.settings.devices.hands;
@@ -238,7 +247,8 @@ void checkGesture(const std::string& text, const std::string& hand, const std::s
                                     excerpt(text), flag));
 }
 
-// A key of a device that is not there, or whose driver knows no keys by name.
+// Adds a finding if no device with the name `name` has a driver that names keys. `text`: the input,
+// as the binding names it.
 void checkKey(const std::string& text, const std::string& name, const std::string& at,
               LoadedSettings& loaded) {
   std::string there, known;
@@ -261,8 +271,9 @@ void checkKey(const std::string& text, const std::string& name, const std::strin
                       there.empty() ? "none: leave the binding out, or add one" : there));
 }
 
-// An input of a device that is not there, or of another kind. An input that names no device is that
-// of any device; what is no input is a finding of the bindings' own check.
+// Adds a finding if the input names a device that does not exist or is of another kind. An input
+// without a device is valid for any device. Texts that are not inputs are reported by the check of
+// the bindings, not here.
 void checkInputAt(const std::string& text, const std::string& at, LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
   const auto input = actions::parseInput(text);
@@ -289,13 +300,13 @@ void checkInputs(LoadedSettings& loaded) {
   }
 }
 
-// The tracker's name if the text is empty: that of the first one.
+// Returns the name of the tracker that `name` means: the first tracker if it is empty.
 std::string trackerNamed(const DevicesSettings& d, const std::string& name) {
   const DeviceSettings* const first = findDevice(d, SampleKind::kTracker, name);
   return first ? first->name : name;
 }
 
-// A glove is worn on one hand.
+// Checks that the gloves of the hands exist, and that no glove is on two hands.
 void checkGloves(LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
   std::map<const DeviceSettings*, std::size_t> worn;
@@ -313,7 +324,8 @@ void checkGloves(LoadedSettings& loaded) {
   }
 }
 
-// Buttons are in one hand.
+// Checks that the devices in the hands' setting "buttons" exist, that no device is in two hands,
+// and that device and hand belong to the same person.
 void checkButtons(LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
   std::map<std::string, std::size_t> held;
@@ -327,7 +339,8 @@ void checkButtons(LoadedSettings& loaded) {
           handAt(i) + "/buttons",
           fmt::format("is \"{}\", whose buttons the hand at {} holds; a device is in one hand",
                       excerpt(buttons), handAt(first->second)));
-    // Else its buttons would take the wall for one person, and the hand of another might not act.
+    // With different persons, the buttons would reserve the wall for one person, and the hand of
+    // the other could not act.
     const DeviceSettings* const device = findDevice(d, SampleKind::kBall, buttons);
     if (device && device->person != d.hands[i].person)
       loaded.addFinding(
@@ -338,7 +351,8 @@ void checkButtons(LoadedSettings& loaded) {
   }
 }
 
-// A station whose poses cannot come: a hand there would never be seen.
+// Adds a finding if the tracker's driver never reports poses of this station, so that whatever
+// wears it would never be seen.
 void checkStationComes(const std::string& tracker, int station, const std::string& at,
                        LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
@@ -354,7 +368,8 @@ void checkStationComes(const std::string& tracker, int station, const std::strin
                   driver->name));
 }
 
-// The stations that are worn: each by one hand, or by the head.
+// Checks that the stations on the hands and on the head can report poses, and that no station is
+// worn twice.
 void checkStations(LoadedSettings& loaded) {
   const DevicesSettings& d = loaded.settings.devices;
   const auto& head = loaded.settings.wall.stereo.head;

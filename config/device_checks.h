@@ -1,5 +1,5 @@
-// Checks of /devices and /hands, and of other settings that name a device: bindings, the viewer's
-// head.
+// Checks of /devices and /hands, and of other settings that name a device (the bindings and the
+// tracker of the viewer's head).
 #pragma once
 
 #include "config/loader.h"
@@ -9,12 +9,12 @@ namespace merlin {
 // Adds a finding to `loaded` for each fault. REQUIRES: completeDevices().
 void checkDevices(LoadedSettings& loaded);
 
-// Whether the port is merlind's own VRPN server (/serve/vrpn_port), so that a device that is read
-// there would feed itself. Compares the address as it is written; host names are not resolved.
+// Returns whether the port is merlind's own VRPN server (/serve/vrpn_port); merlind would then read
+// its own output as input. Compares the address as it is written; host names are not resolved.
 bool isOwnVrpnServer(const PortAddress& port, const ServeSettings& serve);
 
-// Adds the faults as findings. `group`: JSON pointer to which the faults' pointers are relative.
-// `prefix`: precedes texts of faults that are not predicates, "cannot be used: ".
+// Adds each fault to `loaded` as a finding. `group`: JSON pointer to which the faults' pointers are
+// relative. `prefix`: put before the text of each fault, such as "cannot be used: ".
 void addFaults(const SettingFaults& faults, const std::string& group, LoadedSettings& loaded,
                const std::string& prefix = {});
 

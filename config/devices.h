@@ -1,4 +1,4 @@
-// Completes what a configuration leaves to the drivers, names and speeds of devices, and finds
+// Completes the names and speeds of devices that a configuration leaves to the drivers, and finds
 // devices.
 #pragma once
 
@@ -6,12 +6,12 @@
 
 namespace merlin {
 
-// Gives each device whose driver is known a name (that of its kind), if it has none, and the
-// driver's usual speed, if its own is 0. Reentrant.
+// Completes each device that has a known driver: an empty name becomes the name of the device's
+// kind ("glove"), and the baud rate 0 becomes the usual rate of the driver. Reentrant.
 void completeDevices(std::vector<DeviceSettings>& devices);
 
-// The first device of the kind; null if there is none. `name`: only the one with this name; empty:
-// any.
+// Returns the first device of the kind that has the name `name`, or any name if `name` is empty;
+// null if there is none. The pointer is into `devices`.
 const DeviceSettings* findDevice(const DevicesSettings& devices, SampleKind kind,
                                  const std::string& name);
 

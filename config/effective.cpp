@@ -13,9 +13,11 @@ namespace merlin {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Values = std::vector<std::pair<std::string, std::string>>;  // pointer, JSON text
+using Values =
+    std::vector<std::pair<std::string, std::string>>;  // pairs of JSON pointer and JSON text
 
-// A visitor for which only some kinds of settings matter.
+// A visitor that ignores all kinds of settings; derived classes override only the functions for the
+// kinds that they need.
 class QuietVisitor : public SettingsVisitor {
  public:
   void number(const char*, double&, Range, const char*) override {}
@@ -42,7 +44,8 @@ class SecretFiles final : public QuietVisitor {
   std::vector<std::string> names;
 };
 
-// Gives every list as many entries as it has in written settings.
+// Resizes every list of the visited settings to its number of entries in other settings, given as
+// JSON.
 class ListLengths final : public QuietVisitor {
  public:
   explicit ListLengths(const Json& written) : at_(&written) {}
@@ -68,7 +71,8 @@ class ListLengths final : public QuietVisitor {
     members();
     at_ = outer;
   }
-  const Json* at_;  // null: the written settings have no such object
+  // Current object of the JSON; null: the JSON has no such object.
+  const Json* at_;
 };
 
 void flatten(const Json& json, const std::string& pointer, Values& out) {

@@ -32,15 +32,15 @@ std::string movedText(std::string_view is, const MovedSetting& moved) {
       moved.now);
 }
 
-// Reads the settings from a JSON tree and reports keys that no setting has as unknown.
+// Reads the settings from a JSON tree, and adds a finding for each key that is not a setting.
 class Loader final : public SettingsVisitor {
  public:
   Loader(const JsonNode& root, std::string folder, LoadedSettings& loaded)
       : folder_(std::move(folder)), loaded_(loaded) {
     enter(&root, "");
   }
-  // Reports the unknown keys of the file's root. To be called after describe(). Not done by the
-  // destructor, because that must not throw.
+  // Reports the unknown keys of the file's root. To be called after describe(); not in the
+  // destructor, because it may throw.
   void finish() { leave(); }
   ~Loader() override = default;
   Loader(const Loader&) = delete;
@@ -91,7 +91,7 @@ class Loader final : public SettingsVisitor {
   void choice(const char* key, int& value, std::span<const char* const> names,
               const char*) override {
     const std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
-    // In quotes for whoever wrote the number 180 instead of "180".
+    // The names are in quotes to help people who wrote the number 180 instead of "180".
     const JsonNode* node = take(key, JsonNode::Kind::kString,
                                 fmt::format("one of \"{}\"", fmt::join(names, "\", \"")));
     if (!node) return;
@@ -191,8 +191,9 @@ class Loader final : public SettingsVisitor {
   }
 
   std::string suggestion(const std::string& key, const std::vector<std::string>& known) const {
-    if (loaded_.left_out > 0) return {};  // this finding is only counted, not kept
-    constexpr std::size_t kLongest = 64;  // the comparison is quadratic in the key's length
+    if (loaded_.left_out > 0) return {};  // the new finding will only be counted, not kept
+    // Limits the cost of nearestWord(), which is quadratic in the key's length.
+    constexpr std::size_t kLongest = 64;
     const std::string near = key.size() > kLongest ? "" : nearestWord(key, known);
     return near.empty() ? fmt::format("known here are {}", fmt::join(known, ", "))
                         : fmt::format("did you mean \"{}\"?", near);
@@ -205,8 +206,8 @@ class Loader final : public SettingsVisitor {
     return nullptr;
   }
 
-  // Returns the value of `key`; null if the key is missing, or, after adding a finding, if the
-  // value is of another kind or contains NUL.
+  // Returns the value of `key`, or null if the key is missing. If the value is of another kind or
+  // contains NUL, adds a finding and returns null.
   const JsonNode* take(const char* key, JsonNode::Kind kind, std::string_view allowed) {
     Level& level = levels_.back();
     level.known.emplace_back(key);

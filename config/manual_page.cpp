@@ -15,8 +15,8 @@ namespace {
 using manual::roffBold;
 using manual::roffText;
 
-// A section for each object of the configuration: its settings, and then those of the objects in
-// it.
+// Writes a section for each object of the configuration. The section of an object precedes those of
+// the objects in it.
 class ManualWriter final : public SettingsVisitor {
  public:
   void number(const char* key, double& value, Range range, const char* help) override {
@@ -65,7 +65,7 @@ class ManualWriter final : public SettingsVisitor {
   void list(const char* key, std::size_t count, const char* help,
             const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& member) override {
-    resize(1);  // as SchemaWriter
+    resize(1);  // describes an entry with default values
     within(std::string(key) + "/0", std::string("List of objects. ") + help, [&] { member(0); });
     resize(count);
   }
@@ -78,7 +78,8 @@ class ManualWriter final : public SettingsVisitor {
   }
 
  private:
-  // As the schema has it: a value that was a float is not shown with the digits of a double.
+  // Formats a number as in the schema: a value that was stored in a float gets only the digits that
+  // a float needs, 0.1 instead of 0.10000000149.
   static std::string shortest(double value) {
     const auto narrow = static_cast<float>(value);
     return static_cast<double>(narrow) == value ? fmt::format("{}", narrow)

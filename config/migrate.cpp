@@ -14,14 +14,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Notes = std::vector<std::string>;
 
-// Whether `object` is a JSON object whose member `key` is a string that is not empty.
+// Returns whether `object` is a JSON object whose member `key` is a non-empty string.
 bool hasText(const Json& object, const char* key) {
   const auto found = object.find(key);
   return object.is_object() && found != object.end() && found->is_string() &&
          !found->get_ref<const std::string&>().empty();
 }
 
-// Earlier versions had the group /wall/png; it becomes an output of kind png in /wall/outputs.
+// Converts the group /wall/png of earlier versions to an output of kind png in /wall/outputs; a
+// group without a path is removed. Errors: kInvalidArgument (the file has /wall/outputs too).
 Result<bool> movePng(Json& root, Notes&) {
   const auto wall = root.find("wall");
   if (wall == root.end() || !wall->is_object() || !wall->contains("png")) return false;
@@ -48,8 +49,8 @@ Result<Json*> groupOf(Json& parent, const char* key, const char* pointer) {
   return &group;
 }
 
-// Removes /wall/scene/KEY, and the scene if it is empty then, and returns the value; null if there
-// is none.
+// Removes /wall/scene/KEY and returns its value; null if it does not exist. Also removes
+// /wall/scene if it is empty afterwards.
 Json takeOfScene(Json& root, const char* key) {
   const auto wall = root.find("wall");
   if (wall == root.end() || !wall->is_object() || !wall->contains("scene")) return nullptr;
@@ -71,8 +72,8 @@ bool hasPanel(const Json& devices) {
   return gpio != devices.end() && hasText(*gpio, "chip");
 }
 
-// /wall/scene/bindings became /devices/bindings. The panel's button needed no binding in earlier
-// versions, where its default action was next_mode; it gets this binding now.
+// Moves /wall/scene/bindings to /devices/bindings. In earlier versions the button of the panel
+// needed no binding for its default action next_mode, so a file with a panel gets this binding.
 Result<bool> moveBindings(Json& root, Notes&) {
   Json bindings = takeOfScene(root, "bindings");
   if (bindings.is_null()) return false;
@@ -96,7 +97,7 @@ Result<bool> moveButton(Json& root, Notes&) {
   const Json command = gpio["button_command"];
   gpio.erase("button_command");
   Json& bindings = (*devices)["bindings"];
-  if (bindings.is_null()) {  // the default bindings of that version
+  if (bindings.is_null()) {  // the file had the default bindings of that version
     bindings = Json::array({{{"input", "posture.fist"}, {"action", "grab"}},
                             {{"input", "ball.button.1"}, {"action", "reset_view"}},
                             {{"input", "ball.button.2"}, {"action", "next_mode"}}});
@@ -129,8 +130,8 @@ Result<bool> moveStaleAfter(Json& root, Notes&) {
   return true;
 }
 
-// Earlier versions waited for /wall/scene/posture_hold_s and /devices/posture_hold_s, that is, for
-// the longer of them: this time becomes /devices/posture_hold_s.
+// Replaces /wall/scene/posture_hold_s and /devices/posture_hold_s by the longer of the two times,
+// as /devices/posture_hold_s, because earlier versions waited for both.
 Result<bool> movePostureHold(Json& root, Notes&) {
   const Json hold = takeOfScene(root, "posture_hold_s");
   if (hold.is_null()) return false;
@@ -138,7 +139,7 @@ Result<bool> movePostureHold(Json& root, Notes&) {
   if (!devices) return devices.error();
   constexpr double kDefault_s = 0.15;
   const Json own = (*devices)->value("posture_hold_s", Json(kDefault_s));
-  // What is not a number stays, so that the check of the file reports it.
+  // A value that is not a number is kept, so that the loader reports it.
   if (!hold.is_number() || (own.is_number() && hold.get<double>() > own.get<double>()))
     (**devices)["posture_hold_s"] = hold;
   return true;
@@ -146,12 +147,13 @@ Result<bool> movePostureHold(Json& root, Notes&) {
 
 struct Step {
   MovedSetting moved;
-  // Returns whether it changed `root`; adds what else is to be said to `notes`.
+  // Returns whether it changed `root`; adds sentences about further changes to `notes`.
   Result<bool> (*rewrite)(Json& root, Notes& notes);
 };
 
-// In the order in which the versions made these changes. `now` is the place in this version; a step
-// may write to the place of its own version, from which a later one moves it on.
+// The steps, in the order in which the versions made these changes. The text of each names the
+// place of the setting in this version; a step may write it to an intermediate place, from which a
+// later step moves it.
 constexpr Step kSteps[] = {
     {{"/wall/png", "an entry {\"kind\": \"png\", \"path\": ...} of /wall/outputs replaces it"},
      movePng},
@@ -179,7 +181,8 @@ const MovedSetting* findMoved(std::string_view pointer) {
 }
 
 Result<Migration> migrate(std::string_view json) {
-  if (const auto tree = parseJson(json); !tree) return tree.error();  // stricter than Json::parse()
+  // parseJson() is stricter than Json::parse(): it also reports the line of an error.
+  if (const auto tree = parseJson(json); !tree) return tree.error();
   Json root = Json::parse(json, nullptr, false);
   if (!root.is_object()) return Error{Errc::kMalformed, "line 1: is not a JSON object"};
   Migration migration;

@@ -9,7 +9,7 @@
 
 namespace merlin {
 
-// A setting that an earlier version had elsewhere, or in another form.
+// A setting that an earlier version had at another pointer, or in another form.
 struct MovedSetting {
   const char* pointer;  // JSON pointer of the setting in the earlier version
   const char* now;      // its replacement in this version, as a clause for messages
@@ -20,13 +20,13 @@ struct MovedSetting {
 const MovedSetting* findMoved(std::string_view pointer);
 
 struct Migration {
-  std::string text;                  // the file in the form of this version
-  std::vector<std::string> changes;  // one sentence per change; empty: the file needed none
+  std::string text;                  // the configuration in the form of this version
+  std::vector<std::string> changes;  // one sentence per change; empty: no change was necessary
 };
 
 // Rewrites the settings that earlier versions had elsewhere or in another form; all other settings
 // and their order are kept. Errors: kMalformed (not a JSON object; with the line), kInvalidArgument
-// (the file has a setting in its old and its new form, or a group is not an object).
+// (the file contains a setting both in its old and in its new form, or a group is not an object).
 Result<Migration> migrate(std::string_view json);
 
 }  // namespace merlin

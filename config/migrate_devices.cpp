@@ -14,10 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Notes = std::vector<std::string>;
 
-// One of the three devices of an earlier version. The settings of `driver` stood in the device's
-// object itself, those of `others` in groups of it.
+// One of the three devices of an earlier version. The settings of `driver` were in the device's
+// object itself, those of the drivers `others` in groups inside it.
 struct FormerDevice {
-  const char* key;  // also the device's name now
+  const char* key;  // key in /devices, and the device's name in the list
   const char* driver;
   std::span<const char* const> others;
 };
@@ -29,7 +29,7 @@ constexpr FormerDevice kFormerDevices[] = {{"glove", "cyberglove", {}},
                                            {"ball", "spaceball", kOtherBalls}};
 constexpr const char* kLineKeys[] = {"port", "baud", "max_bytes_s"};
 
-// Settings of /devices that have another place or name now.
+// A setting that moved from /devices/WAS to /GROUP/NOW.
 struct MovedKey {
   const char* was;
   const char* group;
@@ -40,7 +40,7 @@ constexpr MovedKey kMovedKeys[] = {
     {"posture_leave_s", "postures", "leave_s"}, {"posture_margin", "postures", "margin"},
     {"posture_drift", "postures", "drift"},     {"stale_after_s", "people", "stale_after_s"}};
 
-// Those that only moved to the root, in the order of written files.
+// Settings of /devices that moved to the root without a change, in the order of written files.
 constexpr const char* kKeptKeys[] = {"bindings",           "people",         "gpio",  "projectors",
                                      "projector_schedule", "cpu_latency_us", "script"};
 
@@ -58,7 +58,8 @@ std::string keysOf(const Json& object) {
   return keys;
 }
 
-// The settings of each driver in the object of a device, by the driver's name.
+// Returns the drivers' settings in the object of a device, as an object of groups with the drivers'
+// names.
 Json ownSettings(const FormerDevice& former, const Json& old) {
   Json own = Json::object();
   for (const auto& [key, value] : old.items()) {
@@ -76,7 +77,7 @@ Json entryOf(const FormerDevice& former, const Json& old, Notes& notes) {
   for (const char* const key : kLineKeys) {
     if (old.contains(key)) entry[key] = old[key];
   }
-  // A driver that does not exist stays with all settings, so that the check of the file reports it.
+  // An unknown driver is kept with all settings, so that the loader reports it.
   const std::string driver =
       entry["driver"].is_string() ? entry["driver"].get<std::string>() : std::string();
   const bool known = findDriver(driver) != nullptr;
@@ -94,7 +95,8 @@ Json entryOf(const FormerDevice& former, const Json& old, Notes& notes) {
   return entry;
 }
 
-// Nothing if the file has none of the devices: then it has the default ones, now as before.
+// Returns the list of devices; an empty list if the file names none, because it then has the
+// default devices, in this version too.
 Result<Json> deviceList(const Json& old, Notes& notes) {
   Json list = Json::array();
   std::string missing;
@@ -117,7 +119,7 @@ Result<Json> deviceList(const Json& old, Notes& notes) {
   return list;
 }
 
-// The settings that take the place of the object `old`, in the order of written files.
+// Returns the settings that replace the object `old`, in the order of written files.
 Result<Json> replacement(const Json& old, Notes& notes) {
   auto list = deviceList(old, notes);
   if (!list) return list.error();
@@ -139,7 +141,7 @@ Result<Json> replacement(const Json& old, Notes& notes) {
     if (old.contains(key)) now[key] = old[key];
     move(key);
   }
-  // What no version knew stays, so that the check of the file reports it.
+  // Unknown settings are kept, so that the loader reports them.
   for (const auto& [key, value] : old.items()) {
     const bool moved =
         key == "hand" || contains(kKeptKeys, key) ||

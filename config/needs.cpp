@@ -15,7 +15,7 @@ namespace {
 
 struct Need {
   const char* setting;
-  std::vector<const char*> any_of;  // one of these has to be set
+  std::vector<const char*> any_of;  // `setting` has an effect only if one of these is set
 };
 
 const std::vector<Need>& needs() {
@@ -56,8 +56,8 @@ const std::vector<Need>& needs() {
   return kNeeds;
 }
 
-// Pointers of the settings that the table names and that have another value than the default.
-// Settings that are not in the file are not looked at, which most of them are not.
+// Returns the pointers of all settings with a value other than the default. As an optimisation,
+// returns an empty set if the files contain none of the settings in the table.
 std::set<std::string> setOnes(const LoadedSettings& loaded) {
   std::set<std::string> set;
   const bool any = std::ranges::any_of(
@@ -79,7 +79,8 @@ void checkTable(LoadedSettings& loaded) {
   }
 }
 
-// The driver's usual speed is in every written configuration.
+// Adds a finding if a baud rate is set although the port is not a serial line. The driver's usual
+// rate is no finding, because written configurations always contain it.
 void checkSpeed(const LineSettings& line, const std::string& at, LoadedSettings& loaded) {
   const auto port = parsePort(line.port);
   if (!port || !loaded.lines.contains(at)) return;
@@ -106,7 +107,8 @@ void checkOutput(const render::out::OutputSettings& output, const std::string& a
         fmt::format("has no effect without a mesh: {}/correction/mesh has no points", at));
 }
 
-// Only a doubt: walls have run with it.
+// Warns of a setting that has no effect. It does not make the configuration invalid, because
+// earlier versions accepted it.
 void checkEyeSize(const render::stereo::StereoSettings& stereo, LoadedSettings& loaded) {
   using render::stereo::StereoMode;
   const bool one_each =

@@ -5,8 +5,9 @@
 
 namespace merlin {
 
-// Adds a finding for each setting that the configuration sets to a value other than the default,
-// without another setting that it needs. REQUIRES: the devices are complete (config/devices.h).
+// Adds a finding for each setting that has a value other than the default but no effect, because
+// the setting that it depends on is not set. REQUIRES: completeDevices() (config/devices.h) was
+// called.
 void checkNeeds(LoadedSettings& loaded);
 
 }  // namespace merlin

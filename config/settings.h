@@ -26,16 +26,17 @@
 
 namespace merlin {
 
-// A device that is read: how it is reached, and what its driver is told.
+// A device that is read: its port, its driver and the settings of the driver.
 struct DeviceSettings {
-  std::string name;    // unique; used for its slots in shared memory, in the status and in bindings
-  std::string person;  // whose it is; devices of one person act on the wall at the same time
+  std::string name;  // unique; used for its slots in shared memory, in the status and in bindings
+  // The person who uses the device; all devices of one person may act on the wall together.
+  std::string person;
   LineSettings line;
-  DriverSettings own;  // settings of all drivers; line.driver uses its own part
+  DriverSettings own;  // settings of all drivers; only those of line.driver are used
 };
 
-// Returns "glove", "tracker" and "ball", with the drivers cyberglove, fastrak and spaceball and
-// without ports.
+// Returns the devices of a configuration without /devices: "glove", "tracker" and "ball", with the
+// drivers cyberglove, fastrak and spaceball and without ports.
 std::vector<DeviceSettings> defaultDevices();
 
 struct DevicesSettings {
@@ -43,37 +44,39 @@ struct DevicesSettings {
   std::vector<HandSettings> hands = {{}};
   GpioSettings gpio;
   std::vector<PjlinkSettings> projectors;
-  std::vector<SwitchingTimes> projector_schedule;  // also for projectors at gpio.projector_line
+  // Also for the projectors that gpio.projector_line switches.
+  std::vector<SwitchingTimes> projector_schedule;
   std::string postures;  // file of the posture network; empty: no posture is recognised
   nn::HoldSettings posture_hold;
   bool posture_drift = true;  // whether slow drift of the glove's sensors is followed
   std::string gestures;       // file of trained gestures; empty: no gesture is recognised
   std::vector<Binding> bindings = defaultBindings();
-  // Time after which the buttons and postures of a device that has stopped working count as
+  // Time [s] after which the buttons and postures of a device that has stopped working count as
   // released.
   double stale_after_s = 0.5;
-  // Several people: while one of them acts on the wall, and this long after, the others' input does
-  // not move what is shown.
+  // With several people: while one person acts on the wall, and for this time [s] afterwards, the
+  // input of other people does not move what is shown.
   double turn_s = 3;
-  // Maximum wake-up latency of idle cores, for the whole machine [us]; -1: the system's setting.
+  // Maximum wake-up latency of idle CPU cores, for the whole machine [us]; -1: unchanged from the
+  // system's setting.
   int cpu_latency_us = -1;
   std::string script = "visit";  // what the emulated person does, with --emulate
 };
 
-// For messages, after "has no" or "needs": what is missing in a configuration without projectors.
+// The end of messages about a configuration without projectors, after "needs" or "has no".
 inline constexpr const char* kProjectorsNeeded =
     "projectors: /projectors is empty, and /gpio has no chip with a projector_line";
 
 // Another machine whose devices the wall uses instead of this machine's.
 struct InputSettings {
   std::string endpoint;    // "tcp://HOST:PORT" of another merlind; empty: use this machine's
-  std::string server_key;  // that merlind's public key
+  std::string server_key;  // public key of that merlind
   std::string keys;        // file with this machine's key pair
 };
 
-// A content: exactly one of `model`, `picture` and `slides` is set.
+// A content of the wall. At most one of `model`, `picture` and `slides` is set.
 struct ContentSettings {
-  std::string name;     // empty: the file's name without its ending
+  std::string name;     // empty: the name of the file without its ending
   std::string model;    // an .mrm file
   std::string picture;  // a pyramid, as `merlin image import` makes it
   std::string slides;   // a folder of pyramids
@@ -82,7 +85,8 @@ struct ContentSettings {
 
 struct WallSettings {
   InputSettings input;
-  std::string model;                      // an .mrm file, shown first; empty: contents[0] is first
+  // An .mrm file, shown first. Empty: contents[0] is shown first.
+  std::string model;
   std::vector<ContentSettings> contents;  // further contents, shown in turn by next_content
   PlaylistSettings playlist;
   ShownSettings shown;
@@ -99,13 +103,14 @@ struct WallSettings {
 };
 
 struct Settings {
-  // Part of the names of shared memory and sockets: distinguishes daemons on one machine.
+  // Name of the daemon. It is part of the names of shared memory and sockets, and so distinguishes
+  // several daemons on one machine.
   std::string instance = "merlin";
-  // Folder for sockets and the emulators' pseudo-terminals; empty: /run/merlin for root, the user's
-  // own run directory for others.
+  // Folder for sockets and the emulators' pseudo-terminals. Empty: the folder that systemd sets,
+  // otherwise /run/merlin for root, and $XDG_RUNTIME_DIR/merlin or /tmp/merlin-UID for other users.
   std::string run_directory;
-  // File for settings that people change at run time; empty: one in systemd's or the user's folder
-  // for state.
+  // File in which merlind keeps what people change at run time, such as the alignment. Empty:
+  // INSTANCE.state.json in the state folder of systemd or, without one, of the user.
   std::string state_file;
   DevicesSettings devices;
   WallSettings wall;

@@ -26,7 +26,7 @@ void moveLines(JsonNode& node, int by) {
   }
 }
 
-// A finding about a file as a whole.
+// Adds a finding about a file as a whole, such as that it cannot be read.
 void addFault(const std::string& file, const Error& error, LoadedSettings& loaded) {
   std::string what = error.what;
   if (what.starts_with(file + ": ")) what = what.substr(file.size() + 2);
@@ -35,7 +35,8 @@ void addFault(const std::string& file, const Error& error, LoadedSettings& loade
   loaded.add(std::move(finding));
 }
 
-// Names of conf.d in the folder of the configuration, in their order.
+// Returns the paths of the files conf.d/*.json beside the configuration `path`, sorted; adds a
+// finding if the folder cannot be read or has too many files.
 std::vector<std::string> confDFiles(const std::string& path, LoadedSettings& loaded) {
   const fs::path folder = fs::path(path).parent_path() / "conf.d";
   std::vector<std::string> files;
@@ -71,7 +72,7 @@ std::optional<JsonNode> parseSource(std::string_view text, const std::string& fi
   loaded.sources.push_back({file, before, before + linesIn(text)});
   auto tree = parseJson(text);
   if (!tree) {
-    std::string what = tree.error().what;  // "line N: ..."
+    std::string what = tree.error().what;  // has the form "line N: ..."
     int line = 0;
     if (const auto colon = what.find(": "); colon != std::string::npos) {
       line = std::atoi(what.c_str() + 5);

@@ -1,5 +1,5 @@
-// The files of a configuration: the one that merlind is given, and those of the folder conf.d
-// beside it, which are merged over it.
+// Reads and merges the files of a configuration: the file that merlind is given, and the files of
+// the folder conf.d beside it, whose settings take precedence.
 #pragma once
 
 #include <optional>
@@ -15,19 +15,21 @@ namespace merlin {
 // kMostJsonBytes, like a single one.
 inline constexpr std::size_t kMostConfDFiles = 64;
 
-// Parses the text of a file, which must be a JSON object; `file` is its name, empty for a text
-// without one. Line numbers in the tree continue those of the files before. An error becomes a
-// finding of `loaded`; then nothing is returned.
+// Parses the text of a file, which must be a JSON object, and appends the file to loaded.sources.
+// `file`: name of the file; empty for the configuration itself and for a text without a file. Line
+// numbers in the tree continue those of the files before. If the text is invalid, adds a finding to
+// `loaded` and returns nothing.
 std::optional<JsonNode> parseSource(std::string_view text, const std::string& file,
                                     LoadedSettings& loaded);
 
 // Reads the file at `path` and conf.d/*.json in its folder, in the order of their names, and merges
-// each over those before: objects by key, everything else replaces what was there. Files whose
-// names begin with a dot are not read. Faults of all files become findings of `loaded`; then
-// nothing is returned. Cost: O(files' bytes).
+// each over those before: objects are merged by key; any other value, lists included, replaces the
+// former one. Files whose names begin with a dot are not read. If any file has a fault, adds
+// findings to `loaded` and returns nothing. Cost: O(files' bytes).
 std::optional<JsonNode> readSources(const std::string& path, LoadedSettings& loaded);
 
-// Merges `over` into `base`, both objects.
+// Merges `over` into `base`: objects by key; any other value of `over` replaces that of `base`.
+// REQUIRES: both are objects.
 void mergeOver(JsonNode& base, JsonNode over);
 
 }  // namespace merlin

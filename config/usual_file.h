@@ -1,4 +1,4 @@
-// Where the configuration is, if nobody says where.
+// The path of the configuration that merlin and merlind use if none is given.
 #pragma once
 
 namespace merlin {

@@ -1,4 +1,5 @@
-// describe(): the only description of all settings, for any SettingsVisitor.
+// describe(): presents all settings to a SettingsVisitor. It is the only description of the
+// settings.
 #pragma once
 
 #include "daemon/base/settings_visitor.h"
@@ -7,7 +8,8 @@ namespace merlin {
 
 struct Settings;
 
-// Calls `visitor` for every setting of `settings`, always in the same order: that of written files.
+// Calls `visitor` for every setting of `settings`, always in the same order, which is that of
+// written configurations.
 void describe(Settings& settings, SettingsVisitor& visitor);
 
 }  // namespace merlin

@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keeps the order of describe()
 
-// A value that was stored in a float is written as the shortest number that gives the same float:
-// 0.1, not 0.10000000149. Any other one keeps all its digits.
+// Converts a number to JSON. A value that was stored in a float becomes the shortest number that
+// gives the same float: 0.1, not 0.10000000149. Other values keep all their digits.
 Json plain(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) return static_cast<std::int64_t>(value);
   const auto narrow = static_cast<float>(value);
@@ -137,9 +137,9 @@ class SchemaWriter final : public SettingsVisitor {
                const char*) override {
     group(key, help, members);
   }
-  // Describes one item with the default values of its type; the list's own default is not
-  // described. Afterwards the list is as long as it was: what is described after it may depend on
-  // whether it is empty.
+  // Describes one entry with the default values of its type, not the default of the list itself.
+  // For this, the list has one entry for a moment; its length is then restored, because later
+  // settings may depend on whether it is empty.
   void list(const char* key, std::size_t count, const char* help,
             const std::function<void(std::size_t)>& resize,
             const std::function<void(std::size_t)>& member) override {

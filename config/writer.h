@@ -1,4 +1,4 @@
-// Writes the JSON Schema of configurations, and a configuration that contains every setting.
+// Writes the JSON Schema of configurations, and configurations that contain every setting.
 #pragma once
 
 #include <string>
@@ -7,16 +7,17 @@
 
 namespace merlin {
 
-// The JSON Schema (draft 2020-12) of a configuration, with every default; this is the text of
-// config/merlin.schema.json.
+// Returns the JSON Schema (draft 2020-12) of configurations, with the defaults of the settings; it
+// is the text of config/merlin.schema.json.
 std::string settingsSchema();
 
-// kLeftOut: the names of files that hold secrets are replaced by kSecretLeftOut.
+// Whether a written configuration contains the names of files with secrets (kWritten), or
+// kSecretLeftOut instead of each (kLeftOut).
 enum class Secrets { kWritten, kLeftOut };
 inline constexpr const char* kSecretLeftOut = "(left out)";
 
-// A configuration that has every setting with its value in `settings`. Files have absolute names:
-// relative ones are taken from the working directory.
+// Returns a configuration that contains every setting with its value in `settings`. File names in
+// it are absolute; relative ones are taken as relative to the working directory.
 std::string settingsText(const Settings& settings, Secrets secrets = Secrets::kWritten);
 
 }  // namespace merlin

@@ -1,4 +1,5 @@
-// Whether this user may use what belongs to merlind's group: its sockets, its content folder.
+// Checks whether this user may use the files of merlind's group: its sockets and its content
+// folder.
 #pragma once
 
 #include <string>
@@ -7,8 +8,9 @@
 
 namespace merlin::cli {
 
-// Checks that this user may write to the file or socket, or into the folder. A missing file is no
-// error here. Errors: kIo, with the group that may write and how to join it.
+// Checks that this user may write to the file or socket, or into the folder. A missing file is not
+// an error here. Errors: kIo (no permission); the text names the group that may write and how to
+// join it.
 Result<Ok> checkAllowed(const std::string& path);
 
 }  // namespace merlin::cli

@@ -1,5 +1,6 @@
 // Describes what is wrong with a program's arguments, in one sentence; CLI11's own sentence names
-// neither the subcommand nor the unknown word. For the files that include CLI11 already.
+// neither the subcommand nor the unknown word. To be included only by files that include CLI11
+// anyway.
 #pragma once
 
 #include <string>
@@ -15,12 +16,14 @@
 
 namespace merlin::cli {
 
-// The innermost command that was given, and its words: "merlin mesh info".
+// The innermost command on the command line, and the words that select it, "merlin mesh info".
 struct GivenCommand {
   const CLI::App* app;
   std::string words;
 };
 
+// Returns the innermost command that was given. `program`: name of the program, the first of the
+// words.
 inline GivenCommand givenCommand(const CLI::App& app, const std::string& program) {
   GivenCommand given{&app, program};
   while (true) {
@@ -34,6 +37,8 @@ inline GivenCommand givenCommand(const CLI::App& app, const std::string& program
   }
 }
 
+// Returns the names of the subcommands of `app`; groups of options, which have no name, are left
+// out.
 inline std::vector<std::string> commandsOf(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -42,6 +47,7 @@ inline std::vector<std::string> commandsOf(const CLI::App& app) {
   return names;
 }
 
+// Returns the long names of the options of `app` and of its groups of options, "--name".
 inline std::vector<std::string> optionsOf(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options({})) {
@@ -55,8 +61,8 @@ inline std::vector<std::string> optionsOf(const CLI::App& app) {
   return names;
 }
 
-// The sentence about an unexpected word. `needs_command`: the name of a command was expected in its
-// place.
+// Returns the sentence about an unexpected word. `needs_command`: whether the name of a command was
+// expected in its place.
 inline std::string unknownWord(const GivenCommand& given, const std::string& word,
                                bool needs_command) {
   const CLI::App& app = *given.app;
@@ -75,13 +81,16 @@ inline std::string unknownWord(const GivenCommand& given, const std::string& wor
   return fmt::format("{} is one argument too many", quoted);
 }
 
-// CLI11's "Could not convert: --threads = x"; only numbers are converted.
+// Rewords CLI11's message "Could not convert: --threads = x" to "--threads = x: that is not a
+// number"; other messages are returned unchanged.
 inline std::string unconverted(std::string what) {
   constexpr std::string_view kTheirs = "Could not convert: ";
   if (what.starts_with(kTheirs)) what = what.substr(kTheirs.size()) + ": that is not a number";
   return what;
 }
 
+// Returns the message for `error`: the command, what is wrong, and a second line that refers to
+// --help.
 inline std::string argumentFault(const CLI::App& app, const std::string& program,
                                  const CLI::ParseError& error) {
   const GivenCommand given = givenCommand(app, program);

@@ -18,8 +18,8 @@ namespace merlin::cli {
 
 namespace {
 
-// CLI11's check with a sentence of ours: "abc" is not a number from 1 to 9. Its own prints three
-// hundred digits for the greatest double.
+// Returns a check like `validator` with our own message, '"abc" is not ' and `wanted`. CLI11's
+// message would print the largest double with three hundred digits.
 CLI::Validator worded(const CLI::Validator& validator, const std::string& wanted) {
   return CLI::Validator(
       [validator, wanted](std::string& value) {
@@ -27,7 +27,7 @@ CLI::Validator worded(const CLI::Validator& validator, const std::string& wanted
         bool valid = false;
         try {
           valid = validator(value).empty();
-        } catch (const CLI::ValidationError&) {  // the value has a unit that CLI11 does not know
+        } catch (const CLI::ValidationError&) {  // the value has an unknown unit
         }
         return valid ? std::string() : fmt::format("\"{}\" is not {}", excerpt(kept), wanted);
       },
@@ -117,9 +117,9 @@ struct Plain<std::vector<T>> {
   using type = T;
 };
 
-// Returns the fault of a value that CLI11 accepts and we do not: a negative number for an unsigned
-// type (it would wrap around to a large one), "nan" and "inf" for a floating-point type. Empty:
-// none.
+// Returns the fault of a value that CLI11 would accept wrongly: a negative number for an unsigned
+// type (it would wrap around to a large one), "nan" and "inf" for a floating-point type. Returns an
+// empty text for a valid value.
 template <typename T>
 std::string faultOf(const std::string& value) {
   if (std::is_unsigned_v<T> && value.starts_with('-')) return value + " is less than 0";

@@ -23,10 +23,10 @@ class Argument {
   Argument required();
   Argument typeName(const std::string& name);  // placeholder for the value in the help
   Argument expected(int values);               // exact number of values
-  Argument expected(int least, int most);      // number of values
-  Argument repeatable();                       // one value each time that it is given
-  Argument separated(char by);                 // several values in one argument, separated by `by`
-  Argument showDefault();  // the help shows the variable's present value as the default
+  Argument expected(int least, int most);      // minimum and maximum number of values
+  Argument repeatable();                       // may be given several times, with one value each
+  Argument separated(char by);  // one argument may have several values, separated by `by`
+  Argument showDefault();       // the help shows the variable's value as the default
 
   Argument range(int low, int high);
   Argument range(double low, double high);
@@ -34,13 +34,14 @@ class Argument {
   Argument positive();
   Argument nonNegative();
   Argument seconds();  // a duration: 0.1 to 10 million
-  Argument baud();     // a standard speed of serial lines
+  Argument baud();     // a standard speed of serial lines, in bits per second
   Argument oneOf(std::vector<std::string> values);
   Argument size();  // number of bytes, also with a suffix: 900M, 16G (powers of 1024)
   // Adds a check of each value: `fault` returns a message, or an empty string for a valid value.
   Argument check(std::function<std::string(const std::string&)> fault);
 
-  bool isGiven() const;  // after parsing
+  // Returns whether the command line contains the option; valid after parsing.
+  bool isGiven() const;
 
  private:
   friend class Command;
@@ -57,14 +58,16 @@ class Command {
   Command group(const std::string& name, const std::string& help);
   void atMostOne();  // at most one of the group's options may be given
 
-  // "-o,--output": an option; "name": a positional argument. T: int, unsigned, std::int64_t,
-  // std::uint64_t, float, double, std::string, and std::optional and std::vector of some of them.
+  // Adds an option that is parsed into `value`, which must outlive the parsing. `names`:
+  // "-o,--output" for an option, "name" for a positional argument. T: int, unsigned, std::int64_t,
+  // std::uint64_t, float, double, std::string; also std::optional and std::vector of some of these
+  // types.
   template <typename T>
   Argument option(const std::string& names, T& value, const std::string& help = "");
-  // The flag sets `value` to true; if `names` starts with "!", as in "!--name", to false.
+  // Adds a flag that sets `value` to true; or to false if `names` starts with "!", as in "!--name".
   Argument flag(const std::string& names, bool& value, const std::string& help = "");
 
-  // `chosen` is called after parsing if this command was given.
+  // Sets a function that is called after parsing if this command was given.
   void callback(const std::function<void()>& chosen);
 
   void exclude(const Argument& other);  // this command or group cannot be combined with `other`
@@ -74,7 +77,7 @@ class Command {
 };
 
 // Reports that the command line lacks the option `what`, by throwing CLI::RequiredError. To be
-// called by a callback only, whose caller handles it.
+// called only in a callback of Command::callback(), whose caller catches the exception.
 [[noreturn]] void lacks(const std::string& what);
 
 }  // namespace merlin::cli

@@ -1,4 +1,4 @@
-// The subcommands of the program merlin: a function for each adds it to the command line; helpers.
+// The subcommands of the program merlin: functions that add them to the command line, and helpers.
 #pragma once
 
 #include <functional>
@@ -9,13 +9,14 @@
 
 namespace merlin::cli {
 
-// Executes the given subcommand and returns the exit status. The subcommand's callback sets it
-// during parsing, and main() calls it after parsing.
+// A function that executes the given subcommand and returns the exit status. The subcommand's
+// callback sets it during parsing, and main() calls it afterwards.
 using Run = std::function<int()>;
 
 class RemoteOptions;
 
-// Each function adds one subcommand; `run`: set if that subcommand was given.
+// Each of these functions adds one subcommand to `app`. `run` is set during parsing if that
+// subcommand was given; it must outlive the parsing.
 void addCalibrate(Command app, Run& run);
 void addConfig(Command app, Run& run);
 void addDevices(Command app, Run& run);
@@ -36,8 +37,8 @@ void addSnapshot(Command app, Run& run);
 void addTrace(Command app, Run& run);
 void addWall(Command app, Run& run);
 
-// The same for subcommands that can also communicate with a daemon of another machine. `remote`
-// must outlive the execution of `run`.
+// These functions add subcommands that can also communicate with a daemon on another machine.
+// `remote` must outlive the execution of `run`.
 void addCommandsByName(Command app, Run& run, RemoteOptions& remote);
 void addStatus(Command app, Run& run, RemoteOptions& remote);
 void addWatch(Command app, Run& run, RemoteOptions& remote);
@@ -49,7 +50,8 @@ int fail(const Error& error);
 // such as "shot.jpg: the name of a picture must end in .png". Errors: kInvalidArgument.
 Result<Ok> checkEnding(const std::string& path, const char* what, const char* ending);
 
-// Adds the option --instance, which selects the daemon that a subcommand communicates with.
+// Adds the option --instance, the name of the daemon on this machine that a subcommand communicates
+// with.
 void addInstance(Command app, std::string& instance);
 
 }  // namespace merlin::cli

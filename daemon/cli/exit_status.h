@@ -17,6 +17,7 @@ inline constexpr int kExitFailed = 1;    // failed while running
 inline constexpr int kExitBadInput = 2;  // bad usage or bad input
 inline constexpr int kExitBusy = 3;      // already running
 
+// Returns the exit status for an error: kExitBadInput, kExitBusy or kExitFailed, by its code.
 inline int exitStatus(const Error& error) {
   switch (error.code) {
     case Errc::kNotFound:
@@ -32,9 +33,9 @@ inline int exitStatus(const Error& error) {
   return kExitFailed;
 }
 
-// Runs `main` and returns its exit status. After an uncaught exception (usually bad_alloc), and if
-// stdout could not be written, prints one line to stderr and returns `failed`; in the latter case,
-// returns the status of `main` if that is greater.
+// Runs `main` and returns its exit status. After an uncaught exception (usually bad_alloc), prints
+// one line to stderr and returns `failed`. If stdout could not be written, prints one line to
+// stderr and returns the greater of `failed` and the status of `main`.
 template <typename Main>
 int runGuarded(const char* program, Main main, int failed = kExitFailed) noexcept {
   try {

@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// While this object exists, signals end the import instead of this process.
+// While this object exists, SIGTERM, SIGINT and SIGHUP make stop() readable, by which the import
+// ends, instead of ending this process.
 class HeldSignals {
  public:
   HeldSignals() {
@@ -63,7 +64,8 @@ std::vector<std::string> argumentsFor(const ForeignFile& file, const std::string
   return arguments;
 }
 
-// Waits for the result's name.
+// Waits for the end of the import, with a progress bar from the third second on. Returns the file
+// name of the result.
 Result<std::string> follow(ImportChild& child, int stop, Duration patience) {
   const SystemClock clock;
   const Timestamp began = clock.now();
@@ -80,7 +82,8 @@ Result<std::string> follow(ImportChild& child, int stop, Duration patience) {
   return name;
 }
 
-// A link could lead to a file that merlin-import itself may not read.
+// Checks that the folder contains regular files only, because merlin-import could have made a link
+// to a file that it may not read itself.
 Result<Ok> checkFolder(const std::string& folder) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -127,7 +130,7 @@ std::string ForeignReport::text(const char* key) const {
 }
 
 Duration patienceFor(std::uint64_t bytes, std::uint64_t bytes_per_second) noexcept {
-  // Larger files count as this size [bytes].
+  // Size to which `bytes` is limited, against an overflow.
   constexpr std::uint64_t kMost = std::uint64_t{1} << 44;
   return ImportChild::kPatience +
          std::chrono::seconds(static_cast<long>(std::min(bytes, kMost) / (10 * bytes_per_second)));
@@ -135,7 +138,8 @@ Duration patienceFor(std::uint64_t bytes, std::uint64_t bytes_per_second) noexce
 
 Result<ForeignReport> importForeign(const ForeignFile& file,
                                     const std::function<Result<Ok>(const std::string&)>& take) {
-  const HeldSignals signals;  // before the folder exists: a signal would leave it behind
+  // Held before the folder is made, because a signal would otherwise leave the folder behind.
+  const HeldSignals signals;
   const auto folder = WorkFolder::make(file.output);
   if (!folder) return folder.error();
   auto report = importInto(file, folder->path(), signals.stop(), take);

@@ -13,8 +13,8 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kMostTriesOfAStep =
-    5;  // per step, so that the program ends even if nobody takes part
+// Number of attempts at a step, after which the calibration ends even if nobody takes part.
+constexpr int kMostTriesOfAStep = 5;
 constexpr Duration kGuideRedraw = std::chrono::milliseconds(100);
 
 bool enterPressed() {
@@ -46,7 +46,8 @@ class LiveLine {
   Timestamp drawn_{};
 };
 
-// Calls guided.listen() until `until()` is true.
+// Calls guided.listen() until `until()` returns true or listen() fails; shows the current values
+// meanwhile.
 template <typename Until>
 Result<Ok> listenUntil(Guided& guided, const Clock& clock, bool measuring, Until until) {
   LiveLine live;
@@ -57,15 +58,16 @@ Result<Ok> listenUntil(Guided& guided, const Clock& clock, bool measuring, Until
   return Ok{};
 }
 
-// Tries a step once and returns the result of end(). `broken` is set to the error of listen(), if
-// any, which ends the calibration.
+// Measures a step once and returns the result of end(). `broken` is set to the result of listen();
+// an error of it ends the calibration.
 Result<std::string> tryStep(std::size_t step, const GuideTiming& timing, Guided& guided,
                             Result<Ok>& broken) {
   const SystemClock clock;
   const Timestamp ready = clock.now() + fromSeconds(timing.pause_s);
   broken = listenUntil(guided, clock, false,
                        [&] { return timing.pause_s > 0 ? clock.now() >= ready : enterPressed(); });
-  if (broken) broken = guided.listen(false);  // discards samples that were on their way at Enter
+  // Discards samples that were sent before Enter was pressed.
+  if (broken) broken = guided.listen(false);
   if (!broken) return broken.error();
   guided.begin(step);
   const Timestamp end = clock.now() + fromSeconds(timing.hold_s);

@@ -29,7 +29,7 @@ T number(std::string_view text) {
   return value;
 }
 
-// The text up to the next blank, which is removed from `text` with the blank.
+// Removes the first word and the blank after it from `text`, and returns the word.
 std::string_view word(std::string_view& text) {
   const std::size_t n = std::min(text.find(' '), text.size());
   const std::string_view first = text.substr(0, n);
@@ -53,11 +53,11 @@ Result<std::string> importProgram() {
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::setpgid(0, 0);  // Ctrl-C is for merlin alone, which then ends this process
+  ::setpgid(0, 0);  // so that Ctrl-C reaches only merlin, which then ends this process
   ::dup2(output, STDOUT_FILENO);
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   ::dup2(nothing, STDIN_FILENO);
-  ::dup2(nothing, STDERR_FILENO);  // libraries warn there; what matters is in the result
+  ::dup2(nothing, STDERR_FILENO);  // libraries print warnings there; faults are in the report
   std::vector<char*> argv;
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
@@ -123,7 +123,7 @@ ImportChild::~ImportChild() {
   waitForChild(pid_);
 }
 
-// Reads the bytes that have arrived; false at the end of the output.
+// Reads the bytes that have arrived from the process; returns false at the end of its output.
 bool ImportChild::read() {
   std::array<char, 4096> bytes{};
   const ssize_t n = ::read(output_.get(), bytes.data(), bytes.size());

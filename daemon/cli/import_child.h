@@ -16,21 +16,28 @@
 
 namespace merlin::cli {
 
-// Parses the reports of merlin-import, one a line; see daemon/import/merlin_import.cpp. Pure.
+// Parses the reports of merlin-import, one per line, in the format of
+// daemon/import/merlin_import.cpp. Pure.
 class ImportReport {
  public:
-  // Takes bytes as they arrive. Lines that are too long or not understood are ignored.
+  // Parses bytes as they arrive, in pieces of any size. Lines are truncated to 8192 bytes; unknown
+  // lines are ignored.
   void take(std::string_view bytes);
 
-  double share() const noexcept { return share_; }           // share of the work that is done, 0..1
-  std::uint64_t items() const noexcept { return items_; }    // pixels so far
-  std::uint64_t pixels() const noexcept { return pixels_; }  // of the picture; 0: not known yet
+  // Share of the work that is done, 0 to 1.
+  double share() const noexcept { return share_; }
+  // Number of items (such as pixels) that are done.
+  std::uint64_t items() const noexcept { return items_; }
+  // Number of pixels of the picture; 0: not known yet.
+  std::uint64_t pixels() const noexcept { return pixels_; }
+  // What the system lacks, so that merlin-import runs without it; at most 16.
   const std::vector<std::string>& lacks() const noexcept { return lacks_; }
-  // For the user: what was left out or assumed. At most 16.
+  // Sentences for the user about what was left out or assumed; at most 16.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
-  // Facts about the result as a JSON object, not checked; empty until it is complete.
+  // Facts about the result, the text of a JSON object that is not checked; empty until the result
+  // is complete.
   const std::string& facts() const noexcept { return facts_; }
-  // The name of the result in its folder, once it is complete; or the error.
+  // The file name of the result in its folder, or the error; nothing while the import runs.
   const std::optional<Result<std::string>>& result() const noexcept { return result_; }
 
  private:
@@ -43,20 +50,23 @@ class ImportReport {
   std::optional<Result<std::string>> result_;
 };
 
+// A running process of merlin-import.
 class ImportChild {
  public:
-  // Starts merlin-import, which is in the same folder as this program, with these arguments.
+  // Starts merlin-import, which must be in the same folder as this program, with these arguments.
   // Errors: kUnsupported (it is not installed), kIo.
   static Result<ImportChild> start(const std::vector<std::string>& arguments);
-  ~ImportChild();  // ends it
+  ~ImportChild();  // kills the process if it still runs
   ImportChild(ImportChild&& other) noexcept;
   ImportChild(const ImportChild&) = delete;
   ImportChild& operator=(const ImportChild&) = delete;
 
-  // Follows the process until it ends. `stop`: a descriptor that becomes readable when the process
-  // is to be ended. `on_progress` is called about ten times a second. Returns the name of the
-  // result. Errors: those of the import; kClosed (`stop`); kTimeout (no progress for `patience`);
-  // kMalformed (it ended by a signal, or above a limit).
+  // Waits until the process ends, and reads its reports. `stop`: a descriptor that becomes readable
+  // when the process is to be ended. `on_progress` is called whenever the reported share of the
+  // work has changed. Returns the file name of the result. Errors: those that the process reports;
+  // kClosed (`stop`); kTimeout (the share has not changed for `patience`); kMalformed (a signal
+  // ended the process, also at a resource limit); kIo (it ended without a result). After an error
+  // the process may still run until the destructor kills it.
   Result<std::string> follow(int stop, const std::function<void(const ImportReport&)>& on_progress,
                              Duration patience = kPatience);
 

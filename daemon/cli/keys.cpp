@@ -14,7 +14,7 @@ namespace {
 
 int makeKeys(const std::string& path) {
   struct stat status {};
-  // By lstat(), so that a file that cannot be read or a dangling link counts as existing too.
+  // lstat() also finds files that cannot be read and dangling links, which count as existing.
   if (::lstat(path.c_str(), &status) == 0) {
     return fail({Errc::kInvalidArgument, path +
                                              ": exists already; with a new key pair, machines that "

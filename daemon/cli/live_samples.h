@@ -19,7 +19,7 @@ template <typename Sample>
 class LiveSamples {
  public:
   // `slot`: name of the samples' slot in shared memory, "tracker1"; `device`: name of the device
-  // whose health they depend on, "tracker". Errors: kNotFound (there is no shared memory of
+  // from which the samples come, "tracker". Errors: kNotFound (there is no shared memory of
   // `instance`), kClosed (its merlind has ended), kInvalidArgument (that merlind has no such
   // device), those of DevicesReader::open() and SlotTable::channel().
   static Result<LiveSamples> open(const std::string& instance, const std::string& slot,
@@ -42,8 +42,9 @@ class LiveSamples {
     return samples;
   }
 
-  // Calls `take` for each sample that has arrived since the last call, but at most for the newest
-  // 128; waits up to 0.1 s if there is none. Errors: kClosed (merlind has ended).
+  // Calls `take` for each sample that has arrived since the last call of listen() or since open(),
+  // but only for the newest 128 if there are more; waits up to 0.1 s for the first. Errors: kClosed
+  // (merlind has ended).
   template <typename Take>
   Result<Ok> listen(Take take) {
     if (auto alive = checkAlive(); !alive) return alive;
@@ -57,7 +58,7 @@ class LiveSamples {
     return Ok{};
   }
 
-  // Why the device does not deliver samples; empty if it does.
+  // Returns why the device does not deliver samples; an empty text if it works.
   std::string complaint() {
     keepHealth();
     if (!health_) return "its state is not known yet";
@@ -95,8 +96,8 @@ class LiveSamples {
     return Error{Errc::kClosed, "merlind has ended; nothing was changed"};
   }
 
-  // Stores the device's health. read() fails if each attempt coincided with a write; the last known
-  // health is kept then.
+  // Stores the device's health. If it cannot be read, because each attempt coincided with a write,
+  // keeps the last known health.
   void keepHealth() {
     if (const auto health = health_slot_.read()) health_ = *health;
   }
@@ -106,7 +107,7 @@ class LiveSamples {
   shm::DevicesReader reader_;
   const shm::Channel<Sample>& channel_;
   const shm::SeqSlot<DeviceHealth>& health_slot_;
-  std::optional<DeviceHealth> health_;  // the last known; none: not known yet
+  std::optional<DeviceHealth> health_;  // the last known health; nothing: not known yet
   std::uint64_t next_;                  // index of the next sample to deliver
 };
 

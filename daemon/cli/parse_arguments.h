@@ -1,5 +1,5 @@
-// Parses the arguments of a program with CLI11, whose exceptions end here, and adds the options
-// that print its manual page and its completion.
+// Parses the arguments of a program with CLI11, catches its exceptions, and adds the options that
+// print the manual page and the shell completion.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,8 @@
 
 namespace merlin {
 
-// `page`: settings of the manual page; must outlive the parsing.
+// Adds --print-manual and --print-completion. `page`: settings of the manual page; must outlive the
+// parsing.
 inline void addManualOptions(CLI::App& app, const manual::PageSettings& page) {
   app.add_flag_callback(
       "--print-manual",
@@ -33,8 +34,9 @@ inline void addManualOptions(CLI::App& app, const manual::PageSettings& page) {
       "Print completion of commands and options for bash, and exit");
 }
 
-// Returns nothing if the program is to run. Otherwise, after --help, --version, --print-manual,
-// --print-completion or an invalid argument, prints the text and returns the exit status.
+// Parses the command line. Returns nothing if the program is to go on. After --help, --version,
+// --print-manual, --print-completion or an invalid argument, prints the text or the fault and
+// returns the exit status.
 inline std::optional<int> parseArguments(CLI::App& app, int argc, char** argv,
                                          const manual::PageSettings& page) {
   addManualOptions(app, page);

@@ -23,7 +23,7 @@ void printOut(fmt::format_string<Args...> format, Args&&... args) {
 // Prints "merlin: note: TEXT" to stderr.
 inline void printNote(std::string_view text) { printError("merlin: note: {}\n", printable(text)); }
 
-// The JSON as one line of text; bytes that are not valid UTF-8 are replaced.
+// Returns the JSON as one line of text; bytes that are not valid UTF-8 are replaced.
 template <typename Json>
 std::string jsonText(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

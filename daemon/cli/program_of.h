@@ -1,5 +1,5 @@
-// Extracts the description of a CLI11 command line, as data for manual pages and completion. For
-// the files that include CLI11 already.
+// Extracts the description of a CLI11 command line, as data for manual pages and completion. To be
+// included only by files that include CLI11 anyway.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 
 namespace merlin::cli {
 
+// Splits the text at each `by`; the result has at least one part.
 inline std::vector<std::string> divided(std::string_view text, char by) {
   std::vector<std::string> parts;
   while (true) {
@@ -23,9 +24,9 @@ inline std::vector<std::string> divided(std::string_view text, char by) {
   }
 }
 
-// CLI11 puts a value's placeholder and the descriptions of its checks into one text: "FLOAT:FLOAT
-// in [1 - 9]", "TEXT:{left,right}". The project's own placeholder for words is "on|off";
-// "NAME|FILE" does not list words.
+// Fills in the placeholder, the choices and the range of an option's value. CLI11 has them in one
+// text: "FLOAT:FLOAT in [1 - 9]", "TEXT:{left,right}". A placeholder of lower-case words, such as
+// "on|off", lists the choices; "NAME|FILE" does not.
 inline void setValue(const CLI::Option& option, manual::ProgramOption& facts) {
   const std::string whole = option.get_type_name();
   const std::size_t colon = whole.find(':');
@@ -50,6 +51,7 @@ inline void setValue(const CLI::Option& option, manual::ProgramOption& facts) {
   facts.range = range;
 }
 
+// Describes an option or a positional argument.
 inline manual::ProgramOption optionOf(const CLI::Option& option) {
   manual::ProgramOption facts;
   for (const std::string& name : option.get_snames()) facts.names.push_back("-" + name);
@@ -63,7 +65,8 @@ inline manual::ProgramOption optionOf(const CLI::Option& option) {
   return facts;
 }
 
-// `top`: whether this is the top command; only there --help and --version are included.
+// Adds the visible options and positional arguments of `app` to `command`. `top`: whether `app` is
+// the program itself; --help is left out otherwise.
 inline void addOptions(const CLI::App& app, bool top, manual::ProgramCommand& command) {
   for (const CLI::Option* option : app.get_options({})) {
     if (option->get_group().empty() || (!top && option == app.get_help_ptr())) continue;
@@ -71,6 +74,8 @@ inline void addOptions(const CLI::App& app, bool top, manual::ProgramCommand& co
   }
 }
 
+// Describes a command with its options and, recursively, its subcommands. `top`: whether `app` is
+// the program itself.
 inline manual::ProgramCommand programOf(const CLI::App& app, bool top = true) {
   manual::ProgramCommand command;
   command.name = app.get_name();

@@ -8,8 +8,8 @@
 
 namespace merlin::cli {
 
-// Receives the progress of an operation: its title, as in the bar ("reducing"), and the share that
-// is done, 0..1. Called often, on the thread that works.
+// Receives the progress of an operation: its title, as in the bar ("reducing"), and the share of
+// the work that is done, 0 to 1. Is called often, by the thread that does the work.
 using ProgressListener = std::function<void(const std::string& title, double share)>;
 
 // On a terminal, redraws one line up to ten times a second; otherwise prints a line after each
@@ -18,10 +18,12 @@ class ProgressBar {
  public:
   ProgressBar(std::string title, std::string unit, const Clock& clock);
 
-  // `share`: part of the work that is done, 0..1. `count`: items done so far, for the rate; `unit`
-  // of the constructor is their name in the plural, such as "points".
+  // Draws the bar if it is due. `share`: part of the work that is done, 0 to 1. `count`: number of
+  // items done so far, for the rate; the constructor's `unit` is their name in the plural, such as
+  // "points".
   void update(double share, std::size_t count);
-  void finish(std::size_t count);  // the work is done: `count` items
+  // Draws the complete bar; to be called once the work is done. `count`: number of all items.
+  void finish(std::size_t count);
 
  private:
   void draw(double share, std::size_t count);

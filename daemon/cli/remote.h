@@ -1,4 +1,4 @@
-// The options of `merlin` that name a daemon of another machine.
+// The options of `merlin` that name a daemon on another machine.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,8 @@
 
 namespace merlin::cli {
 
-// The options given before the subcommand: merlin --endpoint ... --keys ... --server-key ...
-// COMMAND. Valid once the command line has been parsed; must outlive the execution of the
-// subcommand.
+// The options before the subcommand: merlin --endpoint ... --keys ... --server-key ... COMMAND. The
+// object must outlive the execution of the subcommand; its values are valid after parsing.
 class RemoteOptions {
  public:
   // Adds the options to the program's own.
@@ -22,11 +21,13 @@ class RemoteOptions {
   RemoteOptions(const RemoteOptions&) = delete;
   RemoteOptions& operator=(const RemoteOptions&) = delete;
 
-  // Returns the daemon that the subcommand communicates with. To be called by the callback of a
-  // subcommand that can use another machine's daemon.
+  // Returns the daemon that the subcommand communicates with, and marks the options as supported
+  // (check()). To be called by the callback of a subcommand that can use a daemon on another
+  // machine. `instance`: name of the daemon on this machine.
   DaemonAddress daemon(const std::string& instance);
 
-  // Checks that the given subcommand supports these options. Errors: kInvalidArgument.
+  // Checks, after parsing, that the given subcommand supports these options if they were given.
+  // Errors: kInvalidArgument.
   Result<Ok> check() const;
 
  private:

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::string_view kIpc = "ipc://";
 
-// Returns the role if it runs. `denied` is set if its shared memory exists but cannot be read.
+// Returns the role if it runs on this machine; nothing otherwise. `denied` is set to the error if
+// its shared memory exists but cannot be read.
 template <typename Segment>
 std::optional<FoundRole> find(const std::string& instance, const char* role,
                               std::optional<Error>& denied) {
@@ -28,8 +29,8 @@ std::optional<FoundRole> find(const std::string& instance, const char* role,
   if (!segment || !shm::isRunning(name, (*segment)->header, SystemClock().now()))
     return std::nullopt;
   const shm::Header& h = (*segment)->header;
-  // Without an endpoint the segment is a copy of another machine's devices, and no process on this
-  // machine executes their commands.
+  // Without an endpoint, the segment is the wall's copy of the devices of another machine, and no
+  // process on this machine has this role.
   if (h.command_endpoint[0] == '\0') return std::nullopt;
   return FoundRole{role, {h.status_endpoint, h.command_endpoint}, h.pid, h.generation};
 }
@@ -41,13 +42,14 @@ std::optional<LostRole> findLost(const std::string& instance, const char* role) 
   if (!segment) return std::nullopt;
   const shm::Header& h = (*segment)->header;
   const Timestamp now = SystemClock().now();
-  // Without an endpoint it is the wall's copy of another machine's devices.
+  // Without an endpoint, the segment is the wall's copy of the devices of another machine.
   if (h.command_endpoint[0] == '\0' || shm::isRunning(name, h, now)) return std::nullopt;
   const Timestamp last = fromNanoseconds(h.heartbeat_ns.load(std::memory_order_relaxed));
   return LostRole{role, now - last, isMerlind(h.pid) ? h.pid : 0};
 }
 
-// The other daemon's public key: `given` is the key, or the name of a file that has it.
+// Returns the public key of the other daemon. `given`: the key, or the name of a file that has
+// exactly one public key. Errors: kInvalidArgument.
 Result<std::string> serverKey(const std::string& given) {
   if (status::isKey(given)) return given;
   const auto keys = status::readPublicKeys(given);
@@ -63,7 +65,8 @@ Result<std::string> serverKey(const std::string& given) {
       fmt::format("--server-key: {}: has {} public keys; one is needed", given, keys->size())};
 }
 
-// Keys for a daemon on another machine.
+// Returns the keys for a daemon on another machine, after checking its endpoints. Errors:
+// kInvalidArgument (keys are missing, or an endpoint is not valid); those of readKeyPair().
 Result<status::ClientKeys> clientKeys(const DaemonAddress& daemon) {
   if (daemon.keys.empty() || daemon.server_key.empty()) {
     return Error{Errc::kInvalidArgument,
@@ -84,7 +87,8 @@ Result<status::ClientKeys> clientKeys(const DaemonAddress& daemon) {
   return status::ClientKeys{*std::move(server), *std::move(own)};
 }
 
-// Which role answers at this address.
+// Asks the daemon at this address for its role; empty if the answer does not say it. Errors: those
+// of status::ask().
 Result<std::string> roleAt(const FoundRole& found, Duration patience) {
   const auto status = status::ask(found.commands(), "status", patience);
   if (!status) return status.error();
@@ -136,9 +140,10 @@ Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon) {
   return roles;
 }
 
-// A process that executes another program has no command line for a moment, but it always has a
-// name. A program that was started by the link /proc/self/exe has the name "exe" until it renames
-// itself (ProgramRestart). A zombie process has no command line either.
+// Recognises merlind by its command line, or by its process name while the command line is empty,
+// as for a moment during exec(). A program that was started by the link /proc/self/exe has the name
+// "exe" until it renames itself (ProgramRestart). Zombies, whose command line is empty too, do not
+// count.
 bool isMerlind(std::uint32_t pid) {
   std::string program, state;  // "1234 (merlind) S ..."
   std::getline(std::ifstream(fmt::format("/proc/{}/cmdline", pid)), program, '\0');

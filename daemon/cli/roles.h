@@ -14,56 +14,61 @@
 
 namespace merlin::cli {
 
-// The daemon that a subcommand communicates with: one of this machine or, if an endpoint is given,
-// one of another machine, encrypted.
+// The daemon that a subcommand communicates with: a daemon on this machine or, if an endpoint is
+// given, a daemon on another machine, with encryption.
 struct DaemonAddress {
-  std::string instance = "merlin";     // of this machine
-  std::vector<std::string> endpoints;  // "tcp://HOST:PORT", one for each role of another machine
-  std::string keys;                    // file with our key pair
-  std::string server_key;              // the other daemon's public key, or a file with it
+  std::string instance = "merlin";     // name of the daemon on this machine
+  std::vector<std::string> endpoints;  // "tcp://HOST:PORT", one for each role on the other machine
+  std::string keys;                    // file with the client's key pair
+  // Public key of the other daemon, or the name of a file with the key.
+  std::string server_key;
 
   bool isRemote() const noexcept { return !endpoints.empty(); }
-  // For messages: the instance, or the endpoints.
+  // Returns the instance, or the endpoints of a remote daemon, as a text for messages.
   std::string name() const;
 };
 
+// A running role.
 struct FoundRole {
-  std::string role;  // "devices" or "wall"; empty: whichever the other machine's endpoint has
+  std::string role;  // "devices" or "wall"; empty: unknown, on another machine
   shm::Endpoints endpoints;
-  std::uint32_t pid = 0;         // of its process; one may have both roles
+  std::uint32_t pid = 0;         // of its process, which may have both roles; 0: unknown
   std::uint64_t generation = 0;  // differs after each start
   std::optional<status::ClientKeys> keys = {};
 
   status::CommandAddress commands() const { return {endpoints.command, keys}; }
 };
 
-// The running roles of this instance. Errors: kIo if no role runs, or if its shared memory may not
-// be read.
+// Returns the running roles of an instance on this machine. Errors: kIo (no role runs, or the
+// shared memory may not be read).
 Result<std::vector<FoundRole>> findRoles(const std::string& instance);
 
-// A role whose process has left its shared memory behind, or gives no sign of life: it was killed,
-// has crashed or hangs. A process that ends normally removes its shared memory.
+// A role that was killed, has crashed or hangs: its process has ended without removing its shared
+// memory, or its heartbeat has stopped. A process that ends normally removes its shared memory.
 struct LostRole {
   std::string role;
-  Duration silent{};      // since its last heartbeat
+  Duration silent{};      // time since its last heartbeat
   std::uint32_t pid = 0;  // of the process that hangs; 0: it has ended
 
-  // "does not run; it ended 12 s ago"
+  // Returns a clause for messages, such as "does not run; it ended 12 s ago".
   std::string what() const;
 };
 
-// The lost roles of this instance; none if no merlind ever ran under this name.
+// Returns the lost roles of an instance on this machine; none if no merlind ever ran under this
+// name.
 std::vector<LostRole> lostRoles(const std::string& instance);
 
-// The same for any daemon. A daemon of another machine is not contacted, so its roles are unknown.
-// Errors: those of findRoles() and of reading the keys; kInvalidArgument (a key is missing or
-// invalid).
+// Returns the running roles of a daemon on this or another machine. A daemon on another machine is
+// not contacted: each of its endpoints becomes an entry with an empty `role`. Errors: those of
+// findRoles() and of reading the keys; kInvalidArgument (a key is missing or invalid).
 Result<std::vector<FoundRole>> findRoles(const DaemonAddress& daemon);
 
-// Whether this process runs the program merlind, whatever its role, and also while it starts.
+// Returns whether the process runs the program merlind, in whatever role, even while it is
+// starting.
 bool isMerlind(std::uint32_t pid);
 
-// The instance of the merlind that is this process. Errors: kIo if it is none.
+// Returns the instance name of the merlind with this process id. Errors: kIo (the process is no
+// merlind).
 Result<std::string> instanceOf(std::uint32_t pid);
 
 // A request to a role: a command of daemon/base/commands.h and its argument.
@@ -72,17 +77,17 @@ struct RoleRequest {
   Duration patience = std::chrono::seconds(5);  // maximum time to wait for the answer
 };
 
-// Checks that this user may write to the socket of an endpoint, because ZeroMQ would only retry
-// until the patience is over. Endpoints of another machine are not checked. Errors: those of
-// checkAllowed().
+// Checks that this user may write to the socket of an endpoint. Without this check, ZeroMQ would
+// retry silently until the request times out. Endpoints on another machine are not checked. Errors:
+// those of checkAllowed().
 Result<Ok> checkMayAsk(std::string_view endpoint);
 
 // Sends a command to the role and returns the answer as JSON. Errors: those of findRoles(),
 // checkAllowed() and status::ask(); kIo if this daemon does not run the role.
 Result<std::string> askRole(const std::string& instance, const std::string& role,
                             const RoleRequest& request);
-// The same for any daemon. If there are several endpoints, the command goes to the one with the
-// role.
+// Sends a command to a role of a daemon on this or another machine and returns the answer as JSON.
+// With several endpoints, the command goes to the one at which the role answers.
 Result<std::string> askRole(const DaemonAddress& daemon, const std::string& role,
                             const RoleRequest& request);
 

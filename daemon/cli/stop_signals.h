@@ -9,7 +9,8 @@
 
 namespace merlin::cli {
 
-// Blocks SIGTERM, SIGINT and SIGHUP; the descriptor becomes readable when one of them arrives.
+// Blocks SIGTERM, SIGINT and SIGHUP, and returns a signalfd that becomes readable when one of them
+// arrives.
 inline UniqueFd stopSignals() {
   sigset_t set;
   ::sigemptyset(&set);
@@ -18,7 +19,8 @@ inline UniqueFd stopSignals() {
   return UniqueFd(::signalfd(-1, &set, SFD_CLOEXEC));
 }
 
-// Whether one of these signals has arrived. `stop`: the descriptor of stopSignals().
+// Returns whether one of the signals of stopSignals() is pending; does not wait. `stop`: the
+// descriptor of stopSignals().
 inline bool stopArrived(int stop) {
   pollfd waiting{stop, POLLIN, 0};
   return ::poll(&waiting, 1, 0) > 0;

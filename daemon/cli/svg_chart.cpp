@@ -12,7 +12,8 @@ constexpr int kChartWidth = 640, kChartHeight = 360, kPlotLeft = 60, kPlotTop = 
               kPlotWidth = 560, kPlotHeight = 250;
 constexpr int kLegendStep = 15;
 
-// Position of a value on the axis: 0 at its low end, 1 at its high end.
+// Returns the position of a value on the axis: 0 at the low end, 1 at the high end. Values outside
+// are moved to the nearer end.
 double place(const ChartAxis& axis, double value) {
   const double held = std::clamp(value, axis.low, axis.high);
   return axis.logarithmic ? std::log(held / axis.low) / std::log(axis.high / axis.low)

@@ -1,4 +1,4 @@
-// A line chart with linear or logarithmic axes, as SVG.
+// Draws a line chart with linear or logarithmic axes as SVG.
 #pragma once
 
 #include <string>
@@ -9,20 +9,22 @@ namespace merlin::cli {
 
 struct ChartAxis {
   double low = 1, high = 10;  // low < high; both > 0 if the axis is logarithmic
-  bool logarithmic = true;    // grid lines at powers of ten; otherwise at the two ends only
+  // True: logarithmic, with grid lines at powers of ten. False: linear, with grid lines at the
+  // ends.
+  bool logarithmic = true;
 };
 
 struct ChartLine {
   std::string name;
   std::string colour;                             // CSS colour
-  std::vector<std::pair<double, double>> points;  // x, y; points that are not finite are left out
+  std::vector<std::pair<double, double>> points;  // (x, y); points that are not finite are left out
 };
 
-// Escapes a text for SVG.
+// Escapes the characters of a text that have a meaning in SVG.
 std::string svgText(const std::string& text);
 
-// The chart as SVG. `below`: text below the chart. Points outside the range of an axis are drawn at
-// its end. The title and names are not escaped: use svgText().
+// Returns the chart as SVG. `below`: text below the chart. Points outside the range of an axis are
+// drawn at its nearer end. The texts are not escaped; the caller escapes them with svgText().
 std::string svgChart(const std::string& title, const std::string& below, const ChartAxis& x,
                      const ChartAxis& y, const std::vector<ChartLine>& lines);
 

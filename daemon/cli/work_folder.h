@@ -1,4 +1,4 @@
-// WorkFolder: a folder beside a result that is not complete yet.
+// WorkFolder: a temporary folder in which a result is made before it is moved to its place.
 #pragma once
 
 #include <cerrno>
@@ -17,11 +17,12 @@
 
 namespace merlin::cli {
 
-// The folder and its files are removed with this object. Thread-bound.
+// The destructor removes the folder and its files. Thread-bound.
 class WorkFolder {
  public:
-  // Makes a folder with a new name beside `result`. If the parent folder is shared by a group, the
-  // group may remove what a killed process has left. Errors: kIo.
+  // Makes a folder with a new name in the folder of `result`. If that folder is writable for its
+  // group but not for everybody, the group may also remove what a killed process has left behind.
+  // Errors: kIo.
   static Result<WorkFolder> make(const std::filesystem::path& result) {
     const auto folder = std::filesystem::absolute(result).parent_path();
     std::string name = (folder / ".merlin-import-XXXXXX").string();

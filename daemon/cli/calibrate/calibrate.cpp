@@ -1,4 +1,5 @@
-// merlin calibrate: writes a device's calibration, measured or given, into a configuration.
+// merlin calibrate: writes the calibration of a device, measured or given by options, into a
+// configuration.
 #include "daemon/cli/calibrate/calibrate.h"
 
 #include <memory>

@@ -22,7 +22,7 @@ namespace {
 
 struct BallOptions {
   std::string output, device, instance = "merlin";
-  // These initial values mean: not given.
+  // The initial values mean that the option was not given.
   int translation = 0, rotation = 0, full = 0, dead_zone = -1;
   std::vector<int> axis_map;
   GuideTiming timing;
@@ -32,11 +32,11 @@ struct BallOptions {
   }
 };
 
-// A ball whose driver has an axis map, scales and a dead zone.
+// Whether the ball has the driver spacenav, with a single full scale for all axes.
 bool isSpaceMouse(const CalibratedDevice& ball) { return ball.driver == "spacenav"; }
 
-// The file's ball. Errors: kInvalidArgument (its driver has no such settings), those of
-// findDevice().
+// Returns the ball in the configuration that the options name. Errors: kInvalidArgument (its driver
+// has no axis map and sensitivities), those of findDevice().
 Result<CalibratedDevice> findBall(const BallOptions& o) {
   constexpr const char* kDrivers[] = {"spaceball", "spacenav"};
   auto ball = findDevice(o.output, SampleKind::kBall, o.device, kDrivers);
@@ -52,8 +52,8 @@ Result<CalibratedDevice> findBall(const BallOptions& o) {
                            o.output, ball->pointer, ball->name, ball->driver, instead)};
 }
 
-// Errors: kInvalidArgument: an option that the ball's driver does not have; an axis map in which
-// an axis is missing.
+// Checks the options against the driver of the ball. Errors: kInvalidArgument (an option that the
+// driver lacks, or an axis map in which an axis is missing).
 Result<Ok> checkOptions(const BallOptions& o, const CalibratedDevice& ball) {
   if (isSpaceMouse(ball) ? o.translation > 0 || o.rotation > 0 : o.full > 0) {
     const char* const allowed =
@@ -124,14 +124,14 @@ class GuidedBall final : public Guided {
 
  private:
   LiveSamples<BallSample> samples_;
-  std::string device_;  // its name
+  std::string device_;  // name of the device
   std::size_t step_ = 0;
   spaceball::GuidedAxes axes_;
   std::optional<BallSample> newest_;
 };
 
-// What is written into the configuration. A space mouse has one full scale for all axes: the
-// smaller one, so that each axis can reach it.
+// Returns the settings to write into the configuration. A space mouse has one full scale for all
+// axes: the smaller of the two, so that each axis can reach it.
 nlohmann::ordered_json valuesOf(const SpaceballSettings& s, bool space_mouse) {
   if (space_mouse)
     return {{"full_scale", std::min(s.full_scale_translation, s.full_scale_rotation)},

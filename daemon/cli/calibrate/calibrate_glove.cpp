@@ -22,7 +22,7 @@ using cyberglove::GuidedCalibration;
 
 struct GloveOptions {
   std::string port, output, device;
-  int baud = 0;  // 0: the entry's speed
+  int baud = 0;  // 0: the rate in the configuration
   GuideTiming timing;
 };
 
@@ -54,8 +54,8 @@ class GuidedGlove final : public Guided, private IgnoringSink {
   bool measuring_ = false;
 };
 
-// One line per sensor: a bar for the raw values 0 to 255, in which the range measured so far is
-// marked.
+// Returns one line per sensor: a bar for the raw values 0 to 255, in which the range measured so
+// far is marked.
 std::string GuidedGlove::spans() const {
   constexpr int kWidth = 51;
   const auto column = [](int raw) { return static_cast<std::size_t>(raw * (kWidth - 1) / 255); };

@@ -1,5 +1,5 @@
 // merlin calibrate pad: sets the axes and the dead zone of a gamepad, a joystick or a space mouse
-// that is read directly, or of a VRPN server's analogs, from options or from what a person moves.
+// that is read directly, or of a VRPN server's analogs, from options or from movements of a person.
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -35,7 +35,8 @@ struct PadOptions {
   bool hasOptions() const { return !axes.empty() || dead_zone >= 0 || curve >= 0; }
 };
 
-// Errors: kInvalidArgument (it has another driver), those of findDevice().
+// Returns the pad in the configuration that the options name. Errors: kInvalidArgument (it has a
+// driver that this command does not support), those of findDevice().
 Result<CalibratedDevice> findPad(const PadOptions& o) {
   auto pad = findDevice(o.output, SampleKind::kBall, o.device, kDrivers);
   if (!pad || isOneOf(pad->driver, kDrivers)) return pad;
@@ -46,7 +47,7 @@ Result<CalibratedDevice> findPad(const PadOptions& o) {
                   o.output, pad->pointer, pad->name, pad->driver, fmt::join(kDrivers, " or "))};
 }
 
-// Measures the device on its own line.
+// Measures the device by opening its line.
 class GuidedPadLine final : public Guided, private IgnoringSink {
  public:
   GuidedPadLine(const OwnLine& line, const std::string& driver, const Clock& clock)
@@ -72,7 +73,7 @@ class GuidedPadLine final : public Guided, private IgnoringSink {
   void begin(std::size_t step) override {
     step_ = step;
     pad_.begin(step);
-    pad_.add(readings_());  // so that an axis that is already held does not count as moved
+    pad_.add(readings_());  // an axis that is already deflected then does not count as moved
   }
   Result<std::string> end() override {
     const auto answer = pad_.end();

@@ -27,7 +27,7 @@ struct TouchOptions {
   GuideTiming timing;
 };
 
-// Measures the surface on its own line, in its own axes.
+// Measures the touch surface by opening its line, in the axes of the device.
 class GuidedSurface final : public Guided, private IgnoringSink {
  public:
   GuidedSurface(const OwnLine& line, const DriverEntry& driver, const Clock& clock)
@@ -40,7 +40,7 @@ class GuidedSurface final : public Guided, private IgnoringSink {
   }
   void begin(std::size_t step) override {
     corners_.begin(step);
-    corners_.add(newest_);  // so that a finger that is already held does not count as a new touch
+    corners_.add(newest_);  // a finger that is already down then does not count as a new touch
   }
   Result<std::string> end() override {
     const auto place = corners_.end();

@@ -50,8 +50,8 @@ constexpr const char *kAlignmentKey = "alignment{}_cm", *kBoresightKey = "boresi
 
 bool isFastrak(const CalibratedDevice& tracker) { return tracker.driver == "fastrak"; }
 
-// The file's tracker. Errors: kInvalidArgument (it has another driver, which has none of the given
-// settings), those of findDevice().
+// Returns the tracker in the configuration that the options name. Errors: kInvalidArgument (its
+// driver has none of the settings that the options set), those of findDevice().
 Result<CalibratedDevice> findTracker(const TrackerOptions& o) {
   auto tracker = findDevice(o.output, SampleKind::kTracker, o.device);
   if (!tracker || isFastrak(*tracker) || (!o.hasOptions() && o.has("alignment"))) return tracker;
@@ -130,7 +130,7 @@ class GuidedStation final : public Guided {
 
  private:
   LiveSamples<TrackerSample> samples_;
-  std::string device_;  // its name
+  std::string device_;  // name of the tracker
   StationFrame present_;
   std::size_t first_;
   GuidedAlignment alignment_;
@@ -151,12 +151,13 @@ Result<StationFrame> presentFrame(const shm::DeviceSlots& devices, const std::st
   return frame;
 }
 
-// Whether the value of `key` in the file equals `running`, the running merlind's value. `own`: the
-// tracker's settings in the file; if they lack `key`, `standard` is compared.
+// Returns whether the value of `key` in the file equals `running`, the value of the running
+// merlind. `own`: the driver's settings in the file; `standard`: the default value, compared if
+// `own` lacks `key`.
 template <std::size_t N>
 bool agrees(const Json& own, const std::string& key, const std::array<float, N>& running,
             const std::array<float, N>& standard) {
-  constexpr float kRounded = 0.006F;  // rounding of numbers in the file
+  constexpr float kRounded = 0.006F;  // tolerance for the rounding of numbers in the file
   const auto at = own.find(key);
   if (at != own.end() && (!at->is_array() || at->size() != N)) return false;
   for (std::size_t i = 0; i < N; ++i) {
@@ -167,8 +168,8 @@ bool agrees(const Json& own, const std::string& key, const std::array<float, N>&
   return true;
 }
 
-// Checks that a setting which --steps does not measure has the same value in the file and in the
-// running merlind, because it is derived from merlind's value and saved too. Errors:
+// Checks that alignment and boresight have the same values in the file and in the running merlind,
+// unless --steps measures them. The measured settings are relative to the running values. Errors:
 // kInvalidArgument.
 Result<Ok> checkKept(const TrackerOptions& o, const CalibratedDevice& tracker,
                      const StationFrame& present) {

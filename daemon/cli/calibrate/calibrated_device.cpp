@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The devices of a configuration that has none of its own.
+// Returns the list /devices for a configuration without one: merlind's default devices.
 Json defaultList() {
   Json list = Json::array();
   for (const DeviceSettings& device : defaultDevices())
@@ -24,7 +24,8 @@ Json defaultList() {
   return list;
 }
 
-// The file's configuration, with the list /devices. Errors: kMalformed, kIo.
+// Reads a configuration; adds the list /devices if it is missing. A missing file is an empty
+// configuration. Errors: kMalformed, kIo.
 Result<Json> readConfiguration(const std::string& path) {
   Json config = Json::object();
   if (const auto file = FileCopy::read(path)) {
@@ -63,7 +64,8 @@ std::string nameOf(const Json& entry) {
   return name.empty() && kind ? kindName(*kind) : name;
 }
 
-// The names that exist, for a message about a name that the list lacks: "its gloves: left, right".
+// Returns the names of the devices of this kind, for a message about an unknown name, "its gloves:
+// left, right".
 std::string namesOf(const Json& list, SampleKind kind) {
   std::vector<std::string> names;
   for (const Json& entry : list) {
@@ -73,7 +75,8 @@ std::string namesOf(const Json& list, SampleKind kind) {
                        : fmt::format("its {}s: {}", kindName(kind), fmt::join(names, ", "));
 }
 
-// Index of the first device of this kind with one of these drivers; nothing if there is none.
+// Returns the index of the first device of this kind that has one of these drivers; nothing if
+// there is none.
 std::optional<std::size_t> firstOf(const Json& list, SampleKind kind, DriverNames drivers) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (kindOf(list[i]) == kind && isOneOf(entryField(list[i], "driver"), drivers)) return i;
@@ -81,8 +84,9 @@ std::optional<std::size_t> firstOf(const Json& list, SampleKind kind, DriverName
   return std::nullopt;
 }
 
-// Index in the list; `drivers`: for the message if there is no such device. Errors:
-// kInvalidArgument.
+// Returns the index of the device named `name`, or of the first device of the kind if `name` is
+// empty. `path`, `drivers`: for the message of the error. Errors: kInvalidArgument (there is no
+// such device, or it is of another kind).
 Result<std::size_t> indexOf(const Json& list, const std::string& path, SampleKind kind,
                             const std::string& name, DriverNames drivers = {}) {
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -142,8 +146,8 @@ Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
   return deviceAt(list, *index, file);
 }
 
-// Only this entry is given to the loader, so that faults elsewhere in the file do not stop the
-// calibration.
+// Only the entry of this device is given to the loader, so that faults elsewhere in the file do not
+// stop the calibration.
 Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::string& port,
                                   int baud) {
   constexpr std::string_view kAlone = "/devices/0";

@@ -20,55 +20,61 @@ namespace merlin::cli {
 // An entry of the list /devices.
 struct CalibratedDevice {
   std::string file;
-  std::string pointer;         // "/devices/2"
-  std::string name, driver;    // the values in effect: an entry without a name has that of its kind
-  nlohmann::ordered_json own;  // the entry's settings of its driver: an object, which may be empty
-  nlohmann::ordered_json baud = 0;  // the entry's speed of the line; 0: the driver's usual one
-  std::string port = {};            // the entry's; empty: it has none
+  std::string pointer;       // "/devices/2"
+  std::string name, driver;  // values in effect: an entry without a name has the name of its kind
+  // The settings of the driver in the entry: an object, which may be empty.
+  nlohmann::ordered_json own;
+  // The baud rate in the entry; 0: the usual rate of the driver.
+  nlohmann::ordered_json baud = 0;
+  std::string port = {};  // the port in the entry; empty: none
 };
 
 using DriverNames = std::span<const char* const>;
+// Returns whether `driver` is one of `drivers`.
 bool isOneOf(const std::string& driver, DriverNames drivers);
 
 // Finds the device named `name`; if `name` is empty, the first device of this kind with one of
 // `drivers`, or the first of this kind if none has one of them. A file that does not exist or has
-// no /devices has merlind's default devices: glove, tracker and ball. Errors: kMalformed (the file
-// is no configuration, or one of an earlier form), kInvalidArgument (there is no such device, or it
-// is of another kind), kIo.
+// no /devices is taken to have merlind's default devices: glove, tracker and ball. Errors:
+// kMalformed (the file is not a configuration, or has the form of an earlier version),
+// kInvalidArgument (there is no such device, or it is of another kind), kIo.
 Result<CalibratedDevice> findDevice(const std::string& file, SampleKind kind,
                                     const std::string& name, DriverNames drivers = {});
 
-// The device as merlind would open it at `port`: with the entry's settings of its driver, and its
-// speed unless `baud` is another one than 0. Errors: kInvalidArgument (one of them is not allowed).
+// Returns the settings with which merlind would open the device at `port`, with the driver's
+// settings in the entry. `baud`: baud rate; 0: that of the entry. Errors: kInvalidArgument (a
+// setting is not allowed).
 Result<DeviceSettings> settingsOf(const CalibratedDevice& device, const std::string& port,
                                   int baud);
 
-// A device's line that the calibration itself has opened; no merlind may use it meanwhile.
+// The line of a device, opened by the calibration itself; no merlind may use the line at the same
+// time.
 struct OwnLine {
   DeviceSettings settings;
   std::unique_ptr<ByteStream> stream;
 };
 
-// Opens the device's line at `port`, or at the entry's port if that is empty. Errors: those of
-// settingsOf() and io::openPort(); kInvalidArgument (neither names a port).
+// Opens the line of the device at `port` or, if `port` is empty, at the port of the entry. Errors:
+// those of settingsOf() and io::openPort(); kInvalidArgument (neither names a port).
 Result<OwnLine> openOwnLine(const CalibratedDevice& device, const std::string& port, int baud);
 
-// Copies the members of `values` into the device's settings of its driver, and keeps everything
-// else in the file, and its order; creates the file if it does not exist. Errors: those of
-// findDevice() and writeFile(); kInvalidArgument (the file has changed meanwhile: the device has
-// another driver there). After an error the old file is unchanged.
+// Writes the members of `values` into the driver's settings of the device in the file, and keeps
+// all other content and its order; creates the file if it does not exist. Errors: those of
+// findDevice() and writeFile(); kInvalidArgument (the device in the file now has another driver
+// than `device`). After an error, the file is unchanged.
 Result<Ok> saveSettings(const CalibratedDevice& device, SampleKind kind,
                         const nlohmann::ordered_json& values);
 
-// The same, but first has the loader check the values; prints what was written. Errors also: those
-// of settingsOf().
+// Like saveSettings(), but checks the values with the loader before, and prints what was written.
+// Errors: those of settingsOf() and saveSettings().
 Result<Ok> saveChecked(const CalibratedDevice& device, SampleKind kind,
                        const nlohmann::ordered_json& values);
 
-// Adds the option --device for the name of a device. `kind`: "glove".
+// Adds the option --device for the name of a device. `kind`: kind of the device for the help text,
+// such as "glove".
 void addDeviceOption(Command command, std::string& name, const char* kind);
 
-// The numbers as a JSON list, rounded to seven significant digits.
+// Returns the numbers as a JSON list, rounded to seven significant digits.
 template <typename T>
 nlohmann::ordered_json numbers(const T& values) {
   auto list = nlohmann::ordered_json::array();

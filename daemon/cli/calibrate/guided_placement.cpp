@@ -15,7 +15,8 @@ namespace {
 
 using fastrak::GuidedAlignment;
 
-// Measures a station on the tracker's own line, in the frame that is sent.
+// Measures a station by opening the line of the tracker, in the frame in which the tracker sends
+// its poses.
 class GuidedSender final : public Guided, private IgnoringSink {
  public:
   GuidedSender(const OwnLine& line, const DriverEntry& driver, int station, const Clock& clock)

@@ -1,5 +1,5 @@
-// IgnoringSink: ignores the samples of a device that a calibration reads itself; each calibration
-// overrides publish() for the kind of samples that it measures.
+// IgnoringSink: a sink that ignores all samples. Calibrations that read a device themselves derive
+// from it and override publish() for the kind of samples that they measure.
 #pragma once
 
 #include "drivers/port/sample_sink.h"

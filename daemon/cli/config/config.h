@@ -1,4 +1,4 @@
-// The subcommands of `merlin config`, and what they share.
+// The subcommands of `merlin config`: functions that add them, and shared helpers.
 #pragma once
 
 #include <string>

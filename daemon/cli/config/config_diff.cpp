@@ -1,4 +1,5 @@
-// merlin config diff: what differs between a configuration and the defaults, or between two.
+// merlin config diff: prints the settings that differ between a configuration and the defaults, or
+// between two configurations.
 #include <memory>
 
 #include <fmt/format.h>

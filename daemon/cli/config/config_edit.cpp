@@ -28,10 +28,11 @@ std::string editorName() {
     const char* const set = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): one thread
     if (set && *set) return set;
   }
-  return "editor";  // Debian's choice of the system
+  return "editor";  // Debian's command for the editor that the system has chosen
 }
 
-// Ignores SIGINT and SIGQUIT of the keyboard, which only the editor should receive while it runs.
+// While this object exists, this process ignores SIGINT and SIGQUIT, so that Ctrl-C affects only
+// the editor.
 class KeyboardSignalsIgnored {
  public:
   KeyboardSignalsIgnored()
@@ -48,8 +49,8 @@ class KeyboardSignalsIgnored {
   void (*quit_)(int);
 };
 
-// Runs `editor`, a command line for the shell, on the file and waits for its end. Errors: kIo (it
-// cannot be started, or it failed).
+// Runs the editor on the file and waits until it ends. `editor`: a command line for the shell.
+// Errors: kIo (the editor cannot be started, or it failed).
 Result<Ok> runEditor(const std::string& editor, const std::string& file) {
   const std::string line = editor + " \"$1\"";
   const KeyboardSignalsIgnored ignored;
@@ -70,7 +71,8 @@ Result<Ok> runEditor(const std::string& editor, const std::string& file) {
                                     : std::string(": it was ended by a signal"))};
 }
 
-// Asks until the answer begins with one of `letters`; nothing at the end of the input.
+// Repeats the question until the answer begins with one of `letters`, and returns that letter;
+// nothing at the end of the input.
 std::optional<char> ask(const std::string& question, std::string_view letters) {
   for (std::string answer;
        printOut("{} ", question), std::fflush(stdout), std::getline(std::cin, answer);) {
@@ -95,7 +97,7 @@ int keepOld(const EditedFile& edited, int status) {
 }
 
 int offerReload(const std::string& instance) {
-  if (!findRoles(instance)) return kExitDone;  // no merlind runs that could read it
+  if (!findRoles(instance)) return kExitDone;  // no merlind runs that could read the file
   const auto answer =
       ask(fmt::format("merlind \"{}\" is running. Have it read its configuration now? (y)es, (n)o:",
                       instance),
@@ -137,7 +139,7 @@ int editFile(const std::string& path) {
     if (answer == 's') return save(*edited, loaded);
     if (answer == 'k') return keepOld(*edited, invalid ? kExitBadInput : kExitDone);
     if (answer) continue;
-    edited->keepCopy();  // nobody answers: the work is not lost
+    edited->keepCopy();  // the input has ended, so the edits are kept in the copy
     printNote(fmt::format("your edits are kept in {}", edited->copy()));
     return keepOld(*edited, kExitBadInput);
   }

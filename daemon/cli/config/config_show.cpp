@@ -1,4 +1,4 @@
-// merlin config show: the settings in effect, and where each comes from.
+// merlin config show: prints the settings in effect and the origin of each value.
 #include <memory>
 #include <optional>
 

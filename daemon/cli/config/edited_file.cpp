@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = 16U << 20;  // a configuration has at most 1 MiB
+constexpr std::size_t kMostBytes = 16U << 20;  // large enough: a configuration has at most 1 MiB
 
 Error fault(const std::string& path, int number) {
   const auto code = number == ENOENT ? Errc::kNotFound : Errc::kIo;
@@ -35,16 +35,16 @@ bool writeAll(int fd, std::string_view bytes) {
   return true;
 }
 
-// ".merlin.edit.json" beside "merlin.json": the ending tells an editor the language, and a name
-// that begins with a dot is not read in a conf.d.
+// Returns the path of the copy: ".merlin.edit.json" for "merlin.json". Editors recognise the
+// language by the ending; the dot keeps merlind from reading the copy as a file of conf.d.
 std::string copyName(const fs::path& path) {
   const std::string name =
       fmt::format(".{}.edit{}", path.stem().string(), path.extension().string());
   return (path.parent_path() / name).string();
 }
 
-// A temporary file beside `path`, which nobody reads before it is complete and renamed. The
-// destructor removes it unless it was renamed.
+// A temporary file with a new name beside `path`. rename() syncs it and gives it its final name;
+// otherwise the destructor removes it.
 class NewFile {
  public:
   explicit NewFile(const std::string& path) : name_(path + ".XXXXXX") {
@@ -68,7 +68,7 @@ class NewFile {
   bool renamed_ = false;
 };
 
-// Syncs the folder of `path`: a new name in it survives a power failure only after that.
+// Syncs the folder of `path`, because a renamed file survives a power failure only then.
 void syncFolder(const fs::path& path) {
   const UniqueFd folder(::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folder.valid()) ::fsync(folder.get());
@@ -140,7 +140,7 @@ Result<Ok> EditedFile::replace() {
                              "{}); use sudo",
                              path_, old.st_uid, old.st_gid)};
   }
-  // After fchown(), because that may clear bits of the mode.
+  // The mode is set after fchown(), which may clear bits of it.
   if (::fchmod(fresh.fd(), old.st_mode & 07777) != 0) return fault(path_, errno);
   if (!fresh.rename(path_)) return fault(path_, errno);
   syncFolder(path_);

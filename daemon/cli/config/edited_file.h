@@ -1,4 +1,5 @@
-// EditedFile: a file and the copy of it that a person edits, until the copy takes the file's place.
+// EditedFile: a file, and a copy of it that a person edits and that finally replaces the file's
+// content.
 #pragma once
 
 #include <optional>
@@ -10,26 +11,28 @@
 
 namespace merlin::cli {
 
-// The copy lies in the file's folder, so that relative names in it mean the same. Thread-bound.
+// The copy is in the folder of the file, so that relative file names in it have the same meaning.
+// Thread-bound.
 class EditedFile {
  public:
-  // Makes the copy, for this user only. A link is followed: the file that it names is edited, and
-  // stays where it is. Errors: kNotFound, kIo (also if this user may not replace the file), kBusy
-  // (somebody else edits it).
+  // Makes the copy, which only this user may read. If `path` is a link, the file that it points to
+  // is edited, and the link is kept. Errors: kNotFound, kIo (also if this user may not replace the
+  // file), kBusy (somebody else is editing it).
   static Result<EditedFile> open(const std::string& path);
   EditedFile(EditedFile&&) noexcept;
   EditedFile& operator=(EditedFile&&) = delete;
   EditedFile(const EditedFile&) = delete;
   EditedFile& operator=(const EditedFile&) = delete;
-  ~EditedFile();  // removes the copy, unless keepCopy()
+  ~EditedFile();  // removes the copy, unless keepCopy() was called
 
   const std::string& path() const noexcept { return path_; }
   const std::string& copy() const noexcept { return copy_; }
-  // Whether copy and file differ. Errors: those of reading the copy.
+  // Returns whether the copy differs from the file as it was at open(). Errors: those of reading
+  // the copy.
   Result<bool> hasChanged() const;
-  // Replaces the file's content by the copy's, atomically, with the owner, group and mode of the
-  // file. Errors: kIo (also if the file has changed since open(), or its owner cannot be kept);
-  // the file is then as it was.
+  // Replaces the file atomically by one with the content of the copy and the same owner, group and
+  // mode. Errors: kIo (also if the file has changed since open(), or its owner cannot be kept); the
+  // file is then unchanged.
   Result<Ok> replace();
   // Leaves the copy behind when this object is destroyed.
   void keepCopy() noexcept { kept_ = true; }
@@ -39,7 +42,7 @@ class EditedFile {
 
   std::string path_, copy_, before_;
   FileStamp stamp_;
-  UniqueFd lock_;  // the file itself, locked against another edit
+  UniqueFd lock_;  // the file itself, with a lock (flock) against a second edit
   bool kept_ = false;
 };
 

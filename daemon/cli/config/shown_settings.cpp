@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kRate = "/wall/rate/rate_hz";
 
-// Whether the setting belongs to an entry of a list that stands in a file.
+// Returns whether the setting at pointer `at` belongs to a list entry that a file contains.
 bool isOfListedEntry(const LoadedSettings& loaded, std::string at) {
   for (; !at.empty(); at.resize(at.rfind('/'))) {
     const char first = at[at.rfind('/') + 1];
@@ -21,9 +21,9 @@ bool isOfListedEntry(const LoadedSettings& loaded, std::string at) {
   return false;
 }
 
-// A setting that a list entry in the file omits has the default of an entry with these other
-// settings (such as the baud rate of its driver), not the value in the default list, because the
-// file's list replaces the default list.
+// Fills in origin, file and line. If a list entry in a file omits the setting, its default becomes
+// the value in effect (such as the baud rate of the entry's driver) instead of the value in the
+// default list, which the list in the file replaces.
 void findOrigin(const LoadedSettings& loaded, const std::string& file, ShownSetting& shown) {
   SettingValue& setting = shown.setting;
   const bool own = loaded.lines.contains(setting.pointer);

@@ -1,5 +1,5 @@
-// merlin devices: the devices that a running merlind reads, and what is plugged into this machine
-// or served by VRPN servers and not configured.
+// merlin devices: lists the devices that a running merlind reads, and devices that are plugged into
+// this machine or offered by VRPN servers but not configured.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -31,7 +31,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kRedraw_ms = 100;
-constexpr Duration kVrpnWait = std::chrono::milliseconds(500);  // for the answers of all servers
+// Time to wait for the answers of all servers.
+constexpr Duration kVrpnWait = std::chrono::milliseconds(500);
 
 struct DevicesOptions {
   std::string instance = "merlin", config;
@@ -43,7 +44,8 @@ struct DevicesOptions {
 struct Configured {
   std::string name, state;
   DeviceHealth health;
-  std::string path;  // its port's file, with links resolved; empty: the port is no file
+  // Device file of its port, with links resolved; empty: the port is no file.
+  std::string path;
 };
 
 std::string pathOf(const std::string& port) {
@@ -72,7 +74,7 @@ Result<std::vector<Configured>> configuredDevices(const std::string& instance) {
   return all;
 }
 
-// The device whose port this is; null if none is.
+// Returns the configured device that reads the plugged-in one; null if none does.
 const Configured* readerOf(const Plugged& plugged, const std::vector<Configured>& configured) {
   const auto at = std::ranges::find(configured, plugged.path, &Configured::path);
   return at == configured.end() ? nullptr : &*at;
@@ -90,7 +92,7 @@ void printConfigured(const std::vector<Configured>& configured) {
   }
 }
 
-// The words, with commas, in lines of at most 90 characters that begin with four spaces.
+// Returns `title` and the words, separated by commas, in indented lines of at most 90 characters.
 std::string wrapped(const std::string& title, const std::vector<std::string>& words) {
   constexpr std::size_t kWidth = 90;
   std::string text, line = "    " + title;
@@ -143,7 +145,8 @@ Json jsonOf(const Plugged& plugged, const Configured* reader) {
 }
 
 // Returns the settings of the file that the option names; without the option, those of the usual
-// file if it can be read, otherwise the defaults.
+// file or, if that is missing or invalid, the defaults. Errors: kInvalidArgument (the named file is
+// invalid).
 Result<Settings> settingsOf(const DevicesOptions& options) {
   if (options.config.empty() && !fileStamp(kUsualConfig)) return Settings{};
   const std::string file = options.config.empty() ? kUsualConfig : options.config;
@@ -157,8 +160,8 @@ Result<Settings> settingsOf(const DevicesOptions& options) {
   return Settings{};
 }
 
-// Names of configured devices that have a port. The name of an entry without a port stays free,
-// because a plugged-in device may take that entry.
+// Returns the names of running and configured devices that have a port. The name of an entry
+// without a port stays free, because a plugged-in device may use that entry.
 std::vector<std::string> takenNames(const std::vector<Configured>& running,
                                     const Settings& settings) {
   std::vector<std::string> taken;
@@ -171,7 +174,8 @@ std::vector<std::string> takenNames(const std::vector<Configured>& running,
   return taken;
 }
 
-// Adds the devices of VRPN servers that the running merlind reads, or has read since its start.
+// Adds to `devices` the devices of VRPN servers that the running merlind reads or has read since
+// its start.
 void addRunning(const std::vector<Configured>& running, DevicesSettings& devices) {
   for (const Configured& device : running) {
     if (auto reads = vrpnDeviceOf(device.name, device.health.port, device.health.identity))
@@ -179,7 +183,7 @@ void addRunning(const std::vector<Configured>& running, DevicesSettings& devices
   }
 }
 
-// What was found in addition to the devices of the running merlind; the names in it are free.
+// What is plugged in and what VRPN servers offer; the names suggested for entries are not in use.
 struct Found {
   std::vector<Plugged> plugged;
   std::vector<VrpnListing> vrpn;
@@ -241,7 +245,8 @@ int list(const DevicesOptions& options) {
   return kExitDone;
 }
 
-// On a terminal each table replaces the one before.
+// Prints the devices' current values ten times a second until a signal or for options.seconds. On a
+// terminal, each table replaces the one before.
 int watch(const DevicesOptions& options) {
   const UniqueFd stop = stopSignals();
   const std::string segment = shm::segmentName(options.instance, "devices");

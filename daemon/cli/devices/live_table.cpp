@@ -15,9 +15,10 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kHalfBar = 10;  // characters to either side of rest
+constexpr int kHalfBar = 10;  // characters on each side of the middle
 
-// What bindings call a key or button of this number: "key.space", "button.south".
+// Returns the name that bindings use for the key or button with this kernel code: "key.space",
+// "button.south".
 std::string inputOf(std::uint16_t code) {
   std::string name = io::keyNameOf(code);
   if (name.starts_with("key_")) return "key." + name.substr(4);
@@ -25,7 +26,8 @@ std::string inputOf(std::uint16_t code) {
   return fmt::format("number {}", code);
 }
 
-// Axes, buttons and keys by the names that bindings use after the device's name.
+// Returns the lines of a ball: its axes, pressed buttons and keys, by the names that bindings use
+// after the device's name.
 std::string ballLines(const BallSample& ball) {
   std::string text;
   for (int i = 0; i < 6; ++i) {
@@ -57,7 +59,7 @@ std::string gloveLines(const GloveSample& glove, const shm::SeqSlot<PostureState
   return fmt::format("{}\n    posture  {}\n", joints, name.empty() ? "none" : name);
 }
 
-// The last gesture of each hand whose gestures are recognised.
+// Returns a line for each hand whose gestures are recognised, with its last gesture.
 std::string gestureLines(const shm::DeviceSlots& devices, Timestamp now) {
   std::string text;
   for (const auto& hand : devices.hands) {

@@ -1,4 +1,4 @@
-// The newest values of all devices, as lines for a person.
+// Formats the newest values of all devices as lines for a person.
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace merlin::cli {
 
-// Each device with its health and its complaint; below it, if it works, its current values: bars
-// for the ball's axes and the numbers of its buttons, the glove's joints in degrees and its
-// posture, the position of each of the tracker's stations. Below all, the last gesture of each
-// hand.
+// Returns a line for each device with its health, rate and fault. If the device works, its current
+// values follow: bars for the ball's axes and its pressed buttons, the glove's joints [degrees] and
+// its posture, the pose of each tracker station, or the fingers on the touch surface. The last
+// gesture of each hand is at the end.
 std::string liveTable(const shm::DeviceSlots& devices, Timestamp now);
 
-// "[----|##  ]" for a share -1..1.
+// Returns a bar for a share from -1 to 1, with 10 characters on each side of the middle: 0.5 gives
+// "[          |#####     ]".
 std::string axisBar(float share);
 
 }  // namespace merlin::cli

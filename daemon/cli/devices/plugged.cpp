@@ -37,7 +37,7 @@ std::string firstLine(const fs::path& file) {
   return line;
 }
 
-// The path with links resolved; the path itself if that fails.
+// Returns the path with links resolved, or the path itself if that fails.
 std::string withoutLinks(const fs::path& path) {
   std::error_code error;
   const fs::path real = fs::canonical(path, error);
@@ -51,7 +51,7 @@ std::string groupOf(const std::string& path) {
   return owner ? owner->gr_name : "";
 }
 
-// Maps each file to the link in the folder, such as /dev/input/by-id, that points to it. The names
+// Maps each file to the link that points to it in the folder, such as /dev/input/by-id. The names
 // of these links stay the same when a device is plugged in elsewhere. If several links point to one
 // file, the last one is taken, which for a gamepad is "...-event-joystick".
 std::map<std::string, std::string> linksOf(const fs::path& folder) {
@@ -60,7 +60,8 @@ std::map<std::string, std::string> linksOf(const fs::path& folder) {
   return links;
 }
 
-// Reads a bitmap of the kernel: words of 64 bits in hexadecimal, the last word first.
+// Reads a bitmap from a file of /sys: words of 64 bits in hexadecimal, the most significant word
+// first.
 template <std::size_t N>
 std::bitset<N> bitmap(const fs::path& file) {
   std::istringstream words(firstLine(file));
@@ -75,7 +76,7 @@ std::bitset<N> bitmap(const fs::path& file) {
   return bits;
 }
 
-// What an input device has, by the kernel's numbers.
+// The keys and axes of an input device, by the event codes of the kernel.
 struct Capabilities {
   explicit Capabilities(const fs::path& folder)
       : keys(bitmap<KEY_CNT>(folder / "key")),
@@ -87,7 +88,8 @@ struct Capabilities {
   std::bitset<REL_CNT> relative;
 };
 
-// What kind of input device it is; empty for one that cannot serve (a power button, a lid).
+// Returns the kind of an input device; empty if MERLIN cannot use it (a power button, a lid
+// switch).
 std::string kindOf(const Capabilities& has) {
   const auto six = [](const auto& axes) {
     for (int code = ABS_X; code <= ABS_RZ; ++code) {
@@ -106,7 +108,7 @@ std::string kindOf(const Capabilities& has) {
   return {};
 }
 
-// How a device of this kind may serve, under a short name.
+// Returns the drivers that can read an input device of this kind, with a short name for the device.
 std::vector<Plugged::Use> usesOf(const std::string& kind) {
   if (kind == "gamepad") return {{"pad", "evdev"}};
   if (kind == "joystick") return {{"stick", "evdev"}};
@@ -116,8 +118,8 @@ std::vector<Plugged::Use> usesOf(const std::string& kind) {
   return {{kind, "evdev"}};
 }
 
-// Fills in axes, keys and which are read. The kernel tells the ranges of axes only to those who
-// open the device; which axes are read does not depend on them.
+// Fills in axes, keys and `usual` as the driver evdev would. The ranges of the axes, which the
+// kernel tells only to programs that open the device, are not needed for that.
 void describeInput(const Capabilities& has, Plugged& plugged) {
   evdev::InputDevice input;
   EvdevRecord record;
@@ -135,7 +137,7 @@ void describeInput(const Capabilities& has, Plugged& plugged) {
   for (std::size_t code = 0; code < has.keys.size(); ++code) {
     if (has.keys[code]) input.describe(io::keyRecord(static_cast<std::uint16_t>(code)));
   }
-  (void)input.choose({});  // the usual ones, which the device has
+  (void)input.choose({});  // without settings, the driver chooses the usual axes and keys
   plugged.axes = input.axisNames();
   plugged.keys = input.keyNames();
   plugged.usual = input.chosen();
@@ -143,7 +145,7 @@ void describeInput(const Capabilities& has, Plugged& plugged) {
 
 void addAdapters(const std::string& root, std::vector<Plugged>& all) {
   const auto links = linksOf(root + "/dev/serial/by-id");
-  std::map<std::string, std::string> found = links;  // key: file; value: name for its port
+  std::map<std::string, std::string> found = links;  // maps each device file to its link
   for (const fs::path& entry : entriesOf(root + "/sys/class/tty")) {
     const std::string name = entry.filename();
     const bool adapter = name.starts_with("ttyUSB") || name.starts_with("ttyACM");
@@ -174,7 +176,7 @@ void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
     if (kind.empty()) continue;
     const std::string path = withoutLinks(root + "/dev/input/" + entry.filename().string());
     std::error_code error;
-    if (!fs::exists(path, error) && !error) continue;  // unplugged since the folder was read
+    if (!fs::exists(path, error) && !error) continue;  // was unplugged in the meantime
     const auto link = links.find(path);
     found.push_back({kind,
                      firstLine(entry / "device/name"),
@@ -187,7 +189,8 @@ void addInputDevices(const std::string& root, std::vector<Plugged>& all) {
                      {},
                      {}});
     if (kind != "touch screen")
-      describeInput(has, found.back());  // the driver touch reads that one, not evdev
+      // Touch screens are read by the driver touch, not by evdev.
+      describeInput(has, found.back());
   }
   std::ranges::stable_sort(found, {}, &Plugged::name);
   all.insert(all.end(), found.begin(), found.end());

@@ -1,5 +1,5 @@
-// Finds what is plugged into this machine and could serve as a device: serial adapters, input
-// devices of the kernel, the socket of spacenavd.
+// Finds what is plugged into this machine and could be read as a device: serial adapters, input
+// devices of the kernel, and the socket of spacenavd.
 #pragma once
 
 #include <string>
@@ -8,39 +8,41 @@
 namespace merlin::cli {
 
 struct Plugged {
-  // One way to serve, as an entry of the configuration's list "devices".
+  // One way to read the device, as an entry of the list "devices" of the configuration.
   struct Use {
-    std::string name;    // for the device
+    std::string name;    // name of the device
     std::string driver;  // driver that reads it
   };
 
   std::string kind;       // "serial adapter", "gamepad", "space mouse" ..., for a person
-  std::string name;       // as the device says, for a person
+  std::string name;       // the name that the hardware states, for a person
   std::string port;       // in a form that parsePort() understands
-  std::string path;       // path of its file, with links resolved
-  std::vector<Use> uses;  // at least one; for an adapter, one for each kind of device
-  bool readable = false;  // whether the calling process may read it
-  std::string group;      // group of its file, whose members may read it; empty: unknown
-  // For an input device that the driver evdev reads: its axes and keys, by the names that the
-  // driver's settings use, and a text about those that are read if the settings name none: "axes x,
-  // ...; buttons south, ...".
+  std::string path;       // path of its device file, with links resolved
+  std::vector<Use> uses;  // at least one; a serial adapter has one for each kind of device
+  bool readable = false;  // whether this process may open it
+  std::string group;      // group of its device file, whose members may open it; empty: unknown
+  // For an input device that the driver evdev can read: its axes and keys, by the names that the
+  // driver's settings use. `usual`: a text about those that the driver reads if the settings name
+  // none, "axes x, ...; buttons south, ...".
   std::vector<std::string> axes, keys;
   std::string usual;
 };
 
-// Reads /dev, /sys and /run below `root` (tests give one of their own; no "/" at its end); opens no
-// device. The result has a fixed order: adapters, input devices, sockets, each by name. Devices
-// that cannot be read are listed too. Cost: a few files for each input device.
+// Looks for devices in /dev, /sys and /run below the folder `root` (for tests; without "/" at the
+// end); opens no device. The result is sorted: adapters, input devices, sockets, each by name.
+// Devices that this process may not open are listed too. Cost: reads a few files for each input
+// device.
 std::vector<Plugged> findPlugged(const std::string& root = "");
 
-// The wanted name, or, if it is taken, the first free one of "mouse_2", "mouse_3" ...
+// Returns `wanted` if it is not in `taken`, otherwise the first free name of "WANTED_2", "WANTED_3"
+// ...
 std::string freeName(const std::string& wanted, const std::vector<std::string>& taken);
 
-// Changes the names of uses ("mouse_2") so that they differ from those in `taken`, and so that
-// those of devices with only one use differ from each other.
+// Renames uses (to "mouse_2") so that no name is in `taken`, and so that no use has the same name
+// as a device before it with only one use.
 void nameApart(std::vector<Plugged>& all, std::vector<std::string> taken);
 
-// The entry for the list "devices" of the configuration.
+// Returns the JSON text of the entry for the list "devices" of the configuration.
 std::string configurationEntry(const Plugged& plugged, const Plugged::Use& use);
 
 }  // namespace merlin::cli

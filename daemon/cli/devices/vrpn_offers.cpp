@@ -16,7 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A driver that reads devices of VRPN servers: what it can use, and the name for its device.
+// A driver that reads devices of VRPN servers: a name for such a device, and which kinds of data
+// the driver can use.
 struct Reader {
   const char *driver, *name;
   bool (*reads)(const vrpn::Measures&);
@@ -29,7 +30,8 @@ constexpr Reader kReaders[] = {
      [](const DriverSettings& s) -> const std::string& { return s.vrpn_pad.device; }},
 };
 
-// The configured device that reads this one by this driver; empty if none does.
+// Returns the name of the configured device that already reads this device of the server with this
+// driver; empty if none does.
 std::string readBy(const PortAddress& server, const std::string& device, const Reader& reader,
                    const DevicesSettings& devices) {
   for (const DeviceSettings& d : devices.list) {

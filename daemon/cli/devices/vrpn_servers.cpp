@@ -19,17 +19,20 @@ namespace merlin::cli {
 namespace {
 
 constexpr const char* kUsualHere = "tcp://127.0.0.1:3883";
-constexpr Duration kGrace = std::chrono::milliseconds(100);  // for threads that end on time
+// Time that threads have, after their deadline, to store their answers.
+constexpr Duration kGrace = std::chrono::milliseconds(100);
 
-// State that the caller shares with its threads, which may outlive the call.
+// State that askServers() shares with its threads, which may outlive the call.
 struct Round {
   std::mutex mutex;
   std::condition_variable ended;
-  std::vector<VrpnAnswer> answers;  // each has the fault "no answer" until one arrives
-  std::size_t open = 0;             // threads that have not ended
+  // One per server, in the order of the ports, with the fault "no answer ..." until the server
+  // answers.
+  std::vector<VrpnAnswer> answers;
+  std::size_t open = 0;  // number of threads that have not ended
 };
 
-// The error's text without the port, which it may begin with.
+// Returns the text of the error without the server's port, with which it may begin.
 std::string faultOf(const Error& error, const PortAddress& at) {
   const std::string prefix = fmt::format("tcp://{}:{}: ", at.path, at.service);
   return error.what.starts_with(prefix) ? error.what.substr(prefix.size()) : error.what;
@@ -40,7 +43,7 @@ void ask(const PortAddress& at, Timestamp until, VrpnAnswer& answer) {
   const auto stream = io::openPort(at, 0);
   if (!stream) {
     answer.fault = faultOf(stream.error(), at);
-    if (answer.port == kUsualHere)  // always asked, even if nobody named it
+    if (answer.port == kUsualHere)  // this server is always asked, even if nobody named it
       answer.fault += "; no VRPN server runs on this machine";
     return;
   }
@@ -104,10 +107,11 @@ std::vector<VrpnAnswer> askServers(const std::vector<std::string>& ports, Durati
   const auto round = std::make_shared<Round>();
   for (const std::string& port : ports)
     round->answers.push_back({port, {}, fmt::format("no answer within {:.1f} s", toSeconds(wait))});
-  std::unique_lock lock(round->mutex);  // so that no thread ends before all are counted
+  // Held so that no thread changes `open` before all are counted.
+  std::unique_lock lock(round->mutex);
   try {
     for (std::size_t i = 0; i < ports.size(); ++i) startAsking(round, i, until);
-  } catch (const std::system_error&) {  // too many threads: the others are not asked
+  } catch (const std::system_error&) {  // too many threads; the remaining servers are not asked
   }
   round->ended.wait_for(lock, wait + kGrace, [&] { return round->open == 0; });
   return round->answers;

@@ -6,7 +6,8 @@
 namespace merlin::cli {
 namespace {
 
-// Appends the performance as merlind's gesture follower sees it, with the hand's smoothing.
+// Appends the poses of the performance to the recording, smoothed as merlind smooths the pose of a
+// hand, and labelled with the gesture that is being made.
 void append(nn::PathRecording& recording, const hand::Performance& performance) {
   hand::Hand smooth({});
   const nn::WallAxes axes;

@@ -25,13 +25,15 @@ struct SyntheticMovers {
   std::uint64_t seed = 1;
 };
 
-// What the tracker of one of them records; `person`: its number. About 4 MB for ten minutes.
+// Returns the labelled poses of the hand of the synthetic person with the number `person`. Memory:
+// about 4 MB for ten minutes.
 nn::PathRecording recordingOf(const SyntheticMovers& movers, std::size_t person);
 
-// Strokes of all of them; `lost`: set to the number of takes without a stroke.
+// Returns the labelled strokes of all people of `movers`. `lost`: set to the number of takes
+// without a stroke.
 std::vector<nn::LabelledStroke> strokesOf(const SyntheticMovers& movers, std::size_t& lost);
 
-// Time after a gesture in which strokes are neither the gesture nor ordinary motion.
+// Time after a gesture in which strokes count neither as the gesture nor as ordinary motion [s].
 inline constexpr double kAfterTake_s = 0.8;
 
 }  // namespace merlin::cli

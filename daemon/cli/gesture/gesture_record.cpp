@@ -20,10 +20,12 @@
 namespace merlin::cli {
 namespace {
 
-constexpr Duration kHandPatience = std::chrono::seconds(3);       // longest time without a sample
-constexpr Duration kLongestGap = std::chrono::milliseconds(250);  // between two samples of a take
-constexpr int kMostTriesOfATake = 5;                              // of a take
-constexpr double kBetweenFiles_s = 10;  // from the last take in the file to the first new one
+constexpr Duration kHandPatience = std::chrono::seconds(3);  // maximum time without a sample
+// Maximum time between two samples of a take.
+constexpr Duration kLongestGap = std::chrono::milliseconds(250);
+// Number of attempts at one take; after that, the recording ends.
+constexpr int kMostTriesOfATake = 5;
+constexpr double kBetweenFiles_s = 10;  // time from the last pose in the file to the first new pose
 
 struct GestureRecordOptions {
   std::string label, hand, output = "gestures.csv", instance = "merlin";
@@ -35,19 +37,19 @@ struct GestureRecordOptions {
 // A hand of a running merlind.
 struct LiveHand {
   std::string name;
-  std::size_t index = 0;  // in /hands
+  std::size_t index = 0;  // index in /hands
   LiveSamples<HandSample> samples;
   int stop = -1;  // the descriptor of stopSignals()
 };
 
-// What was recorded, also if the recording ended early.
+// The takes that were recorded, perhaps fewer than wanted.
 struct RecordedTakes {
   nn::PathRecording recording;
   std::size_t count = 0;
-  std::optional<Error> ended;  // why there are fewer takes than wanted
+  std::optional<Error> ended;  // error that ended the recording early
 };
 
-// The hands of the devices, as part of a sentence.
+// Returns the names of the hands as a clause for a message, "its hands are left, right".
 std::string handsOf(const shm::DeviceSlots& devices) {
   std::string names;
   for (const auto& hand : devices.hands) names += (names.empty() ? "" : ", ") + hand.name;
@@ -55,8 +57,8 @@ std::string handsOf(const shm::DeviceSlots& devices) {
                        : fmt::format("its hands are {}", names);
 }
 
-// The hand that the options name. Errors: kInvalidArgument (there is no such hand, or nothing that
-// could track it), those of LiveSamples::open().
+// Opens the hand that the options name, or the first hand. Errors: kInvalidArgument (there is no
+// such hand, or no tracker), those of LiveSamples::open().
 Result<LiveHand> openHand(const GestureRecordOptions& options, int stop) {
   const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
   const auto* const hand = devices ? (*devices)->hand(options.hand) : nullptr;
@@ -83,8 +85,9 @@ Result<LiveHand> openHand(const GestureRecordOptions& options, int stop) {
                   *std::move(samples), stop};
 }
 
-// Records the poses of the hand for `seconds` into `poses`; discards them if that is null. Errors:
-// kClosed (a signal has arrived, or merlind has ended), kTimeout (the hand sends nothing).
+// Appends the poses of the hand during the next `seconds` to `poses`, turned to the axes of the
+// wall and labelled `label`; discards them if `poses` is null. Errors: kClosed (a signal has
+// arrived, or merlind has ended), kTimeout (the hand sends nothing).
 Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std::uint32_t label,
                   std::vector<nn::LabelledPose>* poses) {
   const SystemClock clock;
@@ -93,7 +96,8 @@ Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std:
   while (clock.now() - began < fromSeconds(seconds)) {
     const auto taken = hand.samples.listen([&](const HandSample& s) {
       heard = clock.now();
-      // On a busy machine, samples arrive late: skips those from before or after the take.
+      // On a busy machine, samples are delivered late; those received before or after the take are
+      // skipped.
       const Timestamp received = fromNanoseconds(s.received_ns);
       if (poses && received >= began && received < began + fromSeconds(seconds))
         poses->push_back({label, axes.turned(s.received_ns, s.position_m, s.orientation_wxyz)});
@@ -110,7 +114,7 @@ Result<Ok> listen(LiveHand& hand, double seconds, const nn::WallAxes& axes, std:
   return Ok{};
 }
 
-// Whether no gap between poses from `from` to `to` is longer than kLongestGap.
+// Returns whether the hand was tracked from `from` to `to` without a gap longer than kLongestGap.
 bool isSeenThroughout(std::span<const nn::LabelledPose> take, Timestamp from, Timestamp to) {
   Timestamp last = from;
   for (const nn::LabelledPose& p : take) {
@@ -121,8 +125,8 @@ bool isSeenThroughout(std::span<const nn::LabelledPose> take, Timestamp from, Ti
   return to - last <= kLongestGap;
 }
 
-// Errors: kTimeout: the hand was lost for a moment, as on a busy machine; those of nn::checkTake(),
-// which is not called for ordinary motion.
+// Checks that a take can be used. Errors: kTimeout (the hand was not tracked all the time); those
+// of nn::checkTake(), unless the take is ordinary motion.
 Result<Ok> checkTaken(std::span<const nn::LabelledPose> poses, Timestamp began,
                       const GestureRecordOptions& options) {
   if (!isSeenThroughout(poses, began, began + fromSeconds(options.seconds)))
@@ -132,7 +136,9 @@ Result<Ok> checkTaken(std::span<const nn::LabelledPose> poses, Timestamp began,
   return nn::checkTake({{options.label}, {poses.begin(), poses.end()}});
 }
 
-// A take that cannot be used is taken once more.
+// Records one take and appends it to `poses`. An unusable take is repeated, at most
+// kMostTriesOfATake attempts in all. Errors: those of listen() and, for the last attempt, of
+// checkTaken().
 Result<Ok> takeOne(LiveHand& hand, const GestureRecordOptions& options, const nn::WallAxes& axes,
                    std::uint32_t label, std::vector<nn::LabelledPose>& poses) {
   const SystemClock clock;
@@ -187,7 +193,8 @@ Result<Ok> checkTakesFile(const GestureRecordOptions& options) {
                   options.output, nn::kMostGestures)};
 }
 
-// If the file exists, puts its takes before those of `recording`, whose times follow theirs.
+// If the file exists, inserts its takes before those of `recording`, and shifts the times of the
+// latter to follow them. Errors: those of nn::loadPaths().
 Result<Ok> addTo(nn::PathRecording& recording, const std::string& path) {
   if (!std::filesystem::exists(path)) return Ok{};
   auto before = nn::loadPaths(path);
@@ -204,7 +211,8 @@ Result<Ok> addTo(nn::PathRecording& recording, const std::string& path) {
   return Ok{};
 }
 
-// Errors: those of addTo() and nn::savePaths().
+// Appends the takes to the output file and prints their number. Errors: those of addTo() and
+// nn::savePaths().
 Result<Ok> saveTakes(RecordedTakes taken, const GestureRecordOptions& options) {
   const std::size_t poses = taken.recording.poses.size();
   if (auto added = addTo(taken.recording, options.output); !added) return added;
@@ -214,7 +222,8 @@ Result<Ok> saveTakes(RecordedTakes taken, const GestureRecordOptions& options) {
   return Ok{};
 }
 
-// Errors: kInvalidArgument (the label or the axes are not valid).
+// Checks the label and returns the axes that the options name. Errors: kInvalidArgument (the label
+// or the axes are not valid).
 Result<nn::WallAxes> checkedAxes(const GestureRecordOptions& options) {
   if (options.label != nn::kNoGesture && !nn::isGestureName(options.label))
     return Error{Errc::kInvalidArgument,

@@ -1,5 +1,5 @@
-// merlin gesture test: how often gestures are recognised in a recording, and how often a gesture is
-// reported that nobody made.
+// merlin gesture test: measures how often gestures are recognised in a recording, and how often a
+// gesture is reported that nobody made.
 #include "daemon/cli/gesture/gesture.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// People on whom the shipped gestures were not trained.
+// Synthetic people for tests; the shipped gestures were not trained on them.
 const SyntheticMovers kUnseenMovers{
     .first = 1001, .people = 20, .times = 5, .ordinary_s = 600, .kind_s = 0, .seed = 2};
 
@@ -33,6 +33,7 @@ struct Tested {
   bool synthetic = true;
 };
 
+// Evaluates the model on the recording `data` or, if it is empty, on the unseen synthetic people.
 // Errors: those of nn::loadPaths().
 Result<Tested> evaluate(const nn::GestureModel& model, const std::string& data) {
   Tested tested;

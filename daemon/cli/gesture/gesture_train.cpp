@@ -17,10 +17,11 @@
 namespace merlin::cli {
 namespace {
 
-// What the shipped gestures were trained on; tests use people from 1001 on.
+// The synthetic people on whom the shipped gestures were trained. Tests use people from number 1001
+// on.
 const SyntheticMovers kTrained{
     .first = 1, .people = 300, .times = 6, .ordinary_s = 600, .kind_s = 60, .seed = 1};
-// Ordinary motion for a recording that has none.
+// The synthetic people whose ordinary motion is added to a recording that has none.
 const SyntheticMovers kOrdinary{
     .first = 1, .people = 40, .times = 0, .ordinary_s = 600, .kind_s = 60, .seed = 1};
 
@@ -36,7 +37,7 @@ struct TrainingStrokes {
   std::string how;
 };
 
-// Why there is no stroke of ordinary motion in the recording.
+// Returns why the recording has no stroke of ordinary motion, as a clause for a message.
 const char* whyNoOrdinary(const nn::PathRecording& recording) {
   const auto& labels = recording.labels;
   return std::find(labels.begin(), labels.end(), nn::kNoGesture) == labels.end()
@@ -44,7 +45,9 @@ const char* whyNoOrdinary(const nn::PathRecording& recording) {
              : "its ordinary motion (the label none) has no stroke to learn from";
 }
 
-// Errors: those of nn::loadPaths().
+// Returns the strokes to train on: those of the recording that the options name or, without one, of
+// kTrained. Adds the ordinary motion of kOrdinary to a recording without any. Errors: those of
+// nn::loadPaths().
 Result<TrainingStrokes> trainingStrokes(const TrainGestureOptions& options) {
   TrainingStrokes training;
   if (options.data.empty()) {

@@ -1,4 +1,4 @@
-// merlin image: its subcommands, one file each.
+// merlin image: adds its subcommands.
 #include "daemon/cli/image/image.h"
 
 namespace merlin::cli {

@@ -1,4 +1,4 @@
-// merlin image: its subcommands, one file each.
+// The subcommands of `merlin image`: functions that add them, one source file each.
 #pragma once
 
 #include "daemon/cli/command.h"

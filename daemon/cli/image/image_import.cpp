@@ -129,7 +129,8 @@ Result<Ok> checkOptions(const ImageImport& options) {
 
 Result<Ok> importImage(const ImageImport& options) {
   if (const auto good = checkOptions(options); !good) return good.error();
-  const UniqueFd stop = stopSignals();  // before the folder exists: a signal would leave it behind
+  // Called before the folder is made, because a signal would otherwise leave the folder behind.
+  const UniqueFd stop = stopSignals();
   const auto folder = WorkFolder::make(options.output);
   if (!folder) return folder.error();
   Summary summary;

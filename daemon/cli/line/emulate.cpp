@@ -27,12 +27,13 @@ struct EmulateOptions {
   bool step = false;
 };
 
-// Input of the person who runs the emulator: one descriptor ends the emulation, the other starts
-// the script's next phase.
+// Input of the person who runs the emulator: the descriptor `stop_fd` ends the emulation, `step_fd`
+// starts the script's next phase.
 struct Commands {
-  int stop_fd, step_fd;  // poll() ignores a descriptor of -1
+  int stop_fd, step_fd;  // -1: none; poll() ignores it
   std::size_t phases;    // number of phases of the script
-  std::size_t& phase;    // current phase, counted from 0; counts on when the script repeats
+  // Index of the current phase, from 0; it goes on counting when the script repeats.
+  std::size_t& phase;
 };
 
 // Reads standard input: each line starts the next phase.
@@ -48,8 +49,8 @@ void readPhaseSteps(Commands& commands) {
   }
 }
 
-// Runs the emulator until a signal. Bytes that the other side does not read are lost, as on a
-// serial line.
+// Runs the emulator until a signal arrives; returns the exit status. Bytes that the other side does
+// not read are lost, as on a serial line.
 int serve(const io::PtyMaster& line, emulate::Emulator& device, const Clock& clock,
           Commands commands) {
   std::byte received[256];

@@ -1,4 +1,4 @@
-// merlin flight: makes the daemon write the last minutes of every device's bytes to files.
+// merlin flight: has the daemon write the bytes of every device from the last minutes to files.
 #include <memory>
 
 #include <nlohmann/json.hpp>

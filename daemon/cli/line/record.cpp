@@ -52,7 +52,7 @@ class Recording final : public ByteTap {
   Timestamp start_;
 };
 
-// A sink that discards all samples.
+// A sample sink that discards all samples.
 struct Nowhere final : SampleSink {
   void publish(const GloveSample&) noexcept override {}
   void publish(const TrackerSample&) noexcept override {}
@@ -60,9 +60,9 @@ struct Nowhere final : SampleSink {
   void publish(const TouchSample&) noexcept override {}
 };
 
-// Reads the line until `end`, until a signal (on `stop_fd`), or until the line fails, which is
-// printed. If `device` is not null, its driver sets the device up and polls it. Returns the
-// device's identity. Errors: those of Device::open().
+// Reads the line until `end`, until `stop_fd` is readable, or until the line fails, which is
+// printed. If `device` is not null, its driver opens and polls the device; otherwise the line is
+// only read. Returns the identity of the device. Errors: those of Device::open().
 Result<std::string> listen(ByteStream& line, Device* device, Timestamp end, int stop_fd) {
   const SystemClock clock;
   std::string identity = "not known";
@@ -93,8 +93,8 @@ std::vector<std::string> driverNames() {
   return names;
 }
 
-// The device of this name in a configuration. Errors: kInvalidArgument (there is none),
-// kMalformed (the configuration is not valid).
+// Returns the settings of the device with this name in a configuration. Errors: kInvalidArgument
+// (there is none), kMalformed (the configuration is not valid).
 Result<DeviceSettings> configuredDevice(const std::string& file, const std::string& name) {
   const LoadedSettings loaded = loadSettingsFile(file);
   const auto fault = std::ranges::find(loaded.findings, false, &Finding::adjusted);
@@ -114,7 +114,8 @@ Result<DeviceSettings> configuredDevice(const std::string& file, const std::stri
 }
 
 // Returns the settings for the device to record: those in the configuration, or the defaults of the
-// driver; without a driver the line is only read. The options override them.
+// driver that the options name; without either, the line is only read. The options override port
+// and baud rate. Errors: kInvalidArgument, those of configuredDevice().
 Result<DeviceSettings> recordedDevice(const LineRecordOptions& options) {
   DeviceSettings device;
   if (!options.config.empty()) {
@@ -187,8 +188,8 @@ struct ReplayOptions {
   bool loop = false;
 };
 
-// Plays the transcript once on the line. Returns false if a signal (on `stop_fd`) or an error ended
-// the replay early.
+// Plays the transcript once on the line. Returns false if `stop_fd` became readable or an error
+// ended the replay early.
 bool serveOnce(const io::PtyMaster& line, const io::Transcript& transcript, const Clock& clock,
                int stop_fd) {
   io::Player player(transcript, clock.now());

@@ -59,7 +59,7 @@ FeatureFacts featureIn(std::string_view about, const std::string& name) {
 FeatureFacts factsOf(const render::range::Plane& plane, const render::range::RangeImage& image) {
   FeatureFacts facts{plane.name, plane.unit, plane.dimension, plane.low, plane.high};
   if (facts.low != facts.high || facts.dimension != 1) return facts;
-  std::vector<float> values;  // at pixels with a return
+  std::vector<float> values;  // values of the plane at pixels with a return
   for (std::size_t p = 0; p < image.pixels(); ++p) {
     if (render::range::isReturn(image.range[p])) values.push_back(plane.values[p]);
   }

@@ -1,5 +1,5 @@
-// The lines "key=value" of a model's text "about" that say what its numbers mean: its unit, where
-// it lies, and unit and range of its features.
+// Writes and reads lines "key=value" of the text "about" of a model: the unit and the origin of its
+// coordinates, and the unit and the range of its features.
 #pragma once
 
 #include <cstddef>
@@ -12,34 +12,37 @@
 
 namespace merlin::cli {
 
-// What a feature of the mesh means, as far as it is known.
+// What is known about a feature of a mesh.
 struct FeatureFacts {
   std::string name, unit;
   std::size_t dimension = 1;
-  float low = 0, high = 0;  // as the file states, otherwise the range of the values; equal: unknown
+  // Range that the file states, otherwise the range of the values. Equal: unknown.
+  float low = 0, high = 0;
 };
 
-// The text after `key` and "="; empty if there is no such line.
+// Returns the value of the first line "KEY=VALUE" of `about`; empty if there is none.
 std::string valueIn(std::string_view about, const std::string& key);
 
-// "mesh.origin=X Y Z" and a line feed; empty for 0 0 0.
+// Returns the line "mesh.origin=X Y Z", with a line feed; empty if the origin is 0 0 0.
 std::string aboutOrigin(const render::mesh::Origin& origin);
-// Reads what aboutOrigin() wrote, or "points.origin=" of a point cloud; 0 0 0 if there is no such
-// line, or it is damaged.
+// Returns the origin in the line "mesh.origin=" (aboutOrigin()) or "points.origin="
+// (aboutPoints()); 0 0 0 if there is no such line or its numbers are invalid.
 render::mesh::Origin originIn(std::string_view about);
 
-// "feature.NAME.unit=" and "feature.NAME.range=", a line each, for features with one value.
+// Returns the lines "feature.NAME.unit=UNIT" (if the unit is known) and "feature.NAME.range=LOW
+// HIGH" for each feature of dimension 1.
 std::string aboutFeatures(const std::vector<FeatureFacts>& features);
-// Reads what aboutFeatures() wrote about this feature; without a unit or a range if there is none.
+// Returns what the lines of aboutFeatures() state about the feature `name`; unit or range are
+// unknown if there is no such line.
 FeatureFacts featureIn(std::string_view about, const std::string& name);
 
-// Name, unit and range of a plane. The range of a plane with one value per pixel is the one that
-// its file gives or, if the file gives none, that of the values at pixels with a return.
+// Returns name, unit and range of a plane of `image`. The range of a plane with one value per pixel
+// is the one that its file states or, without one, the range of the values at pixels with a return.
 FeatureFacts factsOf(const render::range::Plane& plane, const render::range::RangeImage& image);
 
 // Combines the facts about a feature from several images: the unit of those that have one, and the
-// range over all. `differ` receives whether two have different units; the result then has none.
-// REQUIRES: `same_name` is not empty.
+// range over all. `differ` is set to whether the images have different units; the result then has
+// no unit. REQUIRES: `same_name` is not empty.
 FeatureFacts joined(const std::vector<FeatureFacts>& same_name, bool& differ);
 
 }  // namespace merlin::cli

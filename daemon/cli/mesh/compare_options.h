@@ -6,7 +6,7 @@
 
 namespace merlin::cli {
 
-// Adds --samples, --seed, --width and --threads.
+// Adds the options --samples, --seed, --width and --threads.
 void addCompareOptions(Command command, render::compare::CompareSettings& settings);
 
 }  // namespace merlin::cli

@@ -43,7 +43,7 @@ Result<double> writePictures(const std::string& folder, const render::mesh::Mesh
   const render::lod::Dendrogram first = render::lod::oneLevel(framed(a, b)),
                                 second = render::lod::oneLevel(framed(b, a));
   View same = view;
-  if (!view.model.show.feature.empty()) {  // the same colour scale for both models
+  if (!view.model.show.feature.empty()) {  // uses the same colour scale for both models
     const auto shown = render::content::coloursOf(first, view.model.show);
     if (!shown) return shown.error();
     same.model.show.range = {shown->low, shown->high};

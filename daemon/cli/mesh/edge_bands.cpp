@@ -9,10 +9,12 @@
 namespace merlin::cli {
 namespace {
 
-constexpr float kBand = 0.25F;  // width of a band, as a share of the distance from edge to centroid
+// Width of a band, as a share of the distance from the edge to the centroid.
+constexpr float kBand = 0.25F;
 const Eigen::Vector3f kInside{0.1F, 0.1F, 0.12F};  // colour between the bands
 
-// Colour scale from red (0) through yellow, green and cyan to blue (1).
+// Returns the colour for a position on the scale from red (0) through yellow, green and cyan to
+// blue (1).
 Eigen::Vector3f rainbow(float share) {
   const float at = 4 * std::clamp(share, 0.0F, 1.0F);
   const auto ramp = [at](float middle) {
@@ -103,7 +105,8 @@ std::vector<float> sizesOf(std::span<const float> lengths) {
 
 render::mesh::Mesh edgeBands(const render::mesh::Mesh& mesh, std::span<const float> places,
                              const View& view) {
-  // Direction to the renderer's light: surfaces with this normal are drawn in their full colour.
+  // Direction from the surface to the renderer's light; surfaces with this normal are drawn in
+  // their full colour.
   const Eigen::Vector3f light = Eigen::Vector3f(0.15F, 0.35F, 1).normalized();
   Polygons polygons(view.T_eye_model().linear().transpose() * light);
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {

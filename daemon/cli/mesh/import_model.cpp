@@ -39,7 +39,8 @@ Result<ImportedModel> loadForeign(const std::string& path, const InputKind& kind
   }
   model.loaded.tidied.degenerate += report->count("degenerate").value_or(0);
   model.notes = std::move(report->notes);
-  const auto& more = model.loaded.notes;  // of the mesh that merlin-import has made
+  // Notes about reading the mesh that merlin-import has made.
+  const auto& more = model.loaded.notes;
   model.notes.insert(model.notes.end(), more.begin(), more.end());
   return model;
 }

@@ -1,4 +1,4 @@
-// The steps of `merlin mesh import` from a file of meshes, models or points to a mesh.
+// Reads a file with meshes, models or points as a mesh, for `merlin mesh import`.
 #pragma once
 
 #include <cstddef>
@@ -15,31 +15,31 @@
 
 namespace merlin::cli {
 
-// A mesh, and what is known of the file it comes from.
+// A mesh, and facts about the file that it was read from.
 struct ImportedModel {
   render::mesh::LoadedMesh loaded;
   std::string format = "mesh";
-  std::optional<std::size_t> parts{};  // of a foreign format: surfaces that were joined
+  std::optional<std::size_t> parts{};  // for a foreign format: number of surfaces that were joined
   // Number of common edges along which parts were welded, and of vertices that were merged with
   // others.
   std::size_t welded_edges = 0, welded_vertices = 0;
   std::optional<PointFacts> cloud{};
-  std::vector<std::string> notes{};  // already printed
+  std::vector<std::string> notes{};  // notes for the user, which are printed already
   Outwards outwards{};
 
   const render::mesh::Origin& origin() const { return cloud ? cloud->origin : loaded.origin; }
 };
 
-// The output file, beside which merlin-import's work folder is made, and the memory limit for
-// reading, in merlin-import and in this program.
+// Output file and limits of the import. The work folder of merlin-import is made beside the output
+// file; the memory limit applies to reading in merlin-import and in this program.
 struct ModelLimits {
   std::string output;
   std::uint64_t memory_bytes = 0;
-  render::points::SurfaceSettings surface{};  // of a point cloud
+  render::points::SurfaceSettings surface{};  // settings for the surface of a point cloud
 };
 
-// Reads the file by our own readers, or by merlin-import, whose result is then read like any mesh.
-// Adds normals; prints the notes. Errors: those of the readers, with the file's name;
+// Reads the file with the readers of MERLIN, or runs merlin-import and reads its result. Adds
+// normals if there are none; prints the notes. Errors: those of the readers, with the file's name;
 // kInvalidArgument (the memory does not suffice).
 Result<ImportedModel> loadModel(const std::string& path, const InputKind& kind,
                                 const ModelLimits& limits);

@@ -38,7 +38,8 @@ bool PointImport::anyGiven() const { return std::ranges::any_of(arguments_, &Arg
 
 ForeignFile pointFile(const std::string& input, const std::string& output,
                       std::uint64_t memory_bytes, const render::points::SurfaceSettings& settings) {
-  constexpr std::uint64_t kBytesPerSecond = 2'000;  // at most a tenth of the measured speed
+  // At most a tenth of the measured speed of surface reconstruction.
+  constexpr std::uint64_t kBytesPerSecond = 2'000;
   return {kPointsKind,
           input,
           output,

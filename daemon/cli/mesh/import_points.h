@@ -1,4 +1,5 @@
-// Point clouds for `merlin mesh import`: their options, and facts about how their surface was made.
+// The import of point clouds for `merlin mesh import`: the options, and facts about how the surface
+// was made.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +13,7 @@
 
 namespace merlin::cli {
 
-// The options for point clouds.
+// The command-line options for point clouds.
 class PointImport {
  public:
   void addTo(Command command);
@@ -24,26 +25,30 @@ class PointImport {
   std::vector<Argument> arguments_;
 };
 
-// How the surface of a point cloud was made.
+// Facts about how the surface of a point cloud was made.
 struct PointFacts {
-  std::size_t points = 0, trimmed = 0;  // trimmed: triangles that were too far from all points
+  // `trimmed`: number of triangles that were removed because they were too far from all points.
+  std::size_t points = 0, trimmed = 0;
   render::points::SurfaceSettings used;
   double spacing = 0;   // median distance to the fourth neighbour [the file's unit]
-  std::string normals;  // where they come from, for a person
-  // Origin of the coordinates in the mesh's unit, i.e. after --scale. The mesh is relative to it.
+  std::string normals;  // how the normals were obtained, as a text for a person
+  // Origin that must be added to the mesh's coordinates to get those of the file, in the unit of
+  // the mesh, that is, after --scale.
   render::mesh::Origin origin{};
-  std::string projection;  // map projection of the coordinates, as text; empty: unknown
+  std::string projection;  // map projection of the coordinates; empty: unknown
 };
 
-// The file for importForeign(), with the surface's settings and the time that a surface takes.
+// Returns the parameters for importForeign(), with the settings for the surface and a time limit
+// for computing it.
 ForeignFile pointFile(const std::string& input, const std::string& output,
                       std::uint64_t memory_bytes, const render::points::SurfaceSettings& settings);
 
-// The facts that merlin-import reported about a point cloud; missing ones are 0 or empty.
+// Returns the facts that merlin-import has reported about a point cloud; missing facts are 0 or
+// empty.
 PointFacts pointFactsOf(const ForeignReport& report);
 
-// Lines for the model's text "about": the origin, in the mesh's unit, unless it is 0 0 0, and the
-// projection, if it is known.
+// Returns lines for the model's text "about": the projection, if it is known, and the origin in the
+// unit of the mesh, unless it is 0 0 0.
 std::string aboutPoints(const PointFacts& cloud);
 
 }  // namespace merlin::cli

@@ -19,8 +19,8 @@ namespace {
 
 namespace range = render::range;
 
-// The default of --max-edge, in steps between pixels: surfaces that are inclined by up to 84
-// degrees stay connected.
+// Default of --max-edge, in steps between pixels: surfaces that are inclined by up to 84 degrees
+// stay connected.
 constexpr double kSteps = 10;
 
 bool readWhole(std::string_view text, double& value) {
@@ -54,7 +54,8 @@ Error percentOfHeight(const char* option) {
                       option)};
 }
 
-// A fault of a feature's name as the end of a message; empty if it may be added.
+// Returns why a feature with this name cannot be added, as the end of a message; empty if it can be
+// added.
 std::string nameFault(const std::string& name, const ImportedRange& loaded) {
   for (const char* taken : {"normal", "texcoord", "border"}) {
     if (name == taken) return fmt::format("the name {} is MERLIN's own", name);
@@ -63,7 +64,8 @@ std::string nameFault(const std::string& name, const ImportedRange& loaded) {
   return render::mesh::featureNameFault(name);
 }
 
-// Adds the image of a --feature NAME=FILE.
+// Adds the image that an option --feature NAME=FILE names. `text`: "NAME=FILE". Errors:
+// kInvalidArgument, those of readPlane().
 Result<Ok> addFeature(const std::string& text, ImportedRange& loaded) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
@@ -77,8 +79,8 @@ Result<Ok> addFeature(const std::string& text, ImportedRange& loaded) {
   return Ok{};
 }
 
-// Adds the images that the file itself names, except those that were given as options. A missing
-// one only causes a note, because the ranges may have been copied without it.
+// Adds the feature images that the range image names, except those that options name. A missing
+// image only causes a note, because the range image may have been copied without it.
 Result<Ok> addNamedFeatures(const std::string& path, const RangeImport& options, bool texture,
                             const std::vector<range::FeatureFile>& named, ImportedRange& loaded) {
   const std::size_t given = loaded.image.planes.size();
@@ -105,7 +107,7 @@ Result<Ok> addNamedFeatures(const std::string& path, const RangeImport& options,
   return Ok{};
 }
 
-// The values of the pixels with a return.
+// Returns those of `values` (one per pixel) that belong to pixels with a return.
 std::vector<float> valuesAtReturns(const range::RangeImage& image, std::span<const float> values) {
   std::vector<float> some;
   for (std::size_t p = 0; p < image.pixels(); ++p) {
@@ -114,8 +116,9 @@ std::vector<float> valuesAtReturns(const range::RangeImage& image, std::span<con
   return some;
 }
 
-// Adds the feature "colour" from what --colour-by names; without that option, and if the image has
-// no colours, from its confidence or its height.
+// Adds the feature "colour", computed from the feature that --colour-by names. Without the option,
+// an image without colours is coloured by its confidence or, if it is an elevation map, by its
+// height.
 Result<Ok> addColours(const std::string& wanted, bool texture, range::RangeImage& image) {
   const bool coloured = texture || image.find("colour");
   const range::Plane* confidence = image.find("confidence");
@@ -148,7 +151,8 @@ std::vector<FeatureFacts> factsOfPlanes(const range::RangeImage& image) {
   return facts;
 }
 
-// Peak memory from here on [bytes]: planes are in memory twice, as pixels and as features.
+// Estimates the peak memory for filters and mesh [bytes]. Planes are in memory twice, as pixels and
+// as features of the mesh.
 std::size_t memoryFor(const range::RangeImage& image) {
   std::size_t values = 0;
   for (const range::Plane& plane : image.planes) values += plane.dimension;

@@ -1,4 +1,4 @@
-// The steps of `merlin mesh import` from a range image or an elevation map to a mesh.
+// Reads a range image or an elevation map and makes a mesh of it, for `merlin mesh import`.
 #pragma once
 
 #include <functional>
@@ -16,33 +16,35 @@
 
 namespace merlin::cli {
 
-// The options for range images.
+// The command-line options for range images.
 class RangeImport {
  public:
   void addTo(Command command);
-  // Adds the options for reading and for the filters only, for a command that makes its own mesh
-  // from several files: all except --max-edge, --feature, --colour-by and --border.
+  // Adds all options except --max-edge, --feature, --colour-by and --border, for a command that
+  // makes its own mesh from several files.
   void addReadingTo(Command command);
-  // The name of an option that was given, for a message that it does not apply; empty if none was
-  // given.
+  // Returns the name of one of these options that was given, for a message that it does not apply;
+  // empty if none was given.
   std::string anyGiven() const;
-  // The name of a given option that only changes a mesh and so would have no effect if the range
-  // image is written as a range image; empty if none was given.
+  // Returns the name of a given option that affects a mesh only, and so has no effect if the output
+  // is a range image; empty if none was given.
   std::string givenForMesh() const;
-  // Returns a file name that --angles took as one of its values, because the option stood before
-  // the input.
+  // Removes from the values of --angles a file name that the parser took for one of them, because
+  // the option was before the input, and returns it; nothing if there is none.
   std::optional<std::string> takeInput();
 
-  // What can be done about a feature whose file is missing, for a message.
+  // Returns advice for a message about a feature whose file is missing.
   std::string otherFileFor(const std::string& feature) const;
 
+  // Returns the options for the readers. Errors: kInvalidArgument (values or a combination of
+  // options are not valid), those of parseRawLayout().
   Result<render::range::RangeOptions> fileOptions() const;
 
   bool isRaw() const { return !raw_.empty(); }
   bool filters() const { return !between.empty() || !spikes.empty() || median > 0; }
 
-  std::optional<double> scale;  // for any input
-  std::string hdu;              // HDU of a FITS file
+  std::optional<double> scale;  // metres per unit of the file, for any input
+  std::string hdu;              // HDU of a FITS file; empty: the first image
   std::string variable;         // variable of a file with several maps
   std::string colour_by, max_edge, spikes;
   std::vector<std::string> features;
@@ -51,7 +53,7 @@ class RangeImport {
   bool border = false;
 
  private:
-  Argument keep(const char* name, Argument argument);  // for anyGiven()
+  Argument keep(const char* name, Argument argument);  // remembers the option for anyGiven()
   void addGeometry(Command command);
   void addRaw(Command command);
   void addMaxEdge(Command command);
@@ -64,49 +66,51 @@ class RangeImport {
   std::optional<double> exaggeration_, no_return_;
   std::size_t raw_header_ = 0;
   bool raw_interleaved_ = false;
-  bool takes_features_ = false;  // --feature
+  bool takes_features_ = false;  // whether the command has the option --feature
   std::vector<Argument> arguments_;
   std::vector<std::string> names_;
 };
 
-// A range image and what was done to it.
+// A range image, what was done to it, and the mesh made from it.
 struct ImportedRange {
   render::range::RangeImage image;
   std::string format;
   std::vector<std::string> notes;
   std::vector<FeatureFacts> features;
-  bool in_metres = false;  // as LoadedRange
+  bool in_metres = false;  // whether its unit is the metre, as in LoadedRange
   std::size_t returns_in_file = 0, outside = 0, spikes = 0;
   render::range::Threshold max_edge;
-  std::string max_edge_text;  // for a person
+  std::string max_edge_text;  // description of `max_edge` for a person
   render::range::RangeMesh mesh;
-  // Origin of the camera transform's coordinates; the mesh is relative to it.
+  // Origin that must be added to the coordinates of the mesh to get those of the file.
   render::mesh::Origin origin{};
 };
 
-// Reads a file with these options, such as render::range::readRange().
+// A function that reads a file with these options, such as render::range::readRange().
 using RangeReader = std::function<Result<render::range::LoadedRange>(
     const std::string& path, const render::range::RangeOptions&)>;
 
-// Reads a range image and its modalities. `texture`: whether a picture will be laid over it.
-// Errors: those of the readers; kInvalidArgument (two features have the same name; --colour-by is
-// invalid).
+// Reads a range image and its modalities. `texture`: whether a texture will be put on the mesh.
+// Errors: those of the readers; kInvalidArgument (an option is not valid, or two features have the
+// same name); kMalformed (the file names a feature that is not allowed).
 Result<ImportedRange> loadRange(const std::string& path, const RangeImport& options, bool texture,
                                 const RangeReader& read);
 
-// Runs the filters; checks first that `limit` bytes suffice for them and the mesh. Errors:
-// kInvalidArgument, kMalformed (nothing is left).
+// Runs the filters that the options name, after checking that the filters and the mesh need at most
+// `limit` bytes. Errors: kInvalidArgument (too little memory, or an invalid threshold), kMalformed
+// (no return is left).
 Result<Ok> filterRange(const std::string& path, const RangeImport& options, std::size_t limit,
                        const render::range::Work& work, ImportedRange& range);
 
-// Subtracts from the camera transform an origin near the scanner's position, whose coordinates may
-// be those of a map, and returns this origin.
+// Chooses an origin near the scanner's position, whose coordinates may be the large numbers of a
+// map; subtracts it from the camera transform, and returns it.
 render::mesh::Origin takeOrigin(render::range::Geometry& geometry);
-// Subtracts this origin from the camera transform.
+// Subtracts the origin from the translation of the camera transform.
 void subtract(const render::mesh::Origin& origin, render::range::Geometry& geometry);
 
-// Makes the mesh, relative to range.origin, which takeOrigin() gives. Errors: kMalformed if no
-// triangle is within --max-edge.
+// Makes the mesh and sets range.origin, which it is relative to: the origin of the map of an
+// elevation map, otherwise that of takeOrigin(). Errors: kInvalidArgument (--max-edge or
+// --colour-by is not valid), kMalformed (no triangle has edges within --max-edge).
 Result<Ok> meshRange(const std::string& path, const RangeImport& options,
                      const render::range::Work& work, ImportedRange& range);
 

@@ -20,7 +20,7 @@ nlohmann::ordered_json jsonOf(const ImportTimes& times) {
           {"reducing", times.reducing}, {"writing", times.writing},     {"all", times.all()}};
 }
 
-// The members of the report that both kinds of input have.
+// Returns the members of the JSON report that are the same for range images and for models.
 nlohmann::ordered_json jsonOf(const ImportNames& names, const std::string& format,
                               const ImportedFile& written, const ImportTimes& times) {
   nlohmann::ordered_json json = {{"input", names.input},
@@ -81,18 +81,20 @@ void addRange(const ImportNames& names, const ImportedRange& range, const Import
   const auto& geometry = range.image.geometry;
   if (!geometry.projection.empty()) json["projection"] = geometry.projection;
   addOrigin(names, range.origin, written, json);
-  if (geometry.origin) json["origin"] = *geometry.origin;  // without the height
+  if (geometry.origin) json["origin"] = *geometry.origin;  // an origin on a map has no height
   json["notes"] = range.notes;
 }
 
-// The name in a projection's text, which is its first word in quotes.
+// Returns the name of a map projection, which is the first text in quotes; without quotes, the
+// beginning of the text.
 std::string nameOfProjection(const std::string& text) {
   const std::size_t from = text.find('"');
   const std::size_t to = text.find('"', from == std::string::npos ? from : from + 1);
   return to == std::string::npos ? excerpt(text) : excerpt(text.substr(from + 1, to - from - 1));
 }
 
-// Where the map's origin is that of the mesh, printPlace() says so.
+// Prints the projection and the origin of a map, if one is known. `origin`: origin of the mesh,
+// which printPlace() prints.
 void printMap(const render::range::Geometry& geometry, const render::mesh::Origin& origin) {
   if (geometry.projection.empty() && !geometry.origin) return;
   std::string text = geometry.projection.empty()
@@ -161,7 +163,7 @@ void reportRange(const ImportNames& names, const ImportedRange& range, const Imp
   const auto& mesh = range.mesh;
   if (written.triangles > 0)
     printOut("{}: {} triangles, {} vertices\n", names.output, written.triangles, written.vertices);
-  else  // the output is the range image itself
+  else  // the output is a range image
     printOut("{}: {} x {} pixels, {} with a return\n", names.output, image.width, image.height,
              std::count_if(image.range.begin(), image.range.end(), render::range::isReturn));
   printOut("  read      {}, {} x {} pixels, {} with a return, {}\n", range.format, image.width,

@@ -13,7 +13,8 @@ namespace {
 using render::mesh::Hole;
 using render::mesh::Inspection;
 
-// What may be odd about a surface: its key in JSON, its name for a person, and how often it occurs.
+// Returns the possible oddities of a surface: key in JSON, description for a person, and number of
+// occurrences.
 std::vector<Repair> oddities(const Inspection& is) {
   return {{"degenerate", "triangles with two corners at one place", is.degenerate},
           {"no_area", "triangles without area", is.no_area},
@@ -61,8 +62,8 @@ void printSurface(const Inspection& is) {
   }
 }
 
-// What may be odd about the points themselves; "isolated" is left out, because it is true of every
-// point.
+// Returns the possible oddities of a point cloud. "isolated" is left out, because it would apply to
+// every point.
 std::vector<Repair> oddities(const CloudInfo& cloud, const Inspection& is) {
   return {{"coincident", "points at the same place as an earlier point", cloud.coincident},
           {"normals_not_unit", "normals that are not of length one", is.not_unit}};
@@ -102,7 +103,7 @@ void printAbout(std::string_view about) {
     const std::size_t n = std::min(about.find('\n'), about.size());
     const std::string_view line = about.substr(0, n);
     if (!line.starts_with("unit="))
-      printOut("  made by   {}\n", line);  // the unit is printed already
+      printOut("  made by   {}\n", line);  // the line about the unit is printed above
     about.remove_prefix(std::min(n + 1, about.size()));
   }
 }

@@ -19,17 +19,20 @@ struct FeatureInfo {
 };
 
 struct ImageInfo {
-  std::size_t width = 0, height = 0, returns = 0;  // pixels, and those with a return
+  std::size_t width = 0, height = 0,
+              returns = 0;  // [px]; `returns`: number of pixels with a return
   std::string geometry;
 };
 
 struct CloudInfo {
-  std::size_t points = 0, coincident = 0;  // coincident: points at the position of an earlier one
+  // `coincident`: number of points at the position of an earlier point.
+  std::size_t points = 0, coincident = 0;
 };
 
 struct LevelInfo {
-  std::size_t levels = 1, coarsest = 0;  // triangles of the coarsest level
-  float error = 0;                       // its estimate [model units]
+  std::size_t levels = 1, coarsest = 0;  // `coarsest`: number of triangles of the coarsest level
+  // Error estimate of the coarsest level [model units].
+  float error = 0;
 };
 
 // The facts about a file of any kind.
@@ -43,10 +46,10 @@ struct FileInfo {
   std::vector<FeatureInfo> features{};
   std::size_t texture_bytes = 0;
   std::string unit{};             // of the coordinates; empty if it is not known
-  render::mesh::Origin origin{};  // of the coordinates; the box is relative to it
+  render::mesh::Origin origin{};  // of the coordinates; the bounding box is relative to it
   std::string projection{};       // of the coordinates; empty if it is not known
   render::mesh::Inspection is{};
-  std::vector<Repair> repairs{};  // repairs that reading needed
+  std::vector<Repair> repairs{};  // repairs that were made while reading
   std::string mended{}, about{};
 };
 

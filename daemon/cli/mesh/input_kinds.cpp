@@ -13,7 +13,8 @@
 namespace merlin::cli {
 namespace {
 
-constexpr std::size_t kLooked = 4096;  // bytes in which the mark of a text is looked for
+// Number of bytes in which the mark of a text format is searched.
+constexpr std::size_t kLooked = 4096;
 
 std::string_view beginningOf(std::string_view content) {
   if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
@@ -30,7 +31,8 @@ bool isCollada(std::string_view content) { return isXmlWith(content, "<COLLADA")
 bool isX3d(std::string_view content) { return isXmlWith(content, "<X3D"); }
 bool isAmf(std::string_view content) { return isXmlWith(content, "<amf"); }
 
-// The keys of a JSON object stand in any order.
+// Recognises glTF as JSON by any of its usual keys, because the keys of a JSON object may have any
+// order.
 bool isGltf(std::string_view content) {
   constexpr std::string_view kKeys[] = {"\"asset\"", "\"accessors\"", "\"bufferViews\"",
                                         "\"meshes\""};
@@ -40,8 +42,8 @@ bool isGltf(std::string_view content) {
          });
 }
 
-// A 3DS file is a chunk 0x4D4D whose first subchunk is the version (0x0002) or the editor's data
-// (0x3D3D).
+// Recognises a 3DS file: a chunk 0x4D4D whose first subchunk is the version (0x0002) or the
+// editor's data (0x3D3D).
 bool is3ds(std::string_view content) {
   if (content.size() < 16 || !content.starts_with("MM")) return false;
   const std::string_view first = content.substr(6, 2);
@@ -70,8 +72,8 @@ bool isTiff(std::string_view content) {
   return std::ranges::any_of(kMarks, [&](std::string_view m) { return content.starts_with(m); });
 }
 
-// Checks two numbers of the first record: the code of the pattern, and that of the planimetric
-// reference system.
+// Recognises a USGS DEM by two numbers in its first record: the code of the elevation pattern (1 or
+// 4) and the code of the planimetric reference system (0 to 3).
 bool isUsgsDem(std::string_view content) {
   if (content.size() < 1024) return false;
   const std::string_view pattern = content.substr(150, 6), system = content.substr(156, 6);
@@ -79,8 +81,8 @@ bool isUsgsDem(std::string_view content) {
          system[5] >= '0' && system[5] <= '3';
 }
 
-// Whether a text file with the same name but the ending .hdr states rows and columns: GTOPO30 and
-// other raw grids consist of two files.
+// Returns whether there is a text file with the same name but the ending .hdr that states rows and
+// columns, as for GTOPO30 and other raw grids, which consist of two files.
 bool hasHeaderBeside(const std::string& path) {
   constexpr std::size_t kMost = 4096;
   const std::size_t dot = path.find_last_of("./");
@@ -96,7 +98,8 @@ bool hasHeaderBeside(const std::string& path) {
   return false;
 }
 
-// A format that merlin-import reads: its mark at the file's beginning, or a function that knows it.
+// A format that merlin-import reads, recognised by `mark` at the beginning of the file or, if `is`
+// is not null, by that function.
 struct ForeignFormat {
   const char* kind;    // first argument of merlin-import
   const char* format;  // for a person
@@ -149,11 +152,12 @@ bool isOf(const ForeignFormat& f, std::string_view content) {
   return f.is ? f.is(content) : content.starts_with(f.mark);
 }
 
-// Inventor and VRML files are often packed by gzip; merlin-import unpacks them.
+// Recognises Inventor and VRML files that are compressed by gzip, which is common; merlin-import
+// decompresses them.
 std::optional<InputKind> packedKindOf(std::string_view content) {
   constexpr std::size_t kBeginning = 64;
   const std::string beginning = render::mesh::gunzipBeginning(content, kBeginning);
-  if (render::mesh::isGzip(beginning)) return std::nullopt;  // packed twice
+  if (render::mesh::isGzip(beginning)) return std::nullopt;  // compressed twice
   auto kind = foreignKindOf(beginning);
   if (!kind || (kind->ending != "iv" && kind->ending != "wrl")) return std::nullopt;
   kind->format += ", gzip";

@@ -15,7 +15,7 @@ namespace merlin::cli {
 // Thread-bound. Must outlive the Work that it returns.
 class LateBar {
  public:
-  // `listener`: called from the beginning on; may be empty.
+  // `listener`: receives the progress from the beginning on; may be empty.
   LateBar(const std::string& title, std::size_t pixels, const Clock& clock,
           ProgressListener listener = {})
       : title_(title),
@@ -25,7 +25,8 @@ class LateBar {
         began_(clock.now()),
         bar_(title, "pixels", clock) {}
 
-  // `threads`: 0 for all cores.
+  // Returns the parameters for a step: the number of threads (0: all cores) and the progress
+  // function.
   render::range::Work work(unsigned threads) {
     return {threadsOr(threads), [this](double share) {
               if (listener_) listener_(title_, share);

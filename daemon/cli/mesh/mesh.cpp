@@ -1,4 +1,4 @@
-// merlin mesh: its subcommands, one file each.
+// merlin mesh: adds its subcommands.
 #include "daemon/cli/mesh/mesh.h"
 
 #include "daemon/cli/command.h"

@@ -26,7 +26,7 @@ void addMeshScan(Command mesh, Run& run);
 void addMeshSegment(Command mesh, Run& run);
 
 // Opens a multiresolution model (.mrm), or reads a mesh and makes a dendrogram of one level from
-// it. `origin`, if not null, receives the origin of its coordinates. Errors: those of the readers.
+// it. `origin`, if not null, is set to the origin of the coordinates. Errors: those of the readers.
 Result<render::lod::Dendrogram> openModel(const std::string& path,
                                           render::mesh::Origin* origin = nullptr);
 
@@ -41,29 +41,31 @@ struct Repair {
   const char* name;
   std::size_t count;
 };
+// Returns all kinds of repairs, with how often each was made.
 std::vector<Repair> repairsOf(const render::mesh::LoadedMesh& loaded);
 
-// The repairs with a count above 0 as one line, "repaired: 3 duplicate triangles dropped, ...";
-// empty if there were none.
+// Returns the repairs with a count above 0 as one line, "repaired: 3 duplicate triangles dropped,
+// ..."; empty if there were none.
 std::string mendedText(const render::mesh::LoadedMesh& loaded);
 
 // Prints, for a person, the companion files of a mesh that was written (materials, texture), and
 // the features that were left out because the file format cannot store them.
 void printWritten(const render::mesh::WrittenMesh& written);
 
-// Whether the coordinates in the file contain the mesh's origin. `local`: the caller wanted it to
-// be left out (--local).
+// Returns whether the origin was added to the coordinates in the written file. `local`: whether the
+// option --local was given, which leaves the origin out.
 bool hasOrigin(const render::mesh::Origin& origin, bool local,
                const render::mesh::WrittenMesh& written);
 
-// Prints, for a person, how the file treats the mesh's origin; prints nothing if that is 0 0 0.
+// Prints, for a person, whether the origin was added to the coordinates in the file; prints nothing
+// if it is 0 0 0.
 void printOrigin(const render::mesh::Origin& origin, bool local,
                  const render::mesh::WrittenMesh& written);
 
-// The option --local of commands that write a mesh.
+// Adds the option --local of commands that write a mesh.
 void addLocal(Command command, bool& local);
 
-// The error for --local and an output that is no mesh.
+// Returns the error for --local with an output that is not a mesh.
 Error localIsForMeshes(const std::string& output);
 
 // Checks that the output files can be written and that none of them is the input file; empty names
@@ -71,14 +73,14 @@ Error localIsForMeshes(const std::string& output);
 // checkWritable().
 Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::string> outputs);
 
-// Checks that there is an input file. Errors: kNotFound.
+// Checks that the input file exists. Errors: kNotFound.
 Result<Ok> checkIsThere(const std::string& path);
 
 // Parses `text`, such as "colour=0.5", and sets the weight of that feature. Errors:
 // kInvalidArgument.
 Result<Ok> setWeight(const std::string& text, render::reduce::Weights& weights);
 
-// The error for a model with one level if another resolution was requested.
+// Returns the error for a model with only one level if another resolution was requested.
 Error hasOneResolution(const std::string& path);
 
 // The resolution that the command line selects; at most one member is set.
@@ -88,9 +90,9 @@ struct LevelChoice {
 
   // Adds the options that select a resolution; returns their group.
   Command addTo(Command command);
-  // Returns the selected level; without a selection 0, the finest. `path`: the model's file, for
-  // messages. Prints a note if even the coarsest level has more triangles than requested. Errors:
-  // kInvalidArgument if the model has only one level and a coarser one is requested.
+  // Returns the selected level of the model; without a selection 0, the finest. `path`: the model's
+  // file, for messages. Prints a note if even the coarsest level has more triangles than requested.
+  // Errors: kInvalidArgument if the model has only one level and a coarser one is requested.
   Result<std::size_t> levelOf(const render::lod::Dendrogram& model, const std::string& path) const;
 
  private:

@@ -30,15 +30,17 @@ struct CompareOptions {
 struct Answer {
   render::compare::Comparison comparison;
   double seconds = 0;
-  std::optional<double> changed_percent;  // changed pixels, if pictures were drawn
+  // Share of the pixels that differ [percent], if pictures were drawn.
+  std::optional<double> changed_percent;
 };
 
-// One quantity of a Deviation: its name in the table, and its key in JSON output.
+// One quantity of a Deviation, with its name in the table and its key in the JSON output.
 struct Figure {
   const char* name;
   const char* key;
   std::optional<double> value;
-  bool is_length = false;  // in model units; also shown in percent of the diagonal
+  // Whether `value` is in model units, and also printed in percent of the diagonal.
+  bool is_length = false;
 };
 
 std::optional<double> colourError(const render::compare::Deviation& d) {
@@ -58,7 +60,7 @@ std::vector<Figure> figuresOf(const render::compare::Deviation& d) {
           {"vertex normals RMS, degrees", "vertex_normal_rms_deg", d.normal_rms_deg}};
 }
 
-// The value as JSON; null if there is none.
+// Returns the value as JSON; null if there is none.
 Json valueOf(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 Json jsonOf(const render::compare::Deviation& d, double diagonal) {
@@ -130,9 +132,9 @@ Result<PlacedMesh> openMesh(const std::string& path, const LevelChoice& choice) 
   return placed;
 }
 
-// The origin of the coordinates of `placed`. If it has none itself, it is taken to be relative to
-// `others`, the origin of the other mesh, if it lies near 0, as after an export with --local;
-// otherwise its origin is 0 0 0.
+// Returns the origin of the coordinates of `placed`. A mesh without an origin whose coordinates are
+// near 0, as after an export with --local, is taken to be relative to `others`, the origin of the
+// other mesh; a mesh with large coordinates has the origin 0 0 0.
 render::mesh::Origin originOf(const PlacedMesh& placed, const render::mesh::Origin& others) {
   const render::mesh::Origin none{};
   const std::vector<float>& p = placed.mesh.positions;
@@ -140,7 +142,7 @@ render::mesh::Origin originOf(const PlacedMesh& placed, const render::mesh::Orig
   return render::mesh::originNear({p[0], p[1], p[2]}) == none ? others : none;
 }
 
-// Moves the other mesh to the origin of the original.
+// Makes the coordinates of the other mesh relative to the origin of the original.
 void moveTo(const PlacedMesh& original, PlacedMesh& other) {
   const auto from = originOf(other, original.origin), to = originOf(original, other.origin);
   if (from == to) return;
@@ -175,7 +177,8 @@ int compareMeshes(const CompareOptions& options) {
   if (!other) return fail(other.error());
   moveTo(*original, *other);
   Answer answer;
-  if (!options.pictures.empty()) {  // before the comparison, because a failure shows sooner
+  // The pictures come before the long comparison, so that an error is reported early.
+  if (!options.pictures.empty()) {
     render::gl::prepareSoftwareGl(0);
     const auto changed = writePictures(options.pictures, original->mesh, other->mesh, options.view);
     if (!changed) return fail(changed.error());

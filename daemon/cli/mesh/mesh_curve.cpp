@@ -1,4 +1,5 @@
-// merlin mesh curve: tabulates the estimated and the measured error over the number of triangles.
+// merlin mesh curve: prints a table of the estimated and the measured error over the number of
+// triangles.
 #include <algorithm>
 #include <memory>
 
@@ -51,8 +52,8 @@ std::string csvOf(const ErrorCurve& curve) {
   return out;
 }
 
-// The curve as an SVG chart: number of triangles (x) and errors in percent of the diagonal (y),
-// both on logarithmic axes.
+// Returns the curve as an SVG chart: number of triangles (x) and errors in percent of the diagonal
+// (y), both on logarithmic axes.
 std::string svgOf(const ErrorCurve& curve, const std::string& title) {
   ChartLine estimate{"estimate", "#7f7f7f", {}}, rms{"RMS", "#1f77b4", {}},
       most{"maximum, at most", "#d62728", {}};

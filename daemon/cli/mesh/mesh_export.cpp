@@ -1,4 +1,5 @@
-// merlin mesh export: writes one resolution of a model as a mesh, or all of them for Open Inventor.
+// merlin mesh export: writes one resolution of a model as a mesh, or all resolutions as an Open
+// Inventor file.
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +25,7 @@ struct MeshExportOptions {
   LevelChoice choice;
   std::optional<double> within;  // maximum distance from the finest resolution [% of the diagonal]
   bool multiresolution = false;
-  bool local = false;  // without the origin
+  bool local = false;  // whether to write coordinates without the origin
 };
 
 Result<std::size_t> levelOf(const MeshExportOptions& options,
@@ -49,7 +50,8 @@ Result<std::size_t> levelOf(const MeshExportOptions& options,
   return found->level;
 }
 
-// A map in degrees or feet has an origin that cannot be added to coordinates in metres.
+// Prints the origin of a map that is not added to the coordinates, because its unit (degrees, feet)
+// may not be that of the mesh; prints nothing if the model states none.
 void printMapOrigin(std::string_view about) {
   const std::string at = valueIn(about, "map.origin");
   if (!at.empty())

@@ -1,4 +1,4 @@
-// merlin mesh fuse: one surface of several range images with known poses.
+// merlin mesh fuse: makes one surface from several range images with known poses.
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -28,7 +28,7 @@ namespace fuse = render::fuse;
 struct MeshFuse {
   std::vector<std::string> scans, poses;
   std::string output;
-  RangeImport range;  // of all scans
+  RangeImport range;  // options for reading all scans
   fuse::FuseSettings settings;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;
@@ -38,18 +38,18 @@ struct MeshFuse {
   bool makesModel() const { return output.ends_with(".mrm"); }
 };
 
-// The scans, relative to a common origin, and what they state about the result.
+// The scans, relative to a common origin, and the facts in them that apply to the result.
 struct Scans {
   std::vector<render::range::RangeImage> images;
   render::mesh::Origin origin{};
-  std::vector<FeatureFacts> features;  // those with one value, each listed once
-  bool in_metres = true;               // whether all scans are
+  std::vector<FeatureFacts> features;  // features with one value per pixel, each listed once
+  bool in_metres = true;               // whether all scans are in metres
 };
 
-// What was written, and the seconds that each step took.
+// Facts about the file that was written, and the duration of each step [s].
 struct FusedFile {
   render::mesh::WrittenMesh mesh{};
-  std::optional<std::size_t> coarsest{};  // triangles of a model's coarsest level
+  std::optional<std::size_t> coarsest{};  // number of triangles of a model's coarsest level
   double reading = 0, fusing = 0, writing = 0;
   Outwards outwards{};
 };
@@ -63,7 +63,8 @@ Result<ImportedRange> readScan(const MeshFuse& options, std::size_t number) {
                {{}, options.output, options.limit(), options.range.hdu, options.range.variable}));
   if (!loaded) return loaded.error();
   for (const std::string& note : loaded->notes) printNote(fmt::format("{}: {}", path, note));
-  // filterRange() also checks the memory for a mesh, which is not made here.
+  // Called only if there are filters, because filterRange() also checks the memory for a mesh,
+  // which is not made here.
   if (options.range.filters()) {
     const auto filtered =
         filterRange(path, options.range, options.limit(), {threadsOr(options.threads)}, *loaded);
@@ -79,8 +80,8 @@ Result<ImportedRange> readScan(const MeshFuse& options, std::size_t number) {
   return loaded;
 }
 
-// Joins the facts that the scans state about each feature; features without any value
-// have no range. Prints a note if the units differ.
+// Combines the facts of all scans (`all`) about each feature into scans.features. Prints a note if
+// the units of a feature differ.
 void joinFacts(const MeshFuse& options, const std::vector<FeatureFacts>& all, Scans& scans) {
   for (const FeatureFacts& one : all) {
     if (std::ranges::find(scans.features, one.name, &FeatureFacts::name) != scans.features.end())
@@ -98,7 +99,8 @@ void joinFacts(const MeshFuse& options, const std::vector<FeatureFacts>& all, Sc
   }
 }
 
-// The first scan's place decides the origin of all: its coordinates may be those of a map.
+// Makes all scans relative to an origin near the first scan, because their coordinates may be the
+// large numbers of a map.
 void placeScans(Scans& scans) {
   scans.origin = takeOrigin(scans.images.front().geometry);
   for (std::size_t i = 1; i < scans.images.size(); ++i)
@@ -157,7 +159,7 @@ Result<Ok> writeFused(const MeshFuse& options, const Scans& scans, const render:
     file.mesh = *std::move(written);
     return Ok{};
   }
-  double reducing = 0;  // included in the time of writing
+  double reducing = 0;  // this time is reported as a part of writing
   const std::string about = (scans.in_metres ? "unit=m\n" : "") + aboutOrigin(scans.origin) +
                             aboutFeatures(scans.features);
   const auto coarsest = writeReduced(

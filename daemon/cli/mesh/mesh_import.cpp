@@ -1,5 +1,5 @@
-// merlin mesh import: makes a mesh or a model of a range image, an elevation map, a mesh, a model
-// or a point cloud of any format that is read.
+// merlin mesh import: converts a range image, an elevation map, a mesh, a model or a point cloud,
+// in any supported format, to a mesh or a multiresolution model.
 #include "daemon/cli/mesh/mesh_import.h"
 
 #include <memory>
@@ -56,7 +56,8 @@ class Stopwatch {
   Timestamp last_;
 };
 
-// The units, the ranges of features, and where a map lies, for the model's text "about".
+// Returns lines for the model's text "about": the unit, the features' units and ranges, the origin,
+// and the place of a map.
 std::string aboutRange(const ImportedRange& range) {
   std::string text = range.in_metres ? "unit=m\n" : "";
   const auto& geometry = range.image.geometry;
@@ -100,7 +101,7 @@ Result<Ok> addTexture(const MeshImport& options, render::mesh::Mesh& mesh) {
   return Ok{};
 }
 
-// Filters a range image and writes it as PGM, without making a mesh.
+// Writes the filtered range image as PGM, without a mesh, and prints the report.
 Result<Ok> writeImage(const MeshImport& options, ImportedRange& range, ImportTimes& times,
                       Stopwatch& watch) {
   const auto done = render::range::writeRange(options.output, range.image);
@@ -113,7 +114,8 @@ Result<Ok> writeImage(const MeshImport& options, ImportedRange& range, ImportTim
   return Ok{};
 }
 
-// Errors: kInvalidArgument (an option that would do nothing to a range image that is written).
+// Checks that no option was given that has no effect if the output is a range image. Errors:
+// kInvalidArgument.
 Result<Ok> checkImageOptions(const MeshImport& options) {
   if (!makesImage(options)) return Ok{};
   std::string option = options.range.givenForMesh();
@@ -165,7 +167,8 @@ Result<Ok> importRange(const MeshImport& options, const std::optional<InputKind>
   return Ok{};
 }
 
-// Errors, with the file's name: those of packedFileError().
+// Checks that the file is not compressed by gzip. Errors, with the name of the file: those of
+// packedFileError().
 Result<Ok> checkNotPacked(const std::string& path) {
   const auto file = MappedFile::open(path);
   if (!file || !render::mesh::isGzip(file->text())) return Ok{};
@@ -197,7 +200,8 @@ Result<Ok> checkMeshInput(const MeshImport& options, const std::optional<InputKi
   return Ok{};
 }
 
-// Errors, with the file's name: kMalformed (coordinates beyond 10^18).
+// Multiplies the coordinates and the origin by `factor`. Errors, with the name of the file:
+// kMalformed (coordinates beyond 10^18).
 Result<Ok> scale(const std::string& path, double factor, ImportedModel& model) {
   const auto multiply = [factor](render::mesh::Origin& origin) {
     for (double& x : origin) x *= factor;
@@ -211,7 +215,8 @@ Result<Ok> scale(const std::string& path, double factor, ImportedModel& model) {
   return Ok{};
 }
 
-// The unit, and where the mesh lies, for the model's text "about".
+// Returns lines for the model's text "about": the unit, the origin and the map projection, as far
+// as they are known.
 std::string aboutModel(const MeshImport& options, const InputKind& kind,
                        const ImportedModel& model) {
   const bool metres = options.range.scale || kind.unit() == "m";
@@ -244,7 +249,7 @@ Result<Ok> importMesh(const MeshImport& options, const std::optional<InputKind>&
   return Ok{};
 }
 
-// Errors: kInvalidArgument (an option for point clouds was given for another kind of file).
+// Checks that options for point clouds were given for a point cloud only. Errors: kInvalidArgument.
 Result<Ok> checkPointOptions(const MeshImport& options, const std::optional<InputKind>& kind) {
   if (!options.points.anyGiven() || !kind || kind->isPoints()) return Ok{};
   return Error{

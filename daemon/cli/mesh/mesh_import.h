@@ -20,19 +20,19 @@ struct MeshImport {
   PointImport points;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   unsigned threads = 0;      // 0: all cores
-  bool local = false;        // whether a mesh is written without its origin
+  bool local = false;        // whether a mesh is written without adding its origin
   bool json = false;
   bool quiet = false;           // no report; notes and progress are still printed
   ProgressListener progress{};  // may be empty
-  bool outwards = false;        // whether closed parts that face inwards are turned
+  bool outwards = false;        // whether closed parts that face inwards are turned outwards
 
   const std::string& input() const { return inputs.front(); }
 };
 
-// Adds the options for the input, and the limits.
+// Adds the options about the input, and --memory and --threads.
 void addImportOptions(Command command, MeshImport& options);
 
-// Imports the file; prints notes, progress and the report. Ctrl-C leaves nothing behind. Errors:
+// Imports the file; prints notes, progress and the report. Ctrl-C leaves no files behind. Errors:
 // those of the readers, of the reduction and of the writers, with the file's name.
 Result<Ok> importFile(MeshImport& options);
 

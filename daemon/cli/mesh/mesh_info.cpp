@@ -35,7 +35,8 @@ struct MeshInfoOptions {
   std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
 };
 
-// Path beside which merlin-import's result lies until it is read.
+// Returns a path in the folder for temporary files; the work folder of merlin-import is made beside
+// it.
 std::string meanwhile() {
   std::error_code error;
   const auto folder = std::filesystem::temp_directory_path(error);
@@ -79,7 +80,7 @@ Result<FileInfo> infoOfModel(const std::string& path) {
   return info;
 }
 
-// Describes the mesh as it is in the file: no normals are added.
+// Returns facts about the mesh as it is in the file; no normals are added.
 Result<FileInfo> infoOfMesh(const std::string& path, std::size_t limit) {
   if (const auto fits = roomToRead(path, path, limit); !fits) return fits.error();
   const auto loaded = render::mesh::readMeshByContent(path);
@@ -101,13 +102,15 @@ Result<FileInfo> infoOfForeign(const MeshInfoOptions& options, const InputKind& 
   return info;
 }
 
-// Describes the points themselves: no surface is made.
+// Returns facts about the points themselves; no surface is computed.
 Result<FileInfo> infoOfPoints(const std::string& path) {
   auto cloud = render::points::readCloud(path);
   if (!cloud) return cloud.error();
   for (const std::string& note : cloud->notes) printNote(fmt::format("{}: {}", path, note));
   const auto next = render::mesh::coincidentVertices(cloud->positions);
-  std::size_t places = 0;  // coincident points form a ring, whose last point leads to its first
+  // Number of different positions: coincident points form a ring, whose last point leads to its
+  // first.
+  std::size_t places = 0;
   for (std::uint32_t p = 0; p < next.size(); ++p) places += next[p] <= p;
   FileInfo info{path, cloud->format};
   info.cloud = CloudInfo{cloud->size(), cloud->size() - places};

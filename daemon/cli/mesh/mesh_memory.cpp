@@ -47,7 +47,7 @@ Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSi
 
 namespace {
 
-// Bytes of the decoded texture images; what cannot be decoded takes none.
+// Returns the size of the decoded texture images [bytes]; images that cannot be decoded count as 0.
 std::size_t bytesOf(const std::vector<std::string>& pictures) {
   std::size_t sum = 0;
   for (const std::string& path : pictures) {
@@ -63,9 +63,9 @@ std::size_t fileSize(const std::string& path) {
   return unknown ? 0 : bytes;
 }
 
-// Peak memory of reading [bytes]: the program and the mesh, and in addition the larger of two: the
-// file with temporary data and the images, or the repairs. Several images are joined into one,
-// which takes three times their size.
+// Returns the peak memory of reading a mesh [bytes]: the program and the mesh, and in addition the
+// larger of (file, temporary data and images) and (repairs). Joining several images into one takes
+// three times their size.
 std::size_t needToRead(const render::mesh::MeshFileSize& size, std::size_t file_bytes,
                        std::size_t picture_bytes) {
   const std::size_t kept = size.mesh.bytes();
@@ -79,7 +79,7 @@ std::size_t needToRead(const render::mesh::MeshFileSize& size, std::size_t file_
 
 Result<Ok> roomToRead(const std::string& path, const std::string& named, std::size_t limit) {
   const auto found = render::mesh::meshFileSize(path);
-  if (!found) return Ok{};  // reading reports the fault
+  if (!found) return Ok{};  // the reader will report the fault
   const std::size_t pictures = bytesOf(found->pictures);
   const std::size_t need = needToRead(*found, fileSize(path), pictures);
   if (need <= limit) return Ok{};
@@ -96,9 +96,9 @@ Result<Ok> roomToRead(const std::string& path, const std::string& named, std::si
 Result<Ok> checkRoom(const std::string& path, const render::reduce::ReduceSettings& settings,
                      std::size_t limit) {
   auto found = render::mesh::meshFileSize(path);
-  if (!found) return Ok{};  // loadMesh() reports the fault
+  if (!found) return Ok{};  // loadMesh() will report the fault
   render::mesh::MeshSize& size = found->mesh;
-  size.values += 3;  // loadMesh() adds normals
+  size.values += 3;  // three values per vertex for the normals that loadMesh() adds
   for (const std::string& picture : found->pictures) {
     if (const auto fits = roomForPicture(picture, size, limit); !fits) return fits;
   }

@@ -1,4 +1,5 @@
-// Memory of `merlin mesh import`, `info` and `reduce`: checks that a command stays within a limit.
+// Memory checks of `merlin mesh import`, `info` and `reduce`, so that a command stays within a
+// limit.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +19,11 @@ Result<std::size_t> roomForReduction(const render::mesh::MeshSize& mesh, std::si
                                      const render::reduce::ReduceSettings& settings,
                                      std::size_t limit);
 
-// What the limit of a whole command leaves while the mesh, and `others` bytes of other data, are in
-// memory [bytes].
+// Returns how many bytes of the limit of a whole command are left while the mesh and `others` bytes
+// of other data are in memory.
 std::size_t roomBeside(const render::mesh::Mesh& mesh, std::size_t others, std::size_t limit);
 
-// A number of bytes as a text for a person, "7.5 GiB".
+// Returns a number of bytes as a text for a person, "7.5 GiB".
 std::string sizeText(std::size_t bytes);
 
 // Checks that the texture file `picture` can be decoded within `limit` bytes while the mesh is in
@@ -32,9 +33,9 @@ Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSi
                           std::size_t limit);
 
 // Checks with meshFileSize(), before the mesh is loaded, that loading it takes at most `limit`
-// bytes. `named`: the file that an error names: this file, or the one that it was made from.
-// Errors: kInvalidArgument, with the required memory and the limit. A file that cannot be read or
-// whose format states no counts (an ASCII .stl) is not an error here.
+// bytes. `named`: the file that errors name: `path`, or the file from which it was made. Errors:
+// kInvalidArgument, with the required memory and the limit. A file that cannot be read or whose
+// format states no counts (an ASCII .stl) is not an error here.
 Result<Ok> roomToRead(const std::string& path, const std::string& named, std::size_t limit);
 
 // Makes the checks of roomForReduction() and roomForPicture() before the mesh is read, with the

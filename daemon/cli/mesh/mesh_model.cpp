@@ -122,7 +122,8 @@ Result<Ok> checkOutputs(const std::string& input, std::initializer_list<std::str
 Result<Ok> checkIsThere(const std::string& path) {
   std::error_code absent;
   if (std::filesystem::exists(path, absent)) return Ok{};
-  return Error{Errc::kNotFound, path + ": No such file or directory"};  // as the readers say it
+  // The same text as in the errors of the readers.
+  return Error{Errc::kNotFound, path + ": No such file or directory"};
 }
 
 Result<Ok> setWeight(const std::string& text, render::reduce::Weights& weights) {

@@ -19,8 +19,8 @@
 namespace merlin::cli {
 namespace {
 
-// Peak of the lengths, the bands and the drawing of one triangle's edges. Measured with a million
-// triangles: 2.1 kB.
+// Peak memory per triangle for the lengths, the bands and the drawing of its edges [bytes].
+// Measured with a million triangles: 2.1 kB.
 constexpr std::size_t kBytesPerTriangleOfEdges = 2300;
 
 struct PictureOptions {
@@ -47,8 +47,8 @@ Result<Ok> roomForEdges(const PictureOptions& options, const std::string& path,
                            path, triangles, sizeText(need), sizeText(limit))};
 }
 
-// Appends a picture of the level's edges, coloured by their weighted lengths, at the scale of the
-// finest level.
+// Appends to `strip` a picture of the edges of the level, coloured by their weighted lengths, at
+// the scale of the finest level.
 Result<Ok> appendEdges(const PictureOptions& options, const std::string& path,
                        const render::lod::Dendrogram& model, std::size_t level,
                        render::image::Image& strip) {

@@ -33,9 +33,10 @@ struct ReduceOptions {
   bool json = false;
 };
 
-// Time and memory of the command, and which parts faced inwards, for the report.
+// Duration and memory limit of the command, and the check for parts that face inwards, for the
+// report.
 struct Usage {
-  double reducing = 0, all = 0;  // reduction alone, and with reading and writing [s]
+  double reducing = 0, all = 0;  // duration of the reduction alone, and of the whole command [s]
   std::size_t limit = 0;         // memory limit [bytes]
   Outwards outwards{};
 };
@@ -101,7 +102,8 @@ Result<render::reduce::Reduction> reduceLoaded(const ReduceOptions& options,
   return reduceWithProgress(mesh, settings, usage.reducing);
 }
 
-// Adds the texture that --texture names to the mesh.
+// Adds the texture that --texture names, if any, to the mesh. Errors: kInvalidArgument (no texture
+// coordinates, or too little memory), those of reading the image.
 Result<Ok> addTexture(const ReduceOptions& options, render::mesh::Mesh& mesh, std::size_t limit) {
   if (options.texture.empty()) return Ok{};
   const render::mesh::Feature* texcoord = mesh.find("texcoord");

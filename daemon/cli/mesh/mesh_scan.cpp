@@ -1,4 +1,4 @@
-// merlin mesh scan: the range image that a scanner would take of a model.
+// merlin mesh scan: computes the range image that a scanner would take of a model.
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -42,16 +42,16 @@ struct MeshScan {
   bool json = false;
 };
 
-// What was written.
+// Facts about the files that were written.
 struct ScannedFiles {
-  std::vector<range::FeatureFile> features;  // names of files beside the output
+  std::vector<range::FeatureFile> features;  // feature images beside the output
   std::vector<std::string> left_out;
   range::Ends ends;       // the nearest and the farthest range
-  double range_step = 0;  // of the stored ranges; 0: they are floats
+  double range_step = 0;  // step between stored ranges; 0: they are stored as floats
   double angle_step = 0;
 };
 
-// What is scanned, and what its file states about it.
+// The mesh that is scanned, and the facts in its file.
 struct Model {
   render::mesh::Mesh mesh;
   // Origin of the file's coordinates. --camera and the written camera transform are in these
@@ -61,7 +61,8 @@ struct Model {
   std::string unit;   // of the coordinates; empty: not known
 };
 
-// Reads whatever merlin mesh import makes a mesh of without any option.
+// Reads any file except a range image that merlin mesh import can convert to a mesh without further
+// options.
 Result<Model> readByContent(const MeshScan& options) {
   const std::string& path = options.model;
   if (const auto there = checkIsThere(path); !there) return there.error();
@@ -85,8 +86,8 @@ Result<Model> readByContent(const MeshScan& options) {
                kind->unit()};
 }
 
-// A model keeps its own coordinates, even if an origin was subtracted from those of the file that
-// it was made from.
+// Reads a model (.mrm) or any other file. The coordinates of a model are used as they are, even if
+// an origin was subtracted from them when the model was made.
 Result<Model> readModel(const MeshScan& options) {
   if (!options.model.ends_with(".mrm")) return readByContent(options);
   const auto model = render::lod::readMrm(options.model);
@@ -95,7 +96,8 @@ Result<Model> readModel(const MeshScan& options) {
   return Model{render::lod::extract(*model, 0), {}, about, valueIn(about, "unit")};
 }
 
-// The scanner's pose relative to the origin.
+// Returns the pose of the scanner relative to `origin`, by --camera or, without it, by --yaw and
+// --pitch around the bounding box. Errors: kInvalidArgument.
 Result<range::Pose> poseOf(const MeshScan& options, const render::mesh::Box& box,
                            const render::mesh::Origin& origin) {
   const std::vector<double>& c = options.camera;
@@ -149,8 +151,7 @@ Error nothingMet(const MeshScan& options, const Model& model, const std::string&
                       options.model, what, corner(box.low), corner(box.high))};
 }
 
-// Gives the planes the facts that the model states about their features; labels are whole numbers
-// without a range.
+// Sets unit and range of the planes to those that the model states for their features.
 void addFacts(const Model& model, range::RangeImage& image) {
   for (range::Plane& plane : image.planes) {
     if (plane.dimension != 1 || plane.name == "confidence") continue;
@@ -161,7 +162,8 @@ void addFacts(const Model& model, range::RangeImage& image) {
   }
 }
 
-// The range image, whose camera transform is in the coordinates of the model's file.
+// Scans the model and returns the range image, whose camera transform is in the coordinates of the
+// model's file.
 Result<scan::Scan> scanModel(MeshScan& options) {
   const auto model = readModel(options);
   if (!model) return model.error();
@@ -196,7 +198,8 @@ Result<scan::Scan> scanModel(MeshScan& options) {
   return scanned;
 }
 
-// Writes the planes beside the output, then the output, which names them.
+// Writes the planes as files beside the output, then the output, which contains the names of these
+// files.
 Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanned) {
   ScannedFiles files;
   files.left_out = scanned.left_out;
@@ -206,7 +209,8 @@ Result<ScannedFiles> writeScan(const MeshScan& options, const scan::Scan& scanne
       render::mesh::plainName(options.output.substr(0, options.output.rfind('.')));
   for (const range::Plane& plane : image.planes) {
     if (render::mesh::plainName(plane.name) != plane.name || plane.name.empty()) {
-      files.left_out.push_back(plane.name);  // its name cannot be a part of a file's name
+      // The name of the plane cannot be a part of a file name.
+      files.left_out.push_back(plane.name);
       continue;
     }
     const std::string file = fmt::format("{}.{}{}", stem, plane.name, range::endingOf(plane));

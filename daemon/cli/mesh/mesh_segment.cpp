@@ -24,7 +24,7 @@ struct SegmentOptions {
   render::segment::SegmentSettings settings;
   View view;
   bool json = false;
-  bool local = false;  // without the origin
+  bool local = false;  // whether to write coordinates without the origin
 };
 
 void setFeature(render::mesh::Mesh& mesh, render::mesh::Feature feature) {

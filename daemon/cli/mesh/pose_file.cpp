@@ -10,7 +10,7 @@
 namespace merlin::cli {
 
 Result<render::range::Pose> readPose(const std::string& path) {
-  constexpr std::size_t kMostBytes = 4096;  // 16 numbers, with room for spaces
+  constexpr std::size_t kMostBytes = 4096;  // enough for 16 numbers and spaces
   const auto file = FileCopy::read(path, kMostBytes);
   if (!file) return file.error();
   const std::vector<double> numbers = render::range::numbersOf(file->text(), 16);

@@ -1,4 +1,4 @@
-// A scanner's pose in a file of its own.
+// Reads the pose of a scanner from a file.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace merlin::cli {
 
-// Reads three or four rows of four numbers, separated by spaces or new lines: rotation and
-// translation from the scanner's coordinates to the world's; a fourth row is 0 0 0 1. Whether it is
-// a rotation is checked by range::faultOf() only. Errors, with the file's name: kNotFound, kIo,
-// kMalformed.
+// Reads a file with three or four rows of four numbers, separated by spaces or line feeds: rotation
+// and translation from the scanner's coordinates to the world's; the fourth row must be 0 0 0 1.
+// Does not check that the matrix is a rotation; range::faultOf() does. Errors, with the file's
+// name: kNotFound, kIo, kMalformed.
 Result<render::range::Pose> readPose(const std::string& path);
 
 }  // namespace merlin::cli

@@ -1,4 +1,4 @@
-// The step from a mesh to a model, for the commands that make models.
+// Reduces a mesh to a multiresolution model, for the commands that make models.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace merlin::cli {
 
-// reduce(), with its progress on stderr and for `listener`, which may be empty. `seconds`: receives
-// the time it took. Errors: those of reduce().
+// Calls reduce(), and reports its progress on stderr and to `listener`, which may be empty.
+// `seconds` is set to the duration unless there is an error. Errors: those of reduce().
 Result<render::reduce::Reduction> reduceWithProgress(const render::mesh::Mesh& mesh,
                                                      const render::reduce::ReduceSettings& settings,
                                                      double& seconds,
@@ -20,21 +20,22 @@ Result<render::reduce::Reduction> reduceWithProgress(const render::mesh::Mesh& m
 
 // A model that is to be made from a mesh.
 struct ModelOutput {
-  std::string file;        // the model
-  std::string named;       // the file that errors about the mesh name
+  // The model file to write (.mrm).
+  std::string file;
+  std::string named;       // name of the input, for errors about the mesh
   std::string about;       // lines for the model's text "about"
   std::size_t memory = 0;  // limit of the whole command [bytes]
   unsigned threads = 0;    // 0: all cores
   ProgressListener progress{};
 };
 
-// Reduces the mesh by the usual cost, with reduceWithProgress(), and writes the model. Returns the
-// number of triangles of its coarsest level. Errors: those of lod::checkNames(),
-// roomForReduction(), reduce() and lod::writeMrm().
+// Reduces the mesh with the default cost by reduceWithProgress(), and writes the model. Returns the
+// number of triangles of the coarsest level. `seconds` is set to the duration of the reduction.
+// Errors: those of lod::checkNames(), roomForReduction(), reduce() and lod::writeMrm().
 Result<std::size_t> writeReduced(const ModelOutput& output, const render::mesh::Mesh& mesh,
                                  double& seconds);
 
-// The options --memory and --threads.
+// Adds the options --memory and --threads.
 void addLimits(Command command, std::uint64_t& memory, unsigned& threads);
 
 }  // namespace merlin::cli

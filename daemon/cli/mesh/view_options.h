@@ -9,9 +9,9 @@
 namespace merlin::cli {
 
 struct View : render::frame::ModelView {
-  void addTo(Command command);  // --yaw, --pitch, --show, --brightness, --backend
+  void addTo(Command command);  // adds --yaw, --pitch, --show, --brightness, --backend
 
-  // The view that the options describe, including the backend.
+  // Returns the view that the options describe, with the backend.
   render::frame::ModelView asAsked() const;
 
  private:

@@ -15,13 +15,15 @@ struct WeightOptions {
   std::string preset = "default";
   std::vector<std::string> weights;  // FEATURE=W
 
-  // Adds --preset and --weight; `preset_help`, `weight_help`: what they mean for this command.
+  // Adds the options --preset and --weight. `preset_help`, `weight_help`: help texts for this
+  // command.
   void addTo(Command command, const std::string& preset_help, const std::string& weight_help);
 
   bool hasPreset() const { return preset != "default"; }
 
-  // The weights of the preset (by default those of the cost `cost`), changed by --weight. Errors:
-  // kInvalidArgument (a weight that is not FEATURE=NUMBER). REQUIRES: there is a cost of that name.
+  // Returns the weights of the preset (by default those of the cost `cost`), with the changes by
+  // --weight. Errors: kInvalidArgument (a weight that is not FEATURE=NUMBER). REQUIRES: a cost
+  // named `cost` exists.
   Result<render::reduce::Weights> weightsFor(const std::string& cost,
                                              const render::mesh::Mesh& mesh) const;
 };

@@ -14,7 +14,7 @@ constexpr double kLeast = 1e-5, kMost = 1.0;  // range of the error axis
 constexpr std::size_t kLines = 10;
 constexpr int kCurveBar = 30;
 
-// Position on the logarithmic error axis: 0 at kLeast, 1 at kMost.
+// Returns the position of an error on the logarithmic axis: 0 at kLeast, 1 at kMost.
 double place(double error) {
   const double held = std::clamp(error, kLeast, kMost);
   return std::log10(held / kLeast) / std::log10(kMost / kLeast);

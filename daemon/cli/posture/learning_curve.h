@@ -1,4 +1,4 @@
-// The learning curve of a training, as text for a terminal and as an SVG chart.
+// Formats the learning curve of a training as text for a terminal and as an SVG chart.
 #pragma once
 
 #include <span>
@@ -8,11 +8,12 @@
 
 namespace merlin::cli {
 
-// A table of about ten lines: number of the pass, training and validation error (mean squared),
-// noise, and a bar for the training error on a logarithmic scale.
+// Returns a table of about ten lines: number of the pass, training and validation error (mean
+// squared), noise, and a bar for the training error on a logarithmic scale.
 std::string curveText(std::span<const nn::CurvePoint> curve);
 
-// An SVG chart of the training and validation error over the passes, on a logarithmic error axis.
+// Returns an SVG chart of the training and validation error over the passes, with a logarithmic
+// error axis.
 std::string curveSvg(std::span<const nn::CurvePoint> curve, const std::string& title);
 
 }  // namespace merlin::cli

@@ -18,24 +18,26 @@ void addPostureAdapt(Command posture, Run& run);
 void addPostureCollect(Command posture, Run& run);
 void addPostureSynthesize(Command posture, Run& run);
 
-// The unit with the name "raw" or "rad"; nothing for "auto", which lets the reader decide.
+// Returns the unit with the name "raw" or "rad"; nothing for "auto", with which the reader of the
+// recording chooses the unit.
 std::optional<nn::InputUnit> unitNamed(const std::string& name);
 
-// How a recording is to be read.
+// Command-line options about how a recording is read.
 struct RecordingForm {
-  std::string units = "auto";        // as for unitNamed()
+  std::string units = "auto";        // "raw", "rad" or "auto" (unitNamed())
   std::vector<std::string> columns;  // "WHAT=COLUMN": see nn::ChosenColumn
 };
-// Adds the options --units and --columns.
+// Adds the options --units and --columns, which set `form`.
 void addForm(Command command, RecordingForm& form);
 
 // Reads a recording of labelled hands and prints the reader's notes to stderr. Errors: those of
 // nn::loadRecording(); kInvalidArgument (a column is not WHAT=COLUMN).
 Result<nn::Recording> readRecording(const std::string& path, const RecordingForm& form);
 
-// Reads a recording in the input unit of the network. If the network takes angles, raw counts are
-// converted with the shipped calibration. Errors: those of readRecording(); kInvalidArgument if
-// the units are radians and the network takes raw counts, or if a raw count is not from 0 to 255.
+// Reads a recording in the input unit of the network. Raw counts are converted to angles with the
+// shipped calibration if the network takes angles. Errors: those of readRecording();
+// kInvalidArgument (the given unit is radians and the network takes raw counts, or a raw count to
+// convert is not from 0 to 255).
 Result<nn::Recording> readFor(const nn::PostureNetwork& network, const std::string& path,
                               RecordingForm form);
 

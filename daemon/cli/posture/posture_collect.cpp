@@ -26,7 +26,7 @@ namespace {
 constexpr int kSensorBar = 24;
 constexpr std::size_t kBarsALine = 2;
 constexpr Duration kCollectRedraw = std::chrono::milliseconds(100);
-constexpr Duration kSamplePatience = std::chrono::seconds(3);  // longest time without a sample
+constexpr Duration kSamplePatience = std::chrono::seconds(3);  // maximum time without a sample
 
 struct CollectOptions {
   std::string label, output = "hands.csv", instance = "merlin", units = "rad";
@@ -43,10 +43,10 @@ struct LiveGlove {
   int stop = -1;  // the descriptor of stopSignals()
 };
 
-// What was recorded, also if the recording ended early.
+// The hands that were recorded, perhaps for a shorter time than wanted.
 struct CollectedHands {
   nn::Recording recording;
-  std::optional<Error> ended;  // why it is shorter than wanted
+  std::optional<Error> ended;  // error that ended the recording early
 };
 
 nn::LabelledHand handOf(const GloveSample& sample, const std::string& label, nn::InputUnit unit) {
@@ -59,8 +59,8 @@ nn::LabelledHand handOf(const GloveSample& sample, const std::string& label, nn:
   return hand;
 }
 
-// Draws a bar for each sensor that shows its value within the raw range, 0 to 255. `again`: redraws
-// over the bars of the last call.
+// Draws a bar for the raw value (0 to 255) of each sensor on stderr. `again`: whether to draw over
+// the bars of the last call.
 void drawBars(const GloveSample& sample, bool again) {
   std::string out;
   std::size_t lines = 0;
@@ -83,8 +83,8 @@ Error noGlove(const shm::DeviceSlots& devices, const CollectOptions& options) {
                       names.empty() ? "none" : names)};
 }
 
-// The glove that the options name. Errors: kInvalidArgument (there is no such glove), those of
-// LiveSamples::open().
+// Opens the glove that the options name, or the first glove. Errors: kInvalidArgument (there is no
+// such glove), those of LiveSamples::open().
 Result<LiveGlove> openGlove(const CollectOptions& options, int stop) {
   const auto devices = shm::DevicesReader::open(shm::segmentName(options.instance, "devices"));
   const auto* const glove = devices ? (*devices)->glove(options.device) : nullptr;
@@ -102,8 +102,8 @@ nn::Slots measuredIn(const GloveSample& sample) {
   return measured;
 }
 
-// Passes on the glove's samples until `take` returns false. Errors: kTimeout (no sample for 3 s),
-// kClosed (a signal has arrived, or merlind has ended).
+// Calls `take` for each sample of the glove until `take` returns false. Errors: kTimeout (no sample
+// for 3 s), kClosed (a signal has arrived, or merlind has ended).
 template <typename Take>
 Result<Ok> listenToGlove(LiveGlove& glove, Take take) {
   const SystemClock clock;
@@ -121,7 +121,8 @@ Result<Ok> listenToGlove(LiveGlove& glove, Take take) {
   return Ok{};
 }
 
-// Records the glove for options.seconds, counted from the first sample.
+// Records hands from the glove for options.seconds, counted from the first sample; draws the
+// sensors on a terminal.
 CollectedHands collect(LiveGlove& glove, const CollectOptions& options) {
   const SystemClock clock;
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
@@ -146,9 +147,9 @@ CollectedHands collect(LiveGlove& glove, const CollectOptions& options) {
   return collected;
 }
 
-// Checks that the file has hands in the unit that is to be recorded, as far as its values tell:
-// angles are within +-6.3 radians, and the raw counts of a glove are whole numbers from 0 to 255.
-// `before`: the file's hands, read without a given unit. Errors: kInvalidArgument.
+// Checks that the hands in the file have the unit that is to be recorded, judging by their values:
+// angles are within +-6.3 radians, and raw counts are whole numbers from 0 to 255. `before`: the
+// hands in the file, read with the unit "auto". Errors: kInvalidArgument.
 Result<Ok> checkUnit(const nn::Recording& before, const CollectOptions& options) {
   const auto refused = [&](const std::string& has, const char* records) {
     return Error{Errc::kInvalidArgument,
@@ -172,8 +173,8 @@ Result<Ok> checkUnit(const nn::Recording& before, const CollectOptions& options)
   return Ok{};
 }
 
-// The hands that the output file has so far; none if there is no such file. Errors: those of
-// checkWritable(), nn::loadRecording() and checkUnit().
+// Returns the hands that the output file contains already; none if it does not exist. Errors: those
+// of checkWritable(), nn::loadRecording() and checkUnit().
 Result<nn::Recording> handsSoFar(const CollectOptions& options) {
   if (const auto writable = checkWritable(options.output); !writable) return writable.error();
   if (!std::filesystem::exists(options.output)) return nn::Recording{};
@@ -184,7 +185,8 @@ Result<nn::Recording> handsSoFar(const CollectOptions& options) {
   return before;
 }
 
-// Errors: kInvalidArgument (the file's hands have other sensors).
+// Checks that the hands in the file have the same sensors as the glove (`measured`). Errors:
+// kInvalidArgument.
 Result<Ok> checkSensors(const nn::Recording& before, const nn::Slots& measured,
                         const std::string& path) {
   if (before.hands.empty() || before.measured == measured) return Ok{};
@@ -193,8 +195,8 @@ Result<Ok> checkSensors(const nn::Recording& before, const nn::Slots& measured,
       path + ": was recorded with a glove that has other sensors; choose another file with -o"};
 }
 
-// Appends the recorded hands to those of the file, which is read again, since it may have changed
-// while the hands were recorded. Errors: those of handsSoFar(), checkSensors() and
+// Appends the recorded hands to the output file. The file is read again, because it may have
+// changed during the recording. Errors: those of handsSoFar(), checkSensors() and
 // nn::saveRecording().
 Result<Ok> saveHands(nn::Recording recording, const CollectOptions& options) {
   auto found = handsSoFar(options);
@@ -216,8 +218,9 @@ Result<Ok> saveHands(nn::Recording recording, const CollectOptions& options) {
   return Ok{};
 }
 
-// Waits for a sample, so that what is wrong with the glove or the file is said before the person
-// holds the posture. Errors: those of openGlove(), listenToGlove() and checkSensors().
+// Opens the glove and waits for a sample, so that faults of the glove or the file are reported
+// before the person holds the posture. Errors: those of openGlove(), listenToGlove() and
+// checkSensors().
 Result<LiveGlove> openGloveFor(const nn::Recording& before, const CollectOptions& options,
                                int stop) {
   auto glove = openGlove(options, stop);

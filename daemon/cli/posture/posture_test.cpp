@@ -1,4 +1,5 @@
-// merlin posture test: prints a network's accuracy on labelled hands, its confusions and margins.
+// merlin posture test: prints the accuracy, the confusions and the margins of a posture network on
+// labelled hands.
 #include "daemon/cli/posture/posture.h"
 
 #include <memory>
@@ -71,7 +72,8 @@ void printTable(const nn::Evaluation& e, bool synthetic, double margin) {
              p.score.total, p.least_margin, p.mean_margin);
 }
 
-// Errors: kInvalidArgument (drift is to be followed, and the file lacks the postures' means).
+// Evaluates the network on the hands, with or without following the drift of the sensors. Errors:
+// kInvalidArgument (the drift is to be followed, but the file lacks the means of the postures).
 Result<nn::Evaluation> evaluate(const nn::NetworkFile& file,
                                 std::span<const nn::LabelledHand> hands,
                                 const TestOptions& options) {

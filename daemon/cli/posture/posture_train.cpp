@@ -24,15 +24,15 @@ struct TrainOptions {
   bool json = false;
 };
 
-// The hands to train on; without a file, those of the synthetic people that the shipped network was
-// trained on.
+// Returns the hands to train on: those of the given file or, without one, of the synthetic people
+// on whom the shipped network was trained.
 Result<nn::Recording> trainingHands(const TrainOptions& options) {
   if (!options.data.empty()) return readRecording(options.data, options.form);
   return synthesize({.people = 20, .takes = 2, .postures = 8});
 }
 
-// Calls `work` with a progress callback of nn::fit() that draws a bar; `seconds` is set to the time
-// that it took.
+// Calls `work` with a progress function for nn::fit() that draws a bar, and returns its result.
+// `seconds` is set to the duration of `work`.
 template <typename Work>
 auto withBar(const std::string& title, double& seconds, const Work& work) {
   const SystemClock clock;

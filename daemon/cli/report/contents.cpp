@@ -11,7 +11,8 @@
 namespace merlin::cli {
 namespace {
 
-// These files are compressed or binary, so no secret can be in them as text.
+// Returns whether the file is a picture or an EDID, which are binary and so contain no secrets as
+// text.
 bool isPicture(const std::string& name) {
   return name.ends_with(".png") || name.ends_with(".edid");
 }

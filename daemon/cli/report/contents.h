@@ -12,28 +12,32 @@
 
 namespace merlin::cli {
 
-inline constexpr std::size_t kMostReportBytes = 32u << 20;  // of all files, before compression
+// Maximum size of all files of a report together, before compression.
+inline constexpr std::size_t kMostReportBytes = 32u << 20;
 
 struct CollectedPart {
-  std::string name, about;  // "status"; "state of both roles, as by merlin status --json"
+  // Name and description: "status", "state of both roles, as by merlin status --json".
+  std::string name, about;
   PartResult result;
 };
 
-// Removes the secrets from the parts' files and sentences; pictures are not changed. Removes the
-// files that do not fit into `most_bytes` after the files before them; a sentence about each is
-// added to what is missing.
+// Replaces the secrets in the files (except pictures), file names and sentences of all parts. Then
+// removes each file that does not fit into `most_bytes` together with the files before it, and adds
+// a sentence about it to `missing` of its part.
 void makeFit(std::vector<CollectedPart>& parts, const KnownSecrets& secrets,
              std::size_t most_bytes = kMostReportBytes);
 
-// The report's README.txt: what is in it, what is missing and why, and what was left out on
-// purpose. `made`: time of the report, as text.
+// Returns the README.txt of the report: its contents, what is missing and why, and what was left
+// out on purpose. `made`: date and time of the report, as text.
 std::string readmeText(std::span<const CollectedPart> parts, const std::string& made);
 
-// The list of parts as JSON, for programs: `bytes` is the size of the archive.
+// Returns the list of parts as JSON, for programs. `archive`, `bytes`: name and size of the
+// archive.
 std::string partsJson(std::span<const CollectedPart> parts, const std::string& archive,
                       std::size_t bytes);
 
-// All files, README.txt first, placed in a folder with this name in the archive.
+// Returns all files of the report, `readme` first as README.txt, in the folder `folder` of the
+// archive.
 std::vector<PackedFile> packedFiles(const std::vector<CollectedPart>& parts,
                                     const std::string& folder, const std::string& readme);
 

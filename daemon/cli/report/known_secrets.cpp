@@ -14,8 +14,8 @@
 namespace merlin::cli {
 namespace {
 
-constexpr std::size_t kShortest = 4;  // shorter texts occur anywhere by chance
-// An argument that is shorter is rather an option or a name than a token.
+constexpr std::size_t kShortest = 4;  // shorter texts occur by chance in any text
+// Shorter arguments are probably options or names, not tokens.
 constexpr std::size_t kShortestArgument = 12;
 constexpr std::size_t kMostFileBytes = 65536;
 
@@ -46,8 +46,8 @@ KnownSecrets::KnownSecrets(const std::vector<std::string>& texts) {
   sortByLength();
 }
 
-// Adds the text, and also its forms in JSON and in messages if these escape quotes or other
-// characters in it.
+// Adds the text as a secret, and also its forms in JSON and in messages, in which some characters
+// are escaped.
 void KnownSecrets::add(std::string_view text) {
   if (text.size() < kShortest) return;
   texts_.emplace_back(text);
@@ -57,8 +57,8 @@ void KnownSecrets::add(std::string_view text) {
   }
 }
 
-// Adds each line as a whole, for passwords and tokens, and its last word, for "secret KEY". A line
-// "public KEY" is not a secret.
+// Adds each line of the file as a whole, for passwords and tokens, and its last word, for "secret
+// KEY". A line "public KEY" is not a secret. If the file does not exist, adds its name.
 void KnownSecrets::addFile(const std::string& path) {
   const auto file = FileCopy::read(path, kMostFileBytes);
   if (!file && file.error().code == Errc::kNotFound)

@@ -1,4 +1,4 @@
-// The secrets that must not appear anywhere in a report.
+// KnownSecrets: the secrets that must not appear anywhere in a report.
 #pragma once
 
 #include <string>
@@ -9,23 +9,25 @@
 
 namespace merlin::cli {
 
-// A report includes neither the settings that name files with secrets, nor these files, nor the
-// page's token. This class is for texts of other programs, such as a journal: it replaces every
-// secret in them that this user can read.
+// Replaces secrets in texts of other programs, such as a journal. The files with secrets, the
+// settings that name them, and the token of the web page are left out of a report anyway. Only
+// secrets that this user can read are known.
 class KnownSecrets {
  public:
   // Reads the secret files that the settings name, and those of `others` that exist, as far as this
-  // user may. The name of a file that does not exist counts as a secret itself, since somebody may
-  // have entered the secret instead of a name. So does an argument of an alarm's program with at
-  // least 12 characters, since it may be a token.
+  // user may. The paths in the settings count as secrets too, because somebody may have entered a
+  // secret instead of a path. So do arguments of alarms' programs of at least 12 characters,
+  // because they may be tokens.
   KnownSecrets(const Settings& settings, const std::vector<std::string>& others);
+  // Takes these texts as the secrets.
   explicit KnownSecrets(const std::vector<std::string>& texts);
 
-  // Adds the secrets of other settings.
+  // Adds the secrets of further settings.
   void add(const Settings& settings);
 
-  // The text with each secret replaced by kSecretLeftOut. O(text x secrets).
+  // Returns the text with each secret replaced by kSecretLeftOut. Cost: O(text x secrets).
   std::string without(std::string_view text) const;
+  // Returns whether the text contains any of the secrets.
   bool isIn(std::string_view text) const;
 
  private:
@@ -33,7 +35,7 @@ class KnownSecrets {
   void addFile(const std::string& path);
   void sortByLength();
 
-  std::vector<std::string> texts_;  // the longest first, since one may be part of another
+  std::vector<std::string> texts_;  // the longest first, because a secret may be a part of another
 };
 
 }  // namespace merlin::cli

@@ -21,9 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = 1 << 20;  // of one file of /sys or /proc
+constexpr std::size_t kMostBytes = 1 << 20;  // limit for one file of /sys or /proc
 
-// Files of /sys and /proc say that they have 0 or 4096 bytes: they are read until their end.
+// Reads a file until its end or kMostBytes; the sizes that files of /sys and /proc state (0 or
+// 4096) are wrong.
 std::string contentOf(const std::string& path) {
   const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   std::string content;
@@ -36,7 +37,7 @@ std::string contentOf(const std::string& path) {
   return content;
 }
 
-// The first line, without blanks at its end.
+// Returns the first line of a file, without blanks at its end.
 std::string firstLine(const std::string& path) {
   std::string line = contentOf(path);
   line.resize(std::min(line.find('\n'), line.size()));
@@ -53,13 +54,14 @@ std::vector<std::string> namesIn(const std::string& folder) {
   return names;
 }
 
-// Where a link points: its last component; empty if it is no link.
+// Returns the last component of the target of a link; empty if the path is no link.
 std::string linkName(const std::string& path) {
   std::error_code error;
   return fs::read_symlink(path, error).filename().string();
 }
 
-// The value of a line "KEY: VALUE" or "KEY=VALUE"; empty if there is none.
+// Returns the value of the first line "KEY: VALUE" or "KEY=VALUE" of `text`; empty if there is
+// none. `sign`: ':' or '='.
 std::string valueOf(const std::string& text, std::string_view key, char sign) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -142,7 +144,7 @@ std::string usbText(const std::string& root) {
   for (const std::string& name : namesIn(folder)) {
     const std::string at = folder + name;
     const std::string vendor = firstLine(at + "/idVendor");
-    if (vendor.empty()) continue;  // an interface of a device, no device
+    if (vendor.empty()) continue;  // an entry without a vendor is an interface, not a device
     text += fmt::format("{}: id {}:{}, {} {}, {} Mbit/s\n", name, vendor,
                         firstLine(at + "/idProduct"), firstLine(at + "/manufacturer"),
                         firstLine(at + "/product"), firstLine(at + "/speed"));
@@ -158,7 +160,7 @@ std::string serialText(const std::string& root) {
   return text;
 }
 
-// Keyboards, mice, touch screens: names and event devices.
+// Returns the names and event devices of keyboards, mice and other input devices.
 std::string inputText(const std::string& root) {
   std::string text;
   std::istringstream lines(contentOf(root + "/proc/bus/input/devices"));

@@ -1,5 +1,5 @@
-// The texts of a report about the machine: versions and hardware, read from /sys, /proc and /etc
-// without other programs.
+// Describes the machine for a report: versions and hardware, read from /sys, /proc and /etc without
+// other programs.
 #pragma once
 
 #include <string>
@@ -9,19 +9,20 @@
 
 namespace merlin::cli {
 
-// `root`: the folder that has /sys, /proc, /dev and /etc; empty for this machine's. Missing facts
-// are left out of the texts. Reentrant.
+// For all functions: `root` is the folder that contains sys, proc, dev and etc, for tests; empty
+// for those of this machine. Facts that are not available are left out. Reentrant.
 
-// MERLIN, kernel and distribution, one per line.
+// Returns the versions of MERLIN, of the kernel and of the distribution, one per line.
 std::string versionsText(const std::string& root);
-// The files of libraries that a process has loaded, by their full paths, which include the
-// versions. Empty if the process is another user's.
+// Returns the paths of the libraries that a process has loaded, which include the versions. `pid`:
+// id of the process, or "self". Empty if the process belongs to another user.
 std::string librariesText(const std::string& root, const std::string& pid);
 
-// CPU, memory, file systems of MERLIN's folders, graphics cards, displays at their connectors, PCI
-// and USB devices, serial adapters by id, and input devices.
+// Returns a text about CPU, memory, the file systems of MERLIN's folders, graphics cards, displays
+// at their connectors, PCI and USB devices, serial adapters, and input devices.
 std::string hardwareText(const std::string& root);
-// The identification (EDID) of each display, by connector: "card0-HDMI-A-1.edid".
+// Returns the identification (EDID) of each display as a file named after its connector,
+// "card0-HDMI-A-1.edid".
 std::vector<PackedFile> displayIds(const std::string& root);
 
 }  // namespace merlin::cli

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostMissingBytes = 65536;  // of the sentences of a part
+constexpr std::size_t kMostMissingBytes = 65536;  // limit for the sentences of a part
 constexpr int kExitNotInstalled = 127;
 
 // A folder that only this user can read; the destructor removes it.
@@ -55,7 +55,8 @@ class PrivateFolder {
   std::string path_;
 };
 
-// Discards what the part prints, and limits the size of each file: a write beyond the limit fails.
+// Prepares the child process: it discards what the part prints, and limits the size of each file,
+// so that writing beyond the limit fails.
 void limitChild(std::size_t most_bytes, const sigset_t& mask) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -80,14 +81,16 @@ void limitChild(std::size_t most_bytes, const sigset_t& mask) {
   }
   std::string text;
   for (const std::string& what : folder.missing()) text += oneLine(what) + '\n';
-  text.resize(std::min(text.size(), kMostMissingBytes));  // below what a pipe holds: never blocks
-  text += '\0';                                           // marks that the part is complete
+  // Limits the text to about the capacity of a pipe.
+  text.resize(std::min(text.size(), kMostMissingBytes));
+  // The zero byte marks that the part is complete.
+  text += '\0';
   const ssize_t told = ::write(to, text.data(), text.size());
   ::_exit(told < 0 ? 1 : 0);
 }
 
-// What the child has sent until it ended, `until` was reached (`late`) or `stop` became readable
-// (`stopped`).
+// The text that the child has sent until it ended. `late`: whether its time was over before;
+// `stopped`: whether a signal came before.
 struct ProgramOutput {
   std::string text;
   bool late = false, stopped = false;
@@ -109,8 +112,8 @@ ProgramOutput listen(int from, int stop, Timestamp until) {
   }
 }
 
-// Ends the child and what it started. A process that waits for a device may not end at once: it is
-// not waited for longer than a second.
+// Kills the child and the programs that it has started, and waits up to one second for its end,
+// because a process that waits for a device may not end at once.
 void endChild(pid_t child) {
   ::kill(-child, SIGKILL);
   ::kill(child, SIGKILL);
@@ -180,7 +183,7 @@ Result<PartResult> runPart(const PartSettings& part, int stop, const sigset_t& m
   if (!folder) return folder.error();
   auto pipe = makePipe();
   if (!pipe) return pipe.error();
-  std::fflush(nullptr);  // otherwise the child would print buffered output again
+  std::fflush(nullptr);  // otherwise the child would write the buffered output a second time
   const auto child = startChild();
   if (!child) return child.error();
   if (*child == 0) collectInChild(part, folder->path(), pipe->to.get(), mask);

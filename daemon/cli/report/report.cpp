@@ -1,4 +1,5 @@
-// merlin report: collects in one file what somebody needs to help with a fault.
+// merlin report: collects in one archive the information that is needed to find the cause of a
+// fault.
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -28,8 +29,8 @@ struct ReportOptions {
   bool json = false;
 };
 
-// The folder of the running daemon's sockets; if it does not run, the configured folder or the
-// usual one.
+// Returns the folder of the daemon's sockets: that of the running daemon or, if it does not run,
+// the configured or the usual one.
 std::string runDirectoryOf(const std::string& instance, const Settings& settings) {
   constexpr std::string_view kIpc = "ipc://";
   if (const auto roles = findRoles(instance)) {
@@ -51,7 +52,8 @@ ReportSubject subjectOf(const ReportOptions& options) {
   return subject;
 }
 
-// The token of the web page, and the password of merlin-rfb where its unit suggests it.
+// Returns the files with the token of the web page and the password of merlin-rfb, the latter at
+// the place that merlin-rfb's unit suggests.
 std::vector<std::string> otherSecretFiles(const ReportSubject& subject) {
   const auto folder = std::filesystem::path(subject.config).parent_path();
   return {fmt::format("{}/{}-page.token", subject.run_directory, subject.instance),
@@ -77,7 +79,7 @@ Result<std::vector<CollectedPart>> collect(const ReportSubject& subject,
     auto result = runPart(part.settings, stop.get(), mask);
     if (!result) return result.error();
     parts.push_back({part.settings.name, part.about, *std::move(result)});
-    makeFit(parts, secrets);  // also limits the size of all parts together
+    makeFit(parts, secrets);  // removes secrets, and limits the size of all parts together
     if (print) printPart(parts.back());
   }
   return parts;

@@ -29,14 +29,14 @@ namespace fs = std::filesystem;
 using std::chrono::seconds;
 
 constexpr std::size_t kMega = 1 << 20;
-constexpr std::size_t kMostFlightBytes = 2 * kMega;  // of one recording
+constexpr std::size_t kMostFlightBytes = 2 * kMega;  // limit for one recording
 constexpr std::size_t kMostCrashFrame = 8 * kMega;
 constexpr const char* kUnits[] = {"merlin-devices.service", "merlin-wall.service",
                                   "merlin-page.service",    "merlin-alarms.service",
                                   "merlin-rfb.service",     "merlin.target"};
 
-// The settings without what may be a secret in them. Only the path of an alarm's program is kept,
-// even if somebody wrote arguments into the same text.
+// Returns the settings without arguments of the alarms' programs, which may be secrets. If somebody
+// wrote arguments into the same text as the program, only the text up to the first blank is kept.
 Settings forStrangers(Settings settings) {
   for (AlarmSettings& alarm : settings.alarms) {
     for (std::size_t i = 1; i < alarm.run.size(); ++i) alarm.run[i] = kSecretLeftOut;
@@ -57,8 +57,8 @@ std::string changesText(const Settings& settings) {
   return text;
 }
 
-// Adds a sentence that says why the settings of the configuration are missing, and the last good
-// settings.
+// For an invalid configuration: adds a sentence about why its settings are missing, and adds the
+// last good settings instead.
 void collectKept(const ReportSubject& subject, PartFolder& folder) {
   const std::string findings = findingsText(subject.config, subject.loaded);
   folder.lacks(fmt::format("settings.json: the configuration is invalid: {}; {}",
@@ -89,7 +89,7 @@ void collectConfiguration(const ReportSubject& subject, PartFolder& folder) {
   folder.put("state.json", state::StateFolder(state).read());
 }
 
-// The programs' ids, by role.
+// Returns pairs of a name (the role, or "merlin" for this process) and a process id.
 std::vector<std::pair<std::string, std::string>> processes(const std::string& instance) {
   std::vector<std::pair<std::string, std::string>> found = {{"merlin", "self"}};
   const auto status = askStatus(instance);
@@ -117,7 +117,8 @@ void collectVersions(const ReportSubject& subject, PartFolder& folder) {
   if (!packages) folder.lacks("packages.txt: " + packages.error().what);
 }
 
-// A role that crashed a moment ago does not answer; the status of the other role is kept.
+// Adds the status of all roles. If one does not answer, because it has just crashed, adds the
+// status of the other, and a sentence.
 void collectStatus(const ReportSubject& subject, PartFolder& folder) {
   const auto roles = findRoles(subject.instance);
   if (!roles) return folder.put("status.json", Result<std::string>(roles.error()));
@@ -136,7 +137,7 @@ void collectStatus(const ReportSubject& subject, PartFolder& folder) {
   if (!fault.empty()) folder.lacks("status.json: " + fault);
 }
 
-// Runs the program and keeps its output, even if it failed.
+// Runs a program and keeps its output as the file `name`, even if the program failed.
 void collectOutput(const std::string& name, const std::vector<std::string>& arguments,
                    PartFolder& folder) {
   const auto status = runInto(folder.path(name), arguments);
@@ -148,7 +149,7 @@ void collectOutput(const std::string& name, const std::vector<std::string>& argu
         fmt::format("{}: {} (the group systemd-journal may read the journal)", name, first));
 }
 
-// sd_booted(3)
+// Returns whether systemd is the init system; the same test as in sd_booted(3).
 bool systemdRuns() {
   std::error_code error;
   return fs::is_directory("/run/systemd/system", error);
@@ -169,8 +170,8 @@ void collectJournal(PartFolder& folder) {
   collectOutput("journal.txt", arguments, folder);
 }
 
-// The files of the last day in the daemon's folder for recordings, the newest first: devices'
-// recordings (devices_role), and the last frames of walls that crashed (crash_frame).
+// Returns the files of the last 24 hours in the daemon's folder "flight", the newest first:
+// recordings of devices (devices_role) and the last frames of walls that crashed (crash_frame).
 std::vector<std::string> recordings(const ReportSubject& subject) {
   std::vector<std::pair<fs::file_time_type, std::string>> found;
   const auto day_ago = fs::file_time_type::clock::now() - std::chrono::hours(24);
@@ -188,7 +189,8 @@ std::vector<std::string> recordings(const ReportSubject& subject) {
   return paths;
 }
 
-// Copies the existing recordings first, because requesting new ones may remove the oldest.
+// Copies the existing recordings, then requests new ones and copies them too. The order matters,
+// because a request may remove the oldest recordings.
 void collectFlight(const ReportSubject& subject, PartFolder& folder) {
   std::set<std::string> taken;
   for (const std::string& path : recordings(subject)) {

@@ -1,4 +1,4 @@
-// The parts of a report, and how each is collected.
+// Defines the parts of a report, and how each is collected.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace merlin::cli {
 
-// Settings with which a process of merlind runs while the configuration is invalid (merlind
+// The last valid settings, with which a merlind runs while its configuration is invalid (merlind
 // --last-good).
 struct KeptSettings {
   std::string file;
@@ -22,11 +22,11 @@ struct ReportSubject {
   LoadedSettings loaded;             // the settings in it
   std::string instance;              // name of the daemon
   std::string run_directory;         // folder of its sockets; "flight" in it has flight recordings
-  std::vector<KeptSettings> kept{};  // used instead of `loaded` if that is invalid
+  std::vector<KeptSettings> kept{};  // the last valid settings, used if `loaded` is invalid
 
   bool isValid() const { return loaded.verdict() != LoadedSettings::Verdict::kInvalid; }
-  // The settings by which the daemon is found: those of the file, or, if they are invalid, the
-  // first that are kept.
+  // Returns the settings by which the daemon is found: those in `loaded` or, if these are invalid,
+  // the first in `kept`.
   const Settings& settings() const {
     return isValid() || kept.empty() ? loaded.settings : kept.front().loaded.settings;
   }
@@ -37,12 +37,12 @@ struct ReportPart {
   std::string about;  // a description, as a clause
 };
 
-// The parts in the order in which they are collected; the most useful first, since they get space
-// first. `subject` must outlive them.
+// Returns the parts in the order in which they are collected: the most useful first, because they
+// get space first. `subject` must outlive the parts.
 std::vector<ReportPart> reportParts(const ReportSubject& subject);
 
-// The findings of a configuration, one per line, without text copied from the file, which may
-// contain anything.
+// Returns the findings of a configuration, one per line. Text quoted from the file is left out,
+// because it may contain secrets.
 std::string findingsText(const std::string& file, const LoadedSettings& loaded);
 
 }  // namespace merlin::cli

@@ -42,9 +42,11 @@ bool add(archive* a, const PackedFile& file, std::int64_t time_s) {
   return written == static_cast<la_ssize_t>(file.content.size());
 }
 
-// Uses the format pax, which allows names of any length with any characters.
+// Opens the archive in the format pax, which allows names of any length with any characters;
+// returns false after an error.
 bool open(archive* a, const WriteBytes& write) {
-  void* const to = const_cast<WriteBytes*>(&write);  // libarchive hands it back to writeBytes()
+  // libarchive passes the pointer to writeBytes().
+  void* const to = const_cast<WriteBytes*>(&write);
   return archive_write_set_format_pax_restricted(a) == ARCHIVE_OK &&
          archive_write_add_filter_gzip(a) == ARCHIVE_OK &&
          archive_write_set_filter_option(a, "gzip", "timestamp", nullptr) == ARCHIVE_OK &&

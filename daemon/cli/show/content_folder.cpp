@@ -29,7 +29,8 @@ Error failedWith(const std::string& path, int error) {
           fmt::format("{}: {}", path, std::strerror(error))};
 }
 
-// Gives the group all that was made; the mode is set last, since chown clears bits of it.
+// Gives the file, or the folder and its files, to the group. The mode is set last, because chown()
+// may clear bits of it.
 Result<Ok> giveToGroup(const std::string& made, gid_t group) {
   const auto give = [group](const fs::path& path, mode_t mode) -> Result<Ok> {
     struct stat status {};
@@ -48,14 +49,15 @@ Result<Ok> giveToGroup(const std::string& made, gid_t group) {
   return give(made, 0770);
 }
 
-// Syncs the file or folder to the disk, to be called before it is renamed.
+// Syncs the file or folder to the disk. To be called before it is renamed.
 Result<Ok> sync(const std::string& path) {
   const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid() || ::fsync(file.get()) != 0) return failedWith(path, errno);
   return Ok{};
 }
 
-// Copies the next bytes in the kernel; 0 where that is not possible.
+// Copies the next bytes within the kernel. Returns their number; 0 if that is not possible for
+// these files, or at the end; -1 after an error (errno).
 ssize_t copyInKernel(int from, int to, std::size_t most) {
   const ssize_t n = ::copy_file_range(from, nullptr, to, nullptr, most, 0);
   const bool cannot = n < 0 && (errno == EXDEV || errno == EINVAL || errno == ENOSYS ||
@@ -125,8 +127,8 @@ Result<Ok> handOver(const std::string& made, const ContentFolder& folder, const 
   if (const auto written = sync(made); !written) return written;
   const std::string to = folder.path + "/" + name;
   if (std::rename(made.c_str(), to.c_str()) == 0) return Ok{};
-  // rename() cannot replace a folder that is not empty: moves the old one into the work folder,
-  // with which it is removed.
+  // rename() cannot replace a folder that is not empty, so the former one is moved into the work
+  // folder, with which it is removed.
   const bool other = errno == ENOTEMPTY || errno == EEXIST || errno == EISDIR || errno == ENOTDIR;
   if (!other || std::rename(to.c_str(), (made + ".old").c_str()) != 0 ||
       std::rename(made.c_str(), to.c_str()) != 0)

@@ -49,7 +49,7 @@ Result<Ok> convertFile(const Conversion& conversion, const MeshImport& mesh,
   return importFile(import);
 }
 
-// Names of the files in the folder, in order, without hidden ones.
+// Returns the names of the files in the folder, sorted, without hidden files. Errors: kIo.
 Result<std::vector<std::string>> filesIn(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -63,14 +63,16 @@ Result<std::vector<std::string>> filesIn(const std::string& folder) {
   return names;
 }
 
-// The slide's name: that of its file, with the whole name where two differ by the ending only.
+// Returns the path of the slide for the file `name`: its name with the ending .tif instead of its
+// own, or after its own if another file already has that slide.
 std::string slideFor(const std::string& folder, const std::string& name) {
   const std::string slide = folder + "/" + fs::path(name).stem().string() + ".tif";
   std::error_code error;
   return fs::exists(slide, error) ? folder + "/" + name + ".tif" : slide;
 }
 
-// A picture that cannot be read only causes a note; any other error ends the import.
+// Converts one file of the folder to a slide. A file that is not a picture or cannot be read
+// (kMalformed, kUnsupported) only causes a note; any other error is returned.
 Result<Ok> addSlide(const Conversion& slide, const ImageImport& image,
                     const ProgressListener& listener) {
   if (slide.kind != FileKind::kPicture && slide.kind != FileKind::kPyramid) {

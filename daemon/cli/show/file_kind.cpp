@@ -27,7 +27,8 @@ bool isTiffFile(std::string_view content) {
   return content.starts_with("II") || content.starts_with("MM");
 }
 
-// The header's comments precede the pixels; they must be parsed in the same way as by readRange().
+// Returns whether a comment in the header of a PGM states a geometry. Comments precede the pixels,
+// and are parsed in the same way as by readRange().
 bool pgmSaysGeometry(std::string_view content) {
   render::range::ImageHeader header;
   constexpr std::size_t kMostHeader = 1 << 20;
@@ -37,14 +38,16 @@ bool pgmSaysGeometry(std::string_view content) {
     const std::size_t end = std::min(content.find('\n', at + 1), content.size());
     std::string_view line = content.substr(at + 2, end - at - 2);
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    if (!render::range::applyLine(line, header)) return true;  // mesh import reports the fault
+    // A faulty line counts too, so that mesh import reports the fault.
+    if (!render::range::applyLine(line, header)) return true;
     at = end < content.size() ? end : std::string_view::npos;
   }
   return header.scanner || header.angles_deg || header.cell || header.camera ||
          !header.beams.empty() || !header.features.empty();
 }
 
-// A card has 80 characters, its keyword the first 8.
+// Returns whether the header of a FITS image has a keyword that states a geometry. The header
+// consists of cards of 80 characters, which begin with a keyword of 8.
 bool fitsSaysGeometry(std::string_view content) {
   constexpr std::string_view kKeys[] = {"GEOMETRY", "ANGLEH  ", "CELLX   "};
   constexpr std::size_t kCard = 80, kMostCards = 4096;
@@ -56,7 +59,7 @@ bool fitsSaysGeometry(std::string_view content) {
   return false;
 }
 
-// Numbers of a TIFF in its byte order; 0 beyond the end.
+// Reads unsigned numbers of a TIFF in its byte order; numbers beyond the end are 0.
 class TiffBytes {
  public:
   explicit TiffBytes(std::string_view content)
@@ -77,7 +80,8 @@ class TiffBytes {
   bool little_;
 };
 
-// Reads the first image file directory only.
+// Returns whether the TIFF is a map with one value per pixel. Examines the first image file
+// directory only.
 bool tiffIsMap(std::string_view content) {
   constexpr std::uint64_t kSamples = 277, kGeoKeys = 34735;
   const TiffBytes bytes(content);

@@ -1,4 +1,5 @@
-// merlin show: shows a content of the configuration, or any file that merlin can make a content of.
+// merlin show: shows a content of the configuration, or any file that merlin can convert to a
+// content.
 #include <cctype>
 #include <filesystem>
 #include <memory>
@@ -30,12 +31,12 @@ namespace fs = std::filesystem;
 
 struct ShowFileOptions {
   std::string instance = "merlin";
-  MeshImport mesh;  // its inputs: what is to be shown
+  MeshImport mesh;  // options of the import; `inputs` is the content or file to show
   ImageImport image;
   double wait_s = 60;
 
   const std::string& what() const { return mesh.input(); }
-  // The name of an option about the import of meshes that was given; empty if none was.
+  // Returns the name of an option for the import of meshes that was given; empty if none was.
   std::string meshOption() const {
     if (mesh.range.scale) return "--scale";
     if (mesh.outwards) return "--outwards";
@@ -45,8 +46,9 @@ struct ShowFileOptions {
 
 constexpr Duration kLook = std::chrono::milliseconds(5);
 
-// Refuses --panorama for anything that is not converted to a pyramid now, because the pyramid
-// states whether its picture is a panorama. `found`: what it is, for the message.
+// Returns an error if --panorama was given. For contents that are not converted to a pyramid now,
+// because the pyramid states whether its picture is a panorama. `found`: what the content is, for
+// the message.
 Result<Ok> checkPanorama(const ShowFileOptions& options, const char* found) {
   if (!options.image.panorama) return Ok{};
   return Error{Errc::kInvalidArgument,
@@ -66,9 +68,9 @@ Result<Ok> checkPanorama(const ShowFileOptions& options, FileKind kind) {
   return Ok{};
 }
 
-// Waits until the wall has finished the request and then refused it, has shown another frame, or is
-// at rest with all its detail (no further frame follows then). Returns the content with the result
-// of the request; nothing if that takes longer than the time to wait.
+// Waits until the wall has finished the request and then has refused it, has shown another frame,
+// or is at rest with full detail, after which no frame follows. Returns the wall's content with the
+// result of the request; nothing after options.wait_s.
 std::optional<shm::WallContent> awaitDone(const ShowFileOptions& options, std::uint32_t request) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
@@ -93,7 +95,8 @@ std::optional<shm::WallContent> awaitDone(const ShowFileOptions& options, std::u
   return std::nullopt;
 }
 
-// Asks the wall to show the content, and waits until it does.
+// Asks the wall to show the content, and waits until it does. Errors: those of askRole(); kTimeout;
+// kMalformed (the wall has refused the content).
 Result<Ok> ask(const ShowFileOptions& options, const RoleRequest& request) {
   const auto asked = askRole(options.instance, "wall", request);
   if (!asked) return asked.error();
@@ -110,8 +113,8 @@ Result<Ok> ask(const ShowFileOptions& options, const RoleRequest& request) {
   return Ok{};
 }
 
-// A test card stays when another content is chosen, so that a person who adjusts projectors is not
-// interrupted: prints a note about it.
+// Prints a note if a test card covers the content. A test card stays when another content is shown,
+// so that a person who adjusts projectors is not interrupted.
 void noteTestCard(const ShowFileOptions& options) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(options.instance, "wall"));
@@ -121,7 +124,7 @@ void noteTestCard(const ShowFileOptions& options) {
 }
 
 // Has the wall show the progress of the import, about once a second. If the wall does not answer,
-// the import continues without it.
+// the import continues without such notices.
 class WallNotices {
  public:
   WallNotices(const ShowFileOptions& options, const Clock& clock)
@@ -160,8 +163,8 @@ class WallNotices {
   Timestamp sent_{};
 };
 
-// While this object exists, signals end the conversion instead of this process, so that the files
-// of the conversion can be removed.
+// While this object exists, SIGTERM, SIGINT and SIGHUP make stop() readable, by which the
+// conversion ends, instead of ending this process, so that temporary files can be removed.
 class HeldStop {
  public:
   HeldStop() {
@@ -185,12 +188,15 @@ class HeldStop {
   UniqueFd stop_;
 };
 
-// Makes the content in a work folder in the content folder, and gives it its name there.
+// Converts the file in a work folder inside the content folder, and then moves the result to the
+// content folder as `name`. Errors: those of roomIn(), WorkFolder::make(), convert() and
+// handOver(); kClosed (a signal).
 Result<Ok> put(const ShowFileOptions& options, const ContentFolder& folder, FileKind kind,
                const std::string& name, WallNotices& notices) {
   const auto room = roomIn(folder);
   if (!room) return room.error();
-  const HeldStop signals;  // before the work folder exists: a signal would leave it behind
+  // Held before the work folder is made, because a signal would otherwise leave it behind.
+  const HeldStop signals;
   const auto work = WorkFolder::make(fs::path(folder.path) / name);
   if (!work) return work.error();
   const Conversion conversion{options.what(), work->path() + "/" + name, kind, *room};
@@ -205,7 +211,7 @@ Result<Ok> put(const ShowFileOptions& options, const ContentFolder& folder, File
   return handOver(conversion.output, folder, name);
 }
 
-// Returns the name of what was put into the content folder.
+// Converts the file and puts the result into the content folder. Returns its name there.
 Result<std::string> putFile(const ShowFileOptions& options, const ContentFolder& folder,
                             WallNotices& notices) {
   const auto kind = kindOfFile(options.what(), !options.meshOption().empty());
@@ -238,7 +244,7 @@ int showFile(const ShowFileOptions& options) {
   const auto shown = ask(options, {"show_file", *name});
   const std::string put = folder->path + "/" + *name;
   if (!shown) {
-    // Removes a file that cannot be shown from the content folder.
+    // A file that cannot be shown is removed from the content folder.
     std::error_code error;
     if (!there && shown.error().code != Errc::kTimeout) fs::remove_all(put, error);
     return cannot(shown.error());
@@ -269,8 +275,9 @@ int showName(const ShowFileOptions& options) {
   return fail(shown.error());
 }
 
-// The argument is the name of a content unless it has a '/', or an ending and either exists as a
-// file or was given with an option for imports.
+// Shows a content by name or a file. The argument is a file if it contains a '/', or if it has an
+// ending and either exists or was given with an option for imports; otherwise it is the name of a
+// content.
 int showContent(ShowFileOptions& options) {
   std::vector<std::string>& inputs = options.mesh.inputs;
   if (const auto input = options.mesh.range.takeInput()) inputs.push_back(*input);

@@ -34,12 +34,13 @@ void sendAll(int to, std::string_view bytes) {
   }
 }
 
-// The child sends lines "SHARE TITLE"; at its end it sends a zero byte and, after an error only,
-// one byte (1 + its code) and the text of the error.
+// Does the work in the child process, which sends lines "SHARE TITLE" through the pipe `to`. At the
+// end it sends a zero byte and, only after an error, one byte (1 + code of the error) and the text
+// of the error.
 [[noreturn]] void workInChild(const WatchedWork& watched, int to, const sigset_t& mask) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   ::sigprocmask(SIG_SETMASK, &mask, nullptr);
-  ::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit is an error then
+  ::signal(SIGXFSZ, SIG_IGN);  // so that writing beyond the limit fails with an error
   rlimit size{};
   ::getrlimit(RLIMIT_FSIZE, &size);
   size.rlim_cur = std::min<rlim_t>(watched.most_bytes, size.rlim_max);
@@ -59,12 +60,12 @@ void sendAll(int to, std::string_view bytes) {
   ::_exit(0);
 }
 
-// What the child has told so far.
+// Parses what the child sends.
 class Told {
  public:
   explicit Told(const ProgressListener& listener) : listener_(listener) {}
 
-  // Reads the bytes that have arrived; false at the end of the pipe.
+  // Reads the bytes that have arrived; returns false when the child has closed the pipe.
   bool read(int from) {
     std::array<char, 4096> bytes{};
     const ssize_t n = ::read(from, bytes.data(), bytes.size());
@@ -73,7 +74,7 @@ class Told {
   }
   void report() const { listener_(title_, share_); }
 
-  // The result of the work; nothing if the child ended before it was done.
+  // Returns the result of the work; nothing if the child has ended before the work was done.
   std::optional<Result<Ok>> result() const {
     if (!ended_) return std::nullopt;
     if (line_.empty()) return Result<Ok>(Ok{});
@@ -104,8 +105,8 @@ class Told {
   bool ended_ = false;
 };
 
-// Sends SIGTERM to the child, which can then end its own child processes; kills it after two
-// seconds.
+// Sends SIGTERM to the child, which can then end its own child processes; kills it if it still runs
+// after two seconds.
 void endChild(pid_t child, int from, Told& told) {
   ::kill(child, SIGTERM);
   const SystemClock clock;
@@ -117,7 +118,8 @@ void endChild(pid_t child, int from, Told& told) {
   ::kill(child, SIGKILL);
 }
 
-// Passes the reports on until the child ends; returns false if `stop` became readable before.
+// Passes the child's reports on until it closes the pipe, and returns true; returns false if `stop`
+// becomes readable before.
 bool follow(int from, int stop, Told& told) {
   const SystemClock clock;
   Timestamp looked{};
@@ -137,7 +139,7 @@ bool follow(int from, int stop, Told& told) {
 Result<Ok> runWatched(const WatchedWork& watched, int stop, const sigset_t& mask) {
   auto pipe = makePipe();
   if (!pipe) return pipe.error();
-  std::fflush(nullptr);  // otherwise the child would print buffered output again
+  std::fflush(nullptr);  // otherwise the child would write the buffered output a second time
   const auto child = startChild();
   if (!child) return child.error();
   if (*child == 0) workInChild(watched, pipe->to.get(), mask);
@@ -148,7 +150,7 @@ Result<Ok> runWatched(const WatchedWork& watched, int stop, const sigset_t& mask
   const int status = waitForChild(*child);
   if (!finished) return Error{Errc::kClosed, "interrupted; nothing is left behind"};
   if (const auto result = told.result()) return *result;
-  // Ctrl-C reaches the child as well, and may end it before this process looks.
+  // Ctrl-C also reaches the child, and may end it before this process notices the signal.
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
     return Error{Errc::kClosed, "interrupted; nothing is left behind"};

@@ -74,7 +74,8 @@ int print(const AlignOptions& options, AlignAnswer answer) {
   return kExitDone;
 }
 
-// Whether no option for scripts was given and there is a terminal, so that keys are used.
+// Returns whether the command is controlled by keys: no option for scripts was given, and there is
+// a terminal.
 bool isInteractive(const AlignOptions& o) {
   const bool scripted = !o.by.empty() || !o.corner.empty() || !o.point.empty() || o.undo ||
                         o.redo || o.reset || o.list || o.json;

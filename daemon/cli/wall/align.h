@@ -1,4 +1,4 @@
-// merlin wall align, merlin wall testcard: adds the subcommands to `merlin wall`.
+// Adds the subcommands align and testcard to `merlin wall`.
 #pragma once
 
 #include "daemon/cli/command.h"

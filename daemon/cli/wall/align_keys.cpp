@@ -38,7 +38,8 @@ std::optional<AlignKey> plainKey(char c) {
   return std::nullopt;
 }
 
-// ESC [ A, ESC O A; with Shift ESC [ 1 ; 2 A, as xterm and others send them.
+// Returns the arrow key for an escape sequence, as xterm and others send them: ESC [ A, ESC O A,
+// and with Shift ESC [ 1 ; 2 A; nothing for others.
 std::optional<AlignKey> arrowKey(const std::string& sequence) {
   constexpr std::pair<char, What> kArrows[] = {
       {'A', What::kUp}, {'B', What::kDown}, {'C', What::kRight}, {'D', What::kLeft}};
@@ -50,7 +51,8 @@ std::optional<AlignKey> arrowKey(const std::string& sequence) {
   return std::nullopt;
 }
 
-// A sequence ends with a letter or ~ after "ESC [" or "ESC O".
+// Returns whether an escape sequence is complete: one that begins with "ESC [" or "ESC O" ends with
+// a letter or "~".
 bool isWhole(const std::string& sequence) {
   if (sequence.size() < 2) return false;
   if (sequence[1] != '[' && sequence[1] != 'O') return true;

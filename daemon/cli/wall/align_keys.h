@@ -1,4 +1,4 @@
-// Keys of `merlin wall align`: bytes of a terminal in, keys out. Pure.
+// Converts bytes from a terminal to keys of `merlin wall align`. Pure.
 #pragma once
 
 #include <string>
@@ -24,13 +24,13 @@ struct AlignKey {
     kQuit
   };
   What what = What::kQuit;
-  bool far = false;  // whether it is a move by ten steps
-  int number = 0;    // for kCorner: number of the corner, 0 to 3
+  bool far = false;  // for a move: whether it is by ten steps
+  int number = 0;    // for kCorner: index of the corner, 0 to 3
 
   bool operator==(const AlignKey&) const = default;
 };
 
-// Explains the keys to people, in one line per entry.
+// Explanation of the keys for people, one line per entry.
 inline constexpr const char* kAlignKeyHelp[] = {
     "arrows or h j k l   move the corner by a step      Shift or H J K L   by ten steps",
     "Tab, 1 2 3 4        choose the corner              n, p               next, previous output",
@@ -39,8 +39,8 @@ inline constexpr const char* kAlignKeyHelp[] = {
 
 class AlignKeyReader {
  public:
-  // The keys that these bytes complete; bytes that belong to no key are ignored. A sequence that
-  // begins with Escape may be in several pieces.
+  // Returns the keys that are complete with these bytes; bytes that belong to no key are ignored.
+  // An escape sequence may be split over several calls.
   std::vector<AlignKey> feed(std::string_view bytes);
 
  private:

@@ -24,7 +24,7 @@ AlignSession::~AlignSession() {
 }
 
 Result<Ok> AlignSession::begin() {
-  // If the selected output does not exist, the error names the outputs that do.
+  // A request for an output that does not exist returns an error that names the existing outputs.
   const auto answer = link_.ask(first_output_.empty()
                                     ? state::AlignRequest{state::ListRequest{}}
                                     : state::AlignRequest{state::SelectRequest{first_output_, {}}});
@@ -42,7 +42,8 @@ Result<Ok> AlignSession::begin() {
   return Ok{};
 }
 
-// If the answer has other outputs than before, the wall was restarted.
+// Sends the request and stores the answer and its message. After a restart, the wall may have fewer
+// outputs, so the index of the selected output is limited.
 void AlignSession::ask(const state::AlignRequest& request) {
   auto answer = link_.ask(request);
   message_ = answer ? answer->done : answer.error().what;

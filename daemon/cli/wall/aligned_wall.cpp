@@ -13,7 +13,7 @@ namespace merlin::cli {
 namespace {
 
 constexpr Duration kAlignPollPeriod = std::chrono::milliseconds(20);
-// A mesh for a display of many pixels takes seconds on a slow machine.
+// Computing the warp for a display with many pixels takes seconds on a slow machine.
 constexpr Duration kAlignPatience = std::chrono::seconds(60);
 
 state::Offset offsetOf(const nlohmann::json& json) {

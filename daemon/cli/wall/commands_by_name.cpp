@@ -1,5 +1,5 @@
-// merlin reset_view, merlin playlist on ...: the commands of daemon/base/commands.h that have no
-// other subcommand.
+// merlin reset_view, merlin playlist on ...: adds a subcommand for each command of
+// daemon/base/commands.h that has no subcommand of its own.
 #include <memory>
 
 #include <fmt/format.h>
@@ -22,12 +22,12 @@ int send(const DaemonAddress& daemon, const Sent& sent, const CommandInfo& comma
   return done ? kExitDone : fail(done.error());
 }
 
-// The first of the words that the argument may be: "on" of "on|off".
+// Returns the first of the allowed words: "on" for "on|off".
 std::string_view firstWord(std::string_view argument) {
   return argument.substr(0, argument.find('|'));
 }
 
-// "on|off|next" as "on, off or next".
+// Returns the allowed words as a text: "on, off or next" for "on|off|next".
 std::string choices(std::string_view argument) {
   std::string text(argument);
   const std::size_t last = text.rfind('|');

@@ -1,4 +1,4 @@
-// merlin wall gpus: adds the subcommand to `merlin wall`.
+// Adds the subcommand gpus to `merlin wall`.
 #pragma once
 
 #include "daemon/cli/command.h"

@@ -1,5 +1,5 @@
-// merlin wall mpcdi: the corrections of a configuration's outputs as an MPCDI file, and the way
-// back.
+// merlin wall mpcdi: exports the corrections of a configuration's outputs to an MPCDI file, and
+// imports such a file.
 #include "daemon/cli/wall/mpcdi.h"
 
 #include <algorithm>
@@ -32,15 +32,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// --- export
-// ----------------------------------------------------------------------------------------
+// --- export ---
 
 struct MpcdiExportOptions {
   std::string file, config, output;
 };
 
-// Returns the settings, with the wall as it is drawn (drawnWall()). Errors: kInvalidArgument, with
-// the first finding that makes the configuration invalid.
+// Returns the settings of the configuration, with the wall as it is drawn (drawnWall()). Errors:
+// kInvalidArgument (the configuration is invalid; the text is the first finding).
 Result<Settings> readSettings(const std::string& path) {
   const LoadedSettings loaded = loadSettingsFile(path);
   for (const Finding& finding : loaded.findings) {
@@ -51,15 +50,15 @@ Result<Settings> readSettings(const std::string& path) {
   return settings;
 }
 
-// What merlin wall align has moved: on the running wall, or as its state file has it.
+// The moves that were made with merlin wall align, from the running wall or from its state file.
 struct Moves {
-  AlignAnswer answer;                // of the running wall
-  std::optional<state::State> kept;  // of a wall that does not run
+  AlignAnswer answer;                // answer of the running wall
+  std::optional<state::State> kept;  // state file of a wall that does not run
 };
 
-// The moves on the wall of this configuration. If it cannot be asked, those of its state file, and
-// a note about that; if that file cannot be read, none and a note: the file's place depends on the
-// user who runs merlind.
+// Returns the moves on the wall of this configuration. If the wall cannot be asked, returns those
+// in its state file and prints a note. If that file cannot be read either, because its place
+// depends on the user who runs merlind, returns none and prints a note.
 Moves movesOf(const Settings& settings) {
   auto answer = AlignedWall(settings.instance).ask(state::ListRequest{});
   if (answer) return {*std::move(answer), {}};
@@ -81,8 +80,9 @@ Moves movesOf(const Settings& settings) {
   return {};
 }
 
-// The moves of an output that the state file has, in the form of a running wall's answer. Where the
-// file does not say for which corners they were made, they are for those of the configuration.
+// Converts the moves of an output in the state file to the form of a running wall's answer. If the
+// file does not state for which configured corners the moves were made, those of `correction` are
+// assumed.
 AlignedPicture keptPicture(const state::OutputAlignment& kept,
                            const render::correct::CorrectionSettings& correction) {
   const state::OutputForm& form = kept.form;
@@ -101,7 +101,7 @@ AlignedPicture keptPicture(const state::OutputAlignment& kept,
   return picture;
 }
 
-// The moves of an output of this size; nothing if there are none.
+// Returns the moves of the output, which has the size `size`; nothing if there are none.
 std::optional<AlignedPicture> movesOfOutput(const Moves& moves,
                                             const render::out::OutputSettings& output,
                                             const render::out::PictureSize& size) {
@@ -116,7 +116,8 @@ std::optional<AlignedPicture> movesOfOutput(const Moves& moves,
   return kept ? std::optional(keptPicture(*kept, output.correction)) : std::nullopt;
 }
 
-// The correction including the moves; nothing if they were made with another size, mesh or corners.
+// Returns the correction including the moves; nothing if the moves were made for another size, mesh
+// or corners, or the result is not valid.
 std::optional<render::correct::CorrectionSettings> movedCorrection(
     render::correct::CorrectionSettings correction, const render::out::PictureSize& size,
     const AlignedPicture& moved) {
@@ -138,7 +139,7 @@ std::optional<render::correct::CorrectionSettings> movedCorrection(
   return correction;
 }
 
-// Adds the moves of the output to its correction, and prints a note about it.
+// Adds the moves of the output, if any, to its correction, and prints a note about that.
 void addMoves(render::out::OutputSettings& output, const render::out::PictureSize& size,
               const Moves& moves) {
   const std::string name = output.shownName();
@@ -185,7 +186,9 @@ Result<render::correct::MpcdiOutput> exported(const render::out::OutputSettings&
                                       measured ? &*measured : nullptr, threadsOr(0));
 }
 
-// The requested outputs, at least one. Errors also name the existing outputs.
+// Returns the requested output or, without a request, all outputs with a correction; at least one.
+// Errors: kInvalidArgument (there is none; the text names the existing outputs), those of
+// exported().
 Result<std::vector<render::correct::MpcdiOutput>> exportedOutputs(const MpcdiExportOptions& options,
                                                                   const Settings& settings) {
   const Moves moves = movesOf(settings);
@@ -247,14 +250,14 @@ void addExport(Command mpcdi, Run& run) {
   command.callback([options, &run] { run = [options] { return exportFile(*options); }; });
 }
 
-// --- import
-// ----------------------------------------------------------------------------------------
+// --- import ---
 
 struct MpcdiImportOptions {
   std::string file, region, output;
 };
 
-// How far a region's warp moves its pixels, in pixels, and how many it leaves black.
+// Figures about the warp of a region: the farthest move of a pixel [px], the number of mesh points
+// that stay black, and whether the picture is mirrored.
 struct WarpFigures {
   double farthest = 0;
   std::size_t black = 0;
@@ -291,8 +294,8 @@ Json correctionJson(const std::string& file, const render::correct::MpcdiRegion&
   return correction;
 }
 
-// Prints what a person wants to know about a region before using it; to stderr, because the JSON
-// goes to stdout.
+// Prints facts about a region for a person who is going to use it, to stderr, because the JSON goes
+// to stdout.
 void printRegion(const std::string& file, const render::correct::MpcdiRegion& region,
                  const render::correct::MeasuredCorrection& measured) {
   const WarpFigures figures = figuresOf(region, measured.warp);

@@ -1,4 +1,4 @@
-// merlin wall mpcdi export | import.
+// Adds the subcommands mpcdi export and mpcdi import to `merlin wall`.
 #pragma once
 
 #include "daemon/cli/command.h"

@@ -27,7 +27,7 @@ constexpr double kPanelLabel = 20, kHingeLabel = 34, kHingeArc = 18;
 constexpr const char* kTileColours[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd",
                                         "#ff7f0e", "#17becf", "#8c564b", "#e377c2"};
 
-// Seen from above: x right, z down.
+// Projects a point of the room to the plan: x to the right, z down.
 Vector2d fromAbove(const Vector3d& p) { return {p.x(), p.z()}; }
 
 std::vector<Vector3d> cornersOf(const Screen& s) {
@@ -36,7 +36,7 @@ std::vector<Vector3d> cornersOf(const Screen& s) {
 
 struct DrawnTile {
   std::string name;
-  std::vector<Vector3d> corners;  // in the room
+  std::vector<Vector3d> corners;  // in the room [m]
   double horizontal_deg;
   std::string colour;
 
@@ -61,7 +61,7 @@ std::vector<DrawnTile> wallTiles(const WallPlan& wall) {
   return drawn;
 }
 
-// Metres of the room to pixels of the drawing.
+// Maps positions in the room [m] to positions in the drawing [px].
 class Scale {
  public:
   explicit Scale(const std::vector<Vector3d>& points) {
@@ -81,7 +81,7 @@ class Scale {
   Vector2d at(const Vector3d& p) const { return offset_ + pixels_per_m * fromAbove(p); }
 
   double pixels_per_m = 1;
-  double height = 0;  // of the drawing, without its title [px]
+  double height = 0;  // height of the drawing, without its title [px]
 
  private:
   Vector2d offset_;
@@ -91,7 +91,7 @@ double cross(const Vector2d& o, const Vector2d& a, const Vector2d& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
 
-// Andrew's monotone chain.
+// Returns the convex hull of the points, by Andrew's monotone chain.
 std::vector<Vector2d> convexHull(std::vector<Vector2d> points) {
   std::ranges::sort(points, [](const Vector2d& a, const Vector2d& b) {
     return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
@@ -128,10 +128,10 @@ std::string text(const Vector2d& at, const std::string& attributes, const std::s
 
 std::string degrees(double value) { return fmt::format("{:g}°", std::round(value * 10) / 10); }
 
-// Collects labels by position: labels at nearly the same position become the lines of one label.
+// Collects labels; labels at nearly the same position become the lines of one label.
 class Labels {
  public:
-  // `along`: the direction in which the label is read; it is not read upside down.
+  // `along`: direction of the text, which is turned by 180 degrees if it would be upside down.
   void add(const Vector2d& at, const std::string& what, const Vector2d& along = {1, 0}) {
     Label& label = all_[{std::lround(at.x() / kPlanLine), std::lround(at.y() / kPlanLine)}];
     if (label.lines.empty()) label = {at, readableAngle(along), {}};
@@ -162,7 +162,7 @@ class Labels {
     const double angle_deg = std::atan2(along.y(), along.x()) * 180 / std::numbers::pi;
     return angle_deg > 90.5 ? angle_deg - 180 : angle_deg < -89.5 ? angle_deg + 180 : angle_deg;
   }
-  // White around the letters, so that they can be read on lines.
+  // A white border around the letters keeps them readable on lines.
   static constexpr const char* kLabel =
       "text-anchor=\"middle\" paint-order=\"stroke\" stroke=\"white\" stroke-width=\"3\" ";
 
@@ -208,8 +208,8 @@ std::string pictures(const std::vector<DrawnTile>& tiles, const Scale& scale) {
   return out;
 }
 
-// The angle at which panel `b` is hinged to the right edge of `a`, on the viewer's side [degrees];
-// 0: it is not.
+// Returns the angle between the panels on the viewer's side [degrees] if `b` is hinged to the right
+// edge of `a`; otherwise 0.
 double hingeOf(const Screen& a, const Screen& b) {
   constexpr double kSame_m = 0.005;
   const Vector3d right = a.corner + a.across;
@@ -269,7 +269,7 @@ std::string viewer(const WallPlan& wall, const Vector2d& eye) {
   return out + label.svg("");
 }
 
-// A bar of 1, 2 or 5 times a power of ten metres.
+// Draws a scale bar with a length of 1, 2 or 5 times a power of ten metres.
 std::string scaleBar(const Scale& scale) {
   double metres = 0.001;
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -287,7 +287,7 @@ std::string scaleBar(const Scale& scale) {
               fmt::format("{:g} m", metres));
 }
 
-// Cells of one line of the table, which ends where the last cells are empty.
+// Cells of one line of the table; empty cells at the end are not printed.
 using Cells = std::array<std::string, 9>;
 
 std::string lineOf(const Cells& cells) {

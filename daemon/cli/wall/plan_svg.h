@@ -1,4 +1,4 @@
-// The wall from above as SVG, with the table of its tiles.
+// Draws the wall from above as SVG, with the table of its tiles.
 #pragma once
 
 #include <string>
@@ -11,16 +11,18 @@
 namespace merlin::cli {
 
 struct WallPlan {
-  render::room::RoomSettings room;  // with explicit panels, or none if the tiles are set by hand
+  render::room::RoomSettings room;  // with its panels; without panels if the tiles are set by hand
   render::tiles::TilesSettings tiles;
-  render::tiles::TilePlan plan;  // of `tiles`
+  render::tiles::TilePlan plan;  // the plan that follows from `tiles`
   double wall_distance_m = 2;    // distance from the eye at which tiles without a screen are drawn
 };
 
-// The table as lines of text: a heading, a line for each tile, then its overlaps.
+// Returns the table as lines of text: a heading, a line for each tile, then the overlaps of the
+// tiles.
 std::vector<std::string> tableLines(const WallPlan& wall);
 
-// Panels, displays, frusta and the eye from above, with angles and a scale; the table below.
+// Returns an SVG drawing of panels, displays, frusta and the eye from above, with angles and a
+// scale; the table is below.
 std::string planSvg(const WallPlan& wall);
 
 }  // namespace merlin::cli

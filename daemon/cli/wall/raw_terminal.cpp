@@ -15,23 +15,26 @@
 namespace merlin::cli {
 namespace {
 
-constexpr std::string_view kEnter = "\033[?1049h\033[?25l";  // another screen, no cursor
+// Escape codes: another screen, no cursor.
+constexpr std::string_view kEnter = "\033[?1049h\033[?25l";
 constexpr std::string_view kLeave = "\033[?25h\033[?1049l";
 
-// Signals that end the process at once; those of stopSignals() arrive as a descriptor.
+// Signals that end the process at once. The signals of stopSignals() are not among them, because
+// they arrive through a descriptor.
 constexpr int kFatal[] = {SIGQUIT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE};
 
-// Globals, because a signal handler that restores the terminal has no other access to this state.
+// These are globals, because the signal handler that restores the terminal has no other access to
+// them.
 termios terminal_before{};                        // NOLINT
 volatile std::sig_atomic_t terminal_changed = 0;  // NOLINT
 
-// Async-signal-safe.
+// Restores the terminal. Async-signal-safe.
 void putBack() {
   if (terminal_changed == 0) return;
   terminal_changed = 0;
   ::tcsetattr(STDIN_FILENO, TCSANOW, &terminal_before);
   const auto written = ::write(STDOUT_FILENO, kLeave.data(), kLeave.size());
-  static_cast<void>(written);  // a terminal that is gone needs nothing
+  static_cast<void>(written);  // an error is ignored: the terminal is gone then
 }
 
 void onFatal(int signal) {
@@ -59,7 +62,8 @@ RawTerminal::RawTerminal() : signals_(stopSignals()) {
   terminal_changed = 1;
   for (const int s : kFatal) ::signal(s, onFatal);
   termios raw = terminal_before;
-  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // ISIG stays: Ctrl-C ends the program
+  // ISIG is kept, so that Ctrl-C ends the program.
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   raw.c_cc[VMIN] = 1;
   raw.c_cc[VTIME] = 0;
   raw.c_cc[VSUSP] = _POSIX_VDISABLE;

@@ -1,4 +1,5 @@
-// RawTerminal: a terminal that passes every key on at once and echoes none, on a screen of its own.
+// RawTerminal: switches the terminal to a mode that passes each key on at once without an echo, and
+// to a screen of its own.
 #pragma once
 
 #include <optional>
@@ -10,23 +11,24 @@
 
 namespace merlin::cli {
 
-// Only one may exist at a time. The terminal is restored when this is destroyed, and also when a
-// signal other than SIGKILL ends the process. Job control (Ctrl-Z) is off meanwhile. Blocks the
-// signals of stopSignals().
+// Only one object may exist at a time. The destructor restores the terminal, as does a signal other
+// than SIGKILL that ends the process. Job control (Ctrl-Z) is off meanwhile. Blocks the signals of
+// stopSignals().
 class RawTerminal {
  public:
-  // Errors: kUnsupported: standard input or output is not a terminal.
+  // Checks that a RawTerminal can be made. Errors: kUnsupported (standard input or output is not a
+  // terminal).
   static Result<Ok> check();
-  RawTerminal();  // REQUIRES: check()
+  RawTerminal();  // REQUIRES: check() returned Ok
   ~RawTerminal();
   RawTerminal(const RawTerminal&) = delete;
   RawTerminal& operator=(const RawTerminal&) = delete;
 
-  // Waits for keys, at most `timeout_ms`, and returns their bytes, which may be none. Returns
-  // nothing after a signal that ends the program, or when the terminal is gone.
+  // Waits up to `timeout_ms` for keys and returns their bytes; an empty text if there are none.
+  // Returns nothing if a signal of stopSignals() has arrived or the terminal is gone.
   std::optional<std::string> read(int timeout_ms);
 
-  // Shows these lines instead of the last ones.
+  // Shows these lines in place of those of the last call.
   void show(const std::vector<std::string>& lines);
 
  private:

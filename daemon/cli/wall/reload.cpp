@@ -1,4 +1,4 @@
-// merlin reload: has merlind read its configuration again and swap what changed.
+// merlin reload: has merlind read its configuration again and put the changes into effect.
 #include "daemon/cli/wall/reload.h"
 
 #include <algorithm>
@@ -24,7 +24,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr Duration kReloadPollPeriod = std::chrono::milliseconds(20);
-constexpr Duration kReloadPatience = std::chrono::seconds(60);  // a file system may be slow
+// Long, because a file system may be slow.
+constexpr Duration kReloadPatience = std::chrono::seconds(60);
 
 struct ReloadOptions {
   std::string instance = "merlin";
@@ -32,7 +33,7 @@ struct ReloadOptions {
   bool check = false, json = false;
 };
 
-// What became of a request in one process; `answer` as in daemon/reload/answer.h.
+// The result of a request in one process; `answer` has the format of daemon/reload/answer.h.
 struct Reloaded {
   FoundRole process;
   Json answer;
@@ -41,7 +42,8 @@ struct Reloaded {
   bool done() const { return outcome() == "done" || restarts(); }
 };
 
-// One role of each process: a process with both roles reads its configuration once.
+// Returns one role of each process, because a process with both roles reads its configuration only
+// once.
 std::vector<FoundRole> processesOf(std::vector<FoundRole> roles) {
   std::set<std::uint32_t> seen;
   std::erase_if(roles, [&](const FoundRole& role) { return !seen.insert(role.pid).second; });
@@ -55,7 +57,8 @@ reload::Readers readersOf(const std::vector<FoundRole>& roles) {
   return readers;
 }
 
-// Has a process read its configuration, and waits for its answer.
+// Has a process read its configuration, and waits for the result. `what`: "now", or "check" for a
+// check without changes. Errors: those of askRole(); kTimeout.
 Result<Reloaded> reloadProcess(const std::string& instance, const FoundRole& process,
                                const char* what) {
   const auto ask = [&](const std::string& argument) -> Result<Json> {
@@ -95,8 +98,8 @@ bool allDone(const std::vector<Reloaded>& all) {
   return std::ranges::all_of(all, [](const Reloaded& r) { return r.done(); });
 }
 
-// Reloading is all or nothing only within one process. With several processes, therefore, all check
-// the file before the first swaps anything.
+// Reloads or checks the configuration of all processes. A reload is atomic only within one process;
+// with several processes, therefore, all check the file before the first one changes anything.
 Result<std::vector<Reloaded>> reloadAll(const ReloadOptions& options,
                                         const std::vector<FoundRole>& processes) {
   if (options.check || processes.size() > 1) {
@@ -106,7 +109,7 @@ Result<std::vector<Reloaded>> reloadAll(const ReloadOptions& options,
   return reloadEach(options.instance, processes, "now");
 }
 
-// Whether the role answers after a start, and shows pictures if it is a wall.
+// Returns whether the role answers and, if it is a wall, has drawn a frame.
 bool works(const std::string& instance, const std::string& role) {
   const auto answer = askRole(instance, role, {"status"});
   const Json status = answer ? Json::parse(*answer, nullptr, false) : Json();
@@ -122,7 +125,7 @@ bool isBack(const std::string& instance, const FoundRole& before) {
   });
 }
 
-// Waits until each process that starts again is back.
+// Waits until each process that restarts works again. Errors: kTimeout.
 Result<Ok> awaitStarts(const std::string& instance, const std::vector<Reloaded>& all) {
   SystemClock clock;
   const Timestamp until = clock.now() + kReloadPatience;
@@ -148,7 +151,8 @@ std::string changeText(const Json& change) {
   return fmt::format("{}: {} -> {}", setting, from, to);
 }
 
-// Each text once, in the order of the processes.
+// Returns the texts of the entries `key` in all answers, each text once, in the order of the
+// processes. `text` converts an entry to a text.
 std::vector<std::string> together(const std::vector<Reloaded>& all, const char* key,
                                   std::string (*text)(const Json&)) {
   std::vector<std::string> texts;
@@ -163,14 +167,15 @@ std::vector<std::string> together(const std::vector<Reloaded>& all, const char* 
 
 std::string itself(const Json& json) { return json.is_string() ? json.get<std::string>() : ""; }
 
-// The note about an alignment that does not fit its output any more. `is`: "is" or "would be".
+// Returns the note about an alignment that does not fit its output any more. `is`: "is" or "would
+// be".
 std::string asideText(const Json& aside, const char* is) {
   return fmt::format("the alignment of output {} {} set aside: {}; {}", aside.value("output", ""),
                      is, aside.value("why", ""), state::kComesBack);
 }
 
-// Removes the settings of a list or group whose own name is in `settings` too, since all of it
-// changed.
+// Removes the settings whose list or group is in `settings` too, because all of that list or group
+// has changed.
 void leaveOutMembers(std::vector<std::string>& settings) {
   const std::vector<std::string> whole = settings;
   std::erase_if(settings, [&](const std::string& setting) {
@@ -179,15 +184,15 @@ void leaveOutMembers(std::vector<std::string>& settings) {
   });
 }
 
-// The changed settings that make a restart necessary.
+// Returns the changed settings that make a restart necessary.
 std::vector<std::string> restartSettings(const std::vector<Reloaded>& all) {
   std::vector<std::string> settings = together(all, "restart", itself);
   leaveOutMembers(settings);
   return settings;
 }
 
-// Changed settings that none of these running processes reads, although each reports them as read
-// elsewhere.
+// Returns the changed settings that each process reports as read by others, but that no running
+// process reads.
 std::vector<std::string> readByNone(const std::vector<Reloaded>& all, reload::Readers running) {
   std::vector<std::string> settings = together(all, "elsewhere", itself);
   std::erase_if(settings, [&](const std::string& setting) {
@@ -203,8 +208,7 @@ const char* whoTakes(reload::Readers readers) {
   return "is taken by a merlind of another role when it starts";
 }
 
-// Settings of one group or entry of a list that follow one another, with the text that is printed
-// after them.
+// Consecutive settings of one group or list entry, with the text that is printed after them.
 struct SettingsTogether {
   std::string group;               // "/alarms/0"
   std::vector<std::string> names;  // "run", "kinds"
@@ -216,7 +220,8 @@ struct SettingsTogether {
   }
 };
 
-// One line for an entry of a list, however many of its settings changed.
+// Prints one line for each group or list entry, however many of its settings changed. `before`:
+// beginning of each line; `said`: returns the text after a setting.
 void printTogether(const char* before, const std::vector<std::string>& settings,
                    std::string (*said)(const std::string&)) {
   std::vector<SettingsTogether> lines;
@@ -230,7 +235,8 @@ void printTogether(const char* before, const std::vector<std::string>& settings,
   for (const SettingsTogether& line : lines) printOut("{}{}\n", before, line.text());
 }
 
-// `tense`: "started", "starts" or "would start", for the sentence about a restart.
+// Prints the changes, for a request that no process refused. `tense`: "started", "starts" or "would
+// start", for the sentence about a restart.
 void printDone(const std::vector<Reloaded>& all, reload::Readers running, const char* tense) {
   const auto swapped = together(all, "swapped", changeText);
   const auto unread = readByNone(all, running);
@@ -256,7 +262,7 @@ void printDone(const std::vector<Reloaded>& all, reload::Readers running, const 
   }
 }
 
-// Prints why nothing was swapped.
+// Prints why nothing was changed.
 void printRefusal(const std::vector<Reloaded>& all) {
   for (const Reloaded& reloaded : all) {
     const std::string file = reloaded.answer.value("file", ""), outcome = reloaded.outcome();
@@ -289,15 +295,15 @@ int exitStatusOf(const std::vector<Reloaded>& all) {
   return invalid ? kExitBadInput : kExitFailed;
 }
 
-// Whether the process will have another instance name after its restart, so that it cannot be found
-// under the old one.
+// Returns whether the instance name changes with the restart, so that the process cannot be found
+// under its old name.
 bool renames(const std::vector<Reloaded>& all) {
   const auto restart = restartSettings(all);
   return std::ranges::find(restart, "/instance") != restart.end();
 }
 
-// Asks the processes of the instance once. `roles` receives the roles of these processes, as far as
-// they are known.
+// Asks the processes of the instance once. `roles` is set to the roles of these processes, as far
+// as they are known.
 Result<std::vector<Reloaded>> askOnce(ReloadOptions& options, std::vector<FoundRole>& roles) {
   roles.clear();
   if (options.pid > 0) {
@@ -312,7 +318,8 @@ Result<std::vector<Reloaded>> askOnce(ReloadOptions& options, std::vector<FoundR
   return reloadAll(options, processesOf(roles));
 }
 
-// Whether the process of this role starts again or has just done so. It does not answer until then.
+// Returns whether the process of this role is restarting or has just restarted, so that it could
+// not answer.
 bool startsAgain(const std::string& instance, const FoundRole& before) {
   const auto roles = findRoles(instance);
   const bool is_same = roles && std::ranges::any_of(*roles, [&](const FoundRole& now) {
@@ -321,7 +328,8 @@ bool startsAgain(const std::string& instance, const FoundRole& before) {
   return !is_same && isMerlind(before.pid);
 }
 
-// Asks again if a process is restarting, which another request may have caused.
+// Asks all processes, and asks again while one of them is restarting, which another request may
+// have caused.
 Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>& roles) {
   SystemClock clock;
   for (const Timestamp until = clock.now() + kReloadPatience;;) {
@@ -335,8 +343,9 @@ Result<std::vector<Reloaded>> ask(ReloadOptions& options, std::vector<FoundRole>
   }
 }
 
-// Says which roles were not asked, and what follows for the exit status of the others. With --pid,
-// no other process is expected to run, so nothing is printed.
+// Prints which lost roles were not asked, and returns the exit status of the command. `status`:
+// exit status for the roles that were asked. With --pid, no other process is expected to run, so
+// nothing is printed.
 int withLostRoles(const ReloadOptions& options, const std::vector<Reloaded>& asked, int status) {
   if (options.pid > 0) return status;
   const auto lost = lostRoles(options.instance);

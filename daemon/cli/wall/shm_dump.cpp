@@ -1,4 +1,5 @@
-// merlin shm dump: prints every field of the shared memory, which contains a table of its fields.
+// merlin shm dump: prints every field of the shared memory, using the table of fields that it
+// contains.
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -38,8 +39,8 @@ Json number(const std::byte* at) {
   }
 }
 
-// Size in bytes of one value of the field's type, a format character of Python's struct module;
-// "20s" is a text of 20 bytes. 0: unknown type.
+// Returns the size of one value of the field [bytes]; 0 for an unknown type. Types are format
+// characters of Python's struct module; "20s" is a text of 20 bytes.
 std::size_t sizeOf(const shm::Field& f) {
   const std::string_view type = textIn(f.type);
   if (type.ends_with('s')) return static_cast<std::size_t>(std::atoi(f.type));
@@ -76,7 +77,8 @@ Json decodeOne(const shm::Field& f, const std::byte* at) {
   }
 }
 
-// Converts the field's values to JSON. `values` points to the field's first byte.
+// Converts the values of the field to JSON: a list if there are several. `values`: the first byte
+// of the field.
 Json decode(const shm::Field& f, const std::byte* values) {
   if (f.count == 1) return decodeOne(f, values);
   Json list = Json::array();

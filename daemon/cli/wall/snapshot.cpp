@@ -1,4 +1,4 @@
-// merlin snapshot: writes what the wall shows now as a PNG file.
+// merlin snapshot: writes the current picture of the wall as a PNG file.
 #include <memory>
 
 #include <fmt/format.h>
@@ -25,7 +25,8 @@ struct SnapshotOptions {
 constexpr Duration kSnapshotPollPeriod = std::chrono::milliseconds(5);
 constexpr Duration kSnapshotPatience = std::chrono::seconds(5);
 
-// The next signal of an output: merlind puts it into shared memory.
+// Requests the next signal of an output and returns it; merlind writes it into shared memory.
+// Errors: those of askRole() and captureFrame(); kTimeout.
 Result<render::out::CapturedFrame> signalOf(const SnapshotOptions& options) {
   const auto answer = askRole(options.instance, "wall", {"signal", options.output});
   if (!answer) return answer.error();
@@ -43,7 +44,8 @@ Result<render::out::CapturedFrame> signalOf(const SnapshotOptions& options) {
                                            options.output, toSeconds(kSnapshotPatience))};
 }
 
-// Refuses the last frame of a wall that does not run any more.
+// Checks that the wall has not been lost, because the frame in shared memory would then be out of
+// date. Errors: kIo.
 Result<Ok> checkWallRuns(const std::string& instance) {
   for (const LostRole& lost : lostRoles(instance)) {
     if (lost.role != "wall") continue;

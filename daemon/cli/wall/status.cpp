@@ -1,4 +1,4 @@
-// merlin status: prints the state of the daemon once.
+// merlin status: prints the status of the daemon once.
 #include <memory>
 
 #include <fmt/format.h>

@@ -16,14 +16,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr Duration kStatusPatience = std::chrono::seconds(5);
 
-// Unit in which the detail of a frame is counted, "triangles".
+// Returns the unit of the detail of a frame, such as "triangles".
 std::string costUnit(const Json& s) { return s.value("detail", Json::object()).value("unit", ""); }
 
 std::uint64_t detailCost(const Json& s) {
   return s.value("detail", Json::object()).value("cost", std::uint64_t{0});
 }
 
-// The part of a device's line that follows its health.
+// Returns the part of a device's line after its health.
 std::string deviceDetail(const Json& d) {
   std::string reason = d.value("reason", "");
   if (d.value("health", "") != "ok") return reason;
@@ -35,7 +35,8 @@ bool isFailed(const Json& service) {
   return service.is_object() && service.value("health", "") != "ok";
 }
 
-// A text for each service that has failed. `format` takes its name, health and reason.
+// Returns the concatenated texts about all failed services. `format`: format of each text, with the
+// arguments name, health and reason.
 std::string failedServices(const Json& s, const char* format) {
   const Json services = s.value("services", Json::object());
   std::string text;
@@ -54,8 +55,8 @@ std::string pictureWord(const Json& s) {
   return s.value("full_detail", false) ? "still, full detail" : "still, refining";
 }
 
-// How the wall's present state differs from its configuration: degradations under load, and a
-// number of triangles set by hand. Empty if there is no difference.
+// Returns how the wall's present state differs from its configuration: degradations under load,
+// dimming, and a number of triangles set by hand. Empty if there is no difference.
 std::string givenWay(const Json& s) {
   std::string text;
   if (s.value("rate_divisor", 1) > 1)
@@ -69,8 +70,8 @@ std::string givenWay(const Json& s) {
   return text;
 }
 
-// Returns `what` with the time until it is due, which is s[key], as in ", the next one in 12 s";
-// empty if nothing is due.
+// Returns `what` followed by the time s[key] until it is due, as in ", the next one in 12 s"; empty
+// if nothing is due.
 std::string dueIn(const Json& s, const char* key, const char* what) {
   const auto due = s.find(key);
   if (due == s.end() || !due->is_number()) return {};
@@ -86,7 +87,7 @@ std::string playlistWords(const Json& s) {
   return begins.empty() ? "; the playlist waits" : begins;
 }
 
-// The line about the content that is shown, and when the playlist goes on.
+// Returns the line about the current content and about the playlist.
 std::string contentLine(const Json& s) {
   const Json content = s.value("content", Json::object());
   const std::string slide = content.value("slide", "");
@@ -143,8 +144,8 @@ std::string outputLines(const Json& s) {
   return text;
 }
 
-// Both roles may have a service of the same name, in a process each: one that has failed must not
-// be hidden by the other role's.
+// Sets "services" to the services of all roles. Both roles may have a service of the same name; a
+// failed one takes precedence, so that it is not hidden.
 void mergeServices(Json& both) {
   Json merged = Json::object();
   for (const Json& role : both["roles"]) {
@@ -156,7 +157,7 @@ void mergeServices(Json& both) {
   if (!merged.empty()) both["services"] = std::move(merged);
 }
 
-// A line for each role that was killed, crashed or hangs.
+// Returns a line for each role that was killed, has crashed or hangs.
 std::string lostLines(const Json& s) {
   const Json lost = s.value("lost_roles", Json::object());
   std::string text;
@@ -167,7 +168,8 @@ std::string lostLines(const Json& s) {
 
 }  // namespace
 
-// Combines two buckets per line; omits the empty lines before the first and after the last frame.
+// Each line combines two buckets. Empty lines before the first and after the last bucket with
+// frames are left out.
 std::string histogramChart(const std::vector<std::uint32_t>& buckets) {
   constexpr double kWidth = 40;
   std::vector<std::uint64_t> eighths((buckets.size() + 1) / 2);
@@ -209,7 +211,7 @@ void mergeStatus(Json& both, const std::string& document) {
   common["services"] = Json::object();
   if (json.contains("services")) common["services"] = json["services"];
   json.erase("services");
-  both.update(json, true);  // merges recursively: both roles have "servers"
+  both.update(json, true);  // merges recursively, because both roles have "servers"
   mergeServices(both);
 }
 
@@ -236,7 +238,7 @@ Result<Json> askStatus(const DaemonAddress& daemon) {
 
 namespace {
 
-// A line for each server that has failed or has refused a connection.
+// Returns a line for each server that has failed or has refused a connection.
 std::string serverLines(const Json& s) {
   std::string text;
   if (!s.contains("servers")) return text;
@@ -251,7 +253,7 @@ std::string serverLines(const Json& s) {
   return text;
 }
 
-// A line for each content that cannot be shown yet.
+// Returns a line for each content that cannot be shown.
 std::string missingLines(const Json& s) {
   const Json missing = s.value("missing_contents", Json::object());
   std::string text;
@@ -260,7 +262,7 @@ std::string missingLines(const Json& s) {
   return text;
 }
 
-// A line for each hand whose gestures are recognised: its last one.
+// Returns a line with the last gesture of each hand whose gestures are recognised.
 std::string gestureLines(const Json& s) {
   std::string text;
   if (!s.contains("gestures")) return text;
@@ -274,7 +276,7 @@ std::string gestureLines(const Json& s) {
   return text;
 }
 
-// A line for each projector.
+// Returns a line for each projector.
 std::string projectorLines(const Json& s) {
   std::string text;
   if (!s.contains("projectors")) return text;

@@ -1,4 +1,4 @@
-// merlin wall testcard: a test card instead of the wall's picture.
+// merlin wall testcard: shows a test card instead of the wall's picture.
 #include <memory>
 
 #include <fmt/format.h>
@@ -25,7 +25,8 @@ struct CardOptions {
 constexpr Duration kTestcardPollPeriod = std::chrono::milliseconds(5);
 constexpr Duration kTestcardPatience = std::chrono::seconds(2);
 
-// Returns when the wall has shown another frame, so that whoever looks next sees the card.
+// Waits until the wall has shown another frame after `frame`, so that the card is visible when the
+// command ends.
 void awaitFrameAfter(const std::string& instance, std::uint64_t frame) {
   const auto segment =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(instance, "wall"));

@@ -22,8 +22,8 @@ struct TraceOptions {
   double seconds = 5;
 };
 
-// Returns the traces of frames that cover the time `wanted`: those in shared memory and, if these
-// cover less, the following ones; at least one. Errors: kTimeout (no frame for 2 s).
+// Returns the traces of the last frames that cover the time `wanted`: those in shared memory and,
+// if these cover less, the following ones. Errors: kTimeout (no frame for 2 s).
 Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Duration wanted) {
   std::vector<shm::FrameTrace> frames;
   const std::uint64_t have = wall.trace.count();
@@ -62,8 +62,8 @@ void addSamples(const shm::Channel<T>& channel, const std::string& device,
   }
 }
 
-// Adds the samples of the devices; of a tracker only those of the first station that sends any,
-// because all stations send together.
+// Adds the times of the samples of all devices. Of a tracker, only the first station that has sent
+// any is used, because all stations send at the same time.
 void addDevices(const shm::DeviceSlots& devices, std::span<const shm::FrameTrace> frames,
                 std::vector<SampleInstant>& out) {
   for (const auto& glove : devices.gloves) addSamples(*glove.samples, glove.name, frames, out);

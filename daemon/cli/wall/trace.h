@@ -1,4 +1,5 @@
-// merlin trace: the duration of each step of the wall's frames, for a trace viewer.
+// Records the duration of each step of the wall's frames for a trace viewer, for merlin trace and
+// merlin report.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +11,13 @@
 namespace merlin::cli {
 
 struct WallTrace {
-  std::string json;  // for ui.perfetto.dev or chrome://tracing
+  std::string json;  // the trace, for ui.perfetto.dev or chrome://tracing
   std::size_t frames = 0, samples = 0;
 };
 
-// The trace of the last frames that cover the time `wanted`; waits for further ones if those in
-// shared memory cover less. 0: all those in shared memory. Errors: kIo (no merlind shows a wall
-// under this name), kTimeout (the wall has drawn nothing for 2 s).
+// Returns the trace of the last frames that cover the time `wanted`; waits for further frames if
+// those in shared memory cover less. If `wanted` is 0, returns all frames in shared memory. Errors:
+// kIo (no merlind shows a wall under this name), kTimeout (the wall has drawn nothing for 2 s).
 Result<WallTrace> recordTrace(const std::string& instance, Duration wanted);
 
 }  // namespace merlin::cli

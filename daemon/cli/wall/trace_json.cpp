@@ -38,7 +38,8 @@ Json stepEvent(const shm::TraceStep& step, double frame_us, int track) {
   return json;
 }
 
-// A period without a step was missed, because the frame before it took longer than its own period.
+// Returns the name of a frame in the trace. A frame without steps was missed, because the frame
+// before it took longer than its period.
 const char* nameOf(const shm::FrameTrace& f) {
   if (f.moving == 0) return "still";
   return f.count == 0 ? "missed" : "frame";

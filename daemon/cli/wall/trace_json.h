@@ -9,9 +9,9 @@
 
 namespace merlin::cli {
 
-// When the first byte of a sample arrived.
+// The time at which the first byte of a sample arrived.
 struct SampleInstant {
-  std::string device;  // its name
+  std::string device;  // name of the device
   std::int64_t at_ns;
 };
 
@@ -22,7 +22,7 @@ struct SampleInstant {
 std::string traceJson(std::span<const shm::FrameTrace> frames,
                       std::span<const SampleInstant> samples);
 
-// Name of a step: "input", "scene", ...
+// Returns the name of a step: "input", "scene", ...
 const char* stepName(shm::StepKind kind);
 
 }  // namespace merlin::cli

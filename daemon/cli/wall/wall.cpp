@@ -20,7 +20,7 @@ struct WallOptions {
   std::string triangles, rate, move;
 };
 
-// Prints the number that the wall uses, which may differ from the given one.
+// Prints the value that the wall uses according to its answer, which may differ from the given one.
 void printSet(const char* name, const std::string& value, const std::string& answer) {
   const auto json = nlohmann::json::parse(answer, nullptr, false);
   const bool says = json.is_object() && json.contains("used");
@@ -79,8 +79,8 @@ void addWall(Command app, Run& run) {
   addTestcard(command, run);
   addMpcdi(command, run);
   addGpus(command, run);
-  // CLI11 calls the callback of a subcommand first and then this one too, which must not replace
-  // it.
+  // CLI11 calls the callback of a subcommand first and then this one, which must not replace what
+  // that one has set.
   command.callback([options, &run] {
     if (!run) run = [options] { return wall(*options); };
   });

@@ -1,4 +1,4 @@
-// merlin wall plan: the room from above and the table of its tiles.
+// merlin wall plan: draws the room from above and prints the table of its tiles.
 #include "daemon/cli/wall/wall_plan.h"
 
 #include <algorithm>
@@ -49,8 +49,9 @@ Result<WallSettings> configuredWall(const std::string& path) {
   return Error{Errc::kInvalidArgument, path + ": the configuration is invalid"};
 }
 
-// The wall of the preset or of the configuration; without both, that of merlind's usual
-// configuration; if that file does not exist, the wall that merlind shows without settings.
+// Returns the wall of the preset or of the given configuration; without either, that of the usual
+// configuration or, if that file does not exist, the wall that merlind shows without settings.
+// Errors: kInvalidArgument.
 Result<WallSettings> wallOf(const PlanOptions& options) {
   if (!options.preset.empty() && !options.config.empty())
     return Error{Errc::kInvalidArgument, "wall plan: give --config or --preset, not both"};
@@ -106,15 +107,15 @@ Json tableJson(const WallPlan& wall) {
   return json;
 }
 
-// Rounds lengths in metres to a micrometre, because computed ones have digits such as
-// 0.0000000000001 at their end.
+// Rounds all numbers to six digits after the point (a micrometre), because computed lengths differ
+// from round numbers by amounts such as 0.0000000000001.
 void roundNumbers(Json& value) {
   if (value.is_number_float()) value = std::round(value.get<double>() * 1e6) / 1e6;
   if (value.is_structured())
     for (Json& part : value) roundNumbers(part);
 }
 
-// The settings of `item` that differ from those of a new entry.
+// Returns the settings of `item` that differ from those of the new entry `new_one`, rounded.
 Json statedOf(const Json& item, const Json& new_one) {
   Json stated = Json::object();
   for (const auto& [key, value] : item.items()) {
@@ -130,8 +131,8 @@ Json roomOf(const render::room::RoomSettings& room) {
   return Json::parse(settingsText(settings))["wall"]["room"];
 }
 
-// Prints a configuration that has only the room, without settings of panels and displays that have
-// their defaults.
+// Prints a configuration that contains only the room; settings of panels and displays with default
+// values are left out.
 int printPanels(const WallSettings& wall) {
   if (!wall.room.isGiven()) {
     return fail({Errc::kInvalidArgument,

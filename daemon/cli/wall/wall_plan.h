@@ -1,4 +1,4 @@
-// merlin wall plan.
+// Adds the subcommand plan to `merlin wall`.
 #pragma once
 
 #include "daemon/cli/command.h"

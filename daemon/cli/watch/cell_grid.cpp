@@ -7,8 +7,9 @@
 namespace merlin::cli {
 namespace {
 
-// Whether every terminal gives this character one cell: letters of Europe, and the block elements
-// of charts. Others may be combining marks or have twice the width.
+// Returns whether every terminal shows this character in one cell. Known are Latin, Greek and
+// Cyrillic letters and the block elements of charts; other characters may be combining marks or
+// have double width.
 bool hasOneCell(char32_t c) {
   const bool latin = c >= 0x20 && c < 0x300 && !(c >= 0x7F && c < 0xA0) && c != 0xAD;
   const bool greek_or_cyrillic = c >= 0x370 && c < 0x483;
@@ -50,7 +51,7 @@ void CellGrid::put(int row, int column, Cell cell) {
 
 std::string CellGrid::line(int row) const {
   std::string text;
-  std::size_t end = 0;  // after the last character that is no blank
+  std::size_t end = 0;  // end of `text` without the blanks at its end
   for (int column = 0; column < columns_; ++column) {
     appendUtf8(text, at(row, column).glyph);
     if (at(row, column).glyph != U' ') end = text.size();

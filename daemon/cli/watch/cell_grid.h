@@ -1,4 +1,4 @@
-// CellGrid: text on a terminal's screen, cell by cell, before it is sent to a terminal. Pure.
+// CellGrid: the characters and styles of a terminal's screen as a grid of cells. Pure.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct Cell {
 // Thread-bound.
 class CellGrid {
  public:
-  // A grid of blanks. A negative number of rows or columns counts as none.
+  // Makes a grid of blanks. A negative number of rows or columns counts as 0.
   CellGrid(int rows, int columns);
 
   int rows() const noexcept { return rows_; }
@@ -28,13 +28,13 @@ class CellGrid {
   // REQUIRES: the cell is inside the grid.
   const Cell& at(int row, int column) const { return cells_[index(row, column)]; }
 
-  // Writes UTF-8 text from this cell to the right, one cell for each character; what lies outside
-  // the grid is left out. A character that may take no cell or two on a terminal, a control
-  // character, and a byte that is not UTF-8 become '?'. Returns the column after the text.
+  // Writes UTF-8 text from this cell to the right, one cell for each character; characters outside
+  // the grid are left out. A character that may take no cell or two on a terminal, a control
+  // character, or a byte that is not valid UTF-8 becomes '?'. Returns the column after the text.
   int put(int row, int column, std::string_view text, CellStyle style = CellStyle::kPlain);
-  void put(int row, int column, Cell cell);  // nothing if it lies outside
+  void put(int row, int column, Cell cell);  // does nothing outside the grid
 
-  // A row as UTF-8 without the blanks at its end.
+  // Returns a row as UTF-8 without the blanks at its end.
   std::string line(int row) const;
 
  private:

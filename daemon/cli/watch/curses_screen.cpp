@@ -12,7 +12,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#define NCURSES_NOMACROS 1  // its macros have names such as move and clear
+#define NCURSES_NOMACROS 1  // the macros of ncurses have names such as move and clear
 #define NCURSES_WIDECHAR 1
 #include <curses.h>
 
@@ -21,13 +21,14 @@
 namespace merlin::cli {
 namespace {
 
-// Pairs of colours, by CellStyle. -1: the terminal's own.
+// Text colour of each CellStyle; -1: the terminal's default colour.
 constexpr std::array<short, 6> kCellColours = {-1,           COLOR_CYAN, COLOR_GREEN,
                                                COLOR_YELLOW, COLOR_RED,  -1};
 
 short pairOf(CellStyle style) { return static_cast<short>(static_cast<int>(style) + 1); }
 
-// Also without colours, headings and faults differ from other text.
+// Returns the attributes of a style, so that headings and faults differ from other text even
+// without colours.
 attr_t attributesOf(CellStyle style) {
   switch (style) {
     case CellStyle::kHeading:
@@ -102,7 +103,7 @@ void CursesScreen::show(const CellGrid& grid) {
 
 CursesScreen::Key CursesScreen::key(int timeout_ms) {
   pollfd items[] = {{STDIN_FILENO, POLLIN, 0}, {signals_.get(), POLLIN, 0}};
-  ::poll(items, 2, timeout_ms);  // ends also when the terminal's size has changed, by a signal
+  ::poll(items, 2, timeout_ms);  // a signal ends the wait when the terminal's size has changed
   if (items[1].revents != 0) return Key::kQuit;
   const int pressed = ::wgetch(stdscr);
   if (pressed == ERR) return (items[0].revents & (POLLHUP | POLLERR)) ? Key::kQuit : Key::kNone;

@@ -1,4 +1,4 @@
-// CursesScreen: shows a CellGrid on the terminal and reads its keys, by ncurses.
+// CursesScreen: shows a CellGrid on the terminal and reads keys, through ncurses.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace merlin::cli {
 
-// Only one may exist at a time; thread-bound. While it exists, the terminal shows another screen
-// and passes each key on at once; afterwards it is restored. Blocks the signals of stopSignals();
-// key() reports them as kQuit.
+// Only one object may exist at a time; thread-bound. While it exists, the terminal shows another
+// screen and passes each key on at once; the destructor restores the terminal. Blocks the signals
+// of stopSignals(); key() reports them as kQuit.
 class CursesScreen {
  public:
-  // Whether standard input and output are a terminal that can place text anywhere: false if TERM is
-  // unset or "dumb".
+  // Returns whether standard input and output are a terminal whose type (TERM) is set and not
+  // "dumb".
   static bool isPossible();
 
   CursesScreen();
@@ -24,24 +24,26 @@ class CursesScreen {
   CursesScreen(const CursesScreen&) = delete;
   CursesScreen& operator=(const CursesScreen&) = delete;
 
-  // Ok, or why the terminal cannot be used (ncurses does not know its type). REQUIRES for all
-  // functions that follow: it returned Ok.
+  // Returns whether the constructor could use the terminal. Errors: kUnsupported (ncurses does not
+  // know the terminal's type). All other functions except hasUnicode() require that opened()
+  // returned Ok.
   Result<Ok> opened() const;
 
   ScreenSize size() const;
-  // Whether the locale is one of UTF-8; otherwise characters outside ASCII are shown as '?'.
+  // Returns whether the locale uses UTF-8; if not, characters outside ASCII are shown as '?'.
   bool hasUnicode() const noexcept { return unicode_; }
-  // Shows the grid; only cells that changed are sent to the terminal.
+  // Shows the grid; only changed cells are sent to the terminal.
   void show(const CellGrid& grid);
 
   enum class Key { kNone, kOther, kQuit, kResized };
-  // Waits for a key, `timeout_ms` at most. kQuit: 'q', Ctrl-C, a signal that ends the program, or
-  // the terminal is gone.
+  // Waits up to `timeout_ms` for a key. Returns kNone if there was none, kResized if the size of
+  // the terminal has changed, and kQuit after 'q', Ctrl-C or a signal of stopSignals(), or if the
+  // terminal is gone.
   Key key(int timeout_ms);
 
  private:
   UniqueFd signals_;
-  void* screen_ = nullptr;  // ncurses' own SCREEN, whose header only the source includes
+  void* screen_ = nullptr;  // a SCREEN of ncurses, whose header only the source file includes
   bool unicode_ = false, colours_ = false;
 };
 

@@ -8,11 +8,12 @@
 namespace merlin::cli {
 namespace {
 
-constexpr int kScale = 9;  // columns of "  33.3 ms"
+constexpr int kScale = 9;  // width of the scale in columns, for "  33.3 ms"
 constexpr int kLeastRows = 2, kLeastColumns = 20;
-constexpr int kParts = 8;  // of a cell
+// Number of parts into which a cell is divided vertically.
+constexpr int kParts = 8;
 
-// The glyph of a cell of which `parts` eighths are filled from below.
+// Returns the glyph of a cell of which `parts` eighths are filled from below.
 char32_t glyphOf(int parts, bool blocks) {
   if (parts <= 0) return U' ';
   if (!blocks) return U'#';
@@ -32,7 +33,7 @@ void drawChart(CellGrid& grid, const ChartPlace& place, const FrameTimes& times,
   double most = period_ms;
   for (const auto& time : times.all()) most = std::max(most, time.value_or(0));
   if (!(most > 0) || !std::isfinite(most)) most = 1;
-  const auto parts = [&](double ms) {  // filled eighths of a column; at least one for any time
+  const auto parts = [&](double ms) {  // number of filled eighths in a column, at least 1
     return std::max(1, static_cast<int>(std::lround(ms / most * place.rows * kParts)));
   };
   const int first = place.column + kScale;

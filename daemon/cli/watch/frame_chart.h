@@ -1,5 +1,4 @@
-// A chart of frame times: a column for each second, a bar as high as that second's frame time.
-// Pure.
+// Draws a chart of frame times, with a bar for each second as high as its frame time. Pure.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +9,8 @@
 
 namespace merlin::cli {
 
-// The frame times of the last minute, one a second, newest last. A second without a value: nothing
-// moved, or no daemon ran.
+// The frame times of the last minute [ms], one for each second, newest last. A second has no value
+// if no frame was drawn or no daemon ran.
 class FrameTimes {
  public:
   static constexpr std::size_t kSeconds = 60;
@@ -24,17 +23,16 @@ class FrameTimes {
 };
 
 struct ChartPlace {
-  int row = 0, column = 0;  // its upper left cell
+  int row = 0, column = 0;  // the upper left cell
   int rows = 0;             // height of the bars
-  int columns = 0;          // including the scale to the left of the bars
+  int columns = 0;          // width, including the scale to the left of the bars
 };
 
-// Draws the chart: to the left the scale in milliseconds, then the bars, the newest at the right. A
-// bar above `period_ms`, the time that a frame has at the asked rate, has the style kBad; the
-// period's row is marked where no bar covers it; 0: no period is known. The scale reaches to the
-// largest of the times and the period. `blocks`: draws with Unicode's block elements, exact to an
-// eighth of a row; otherwise with '#'. Draws nothing if the place has fewer than 2 rows or 20
-// columns.
+// Draws the chart into `place`: the scale [ms] at the left, then the bars, the newest at the right.
+// `period_ms`: the time for one frame at the asked rate; 0: unknown. Bars above it have the style
+// kBad, and its row is marked with '-' where no bar covers it. The scale ends at the largest of the
+// times and the period. `blocks`: whether to draw with Unicode block elements, exact to an eighth
+// of a row, instead of '#'. Draws nothing if the place has fewer than 2 rows or 20 columns.
 void drawChart(CellGrid& grid, const ChartPlace& place, const FrameTimes& times, double period_ms,
                bool blocks);
 

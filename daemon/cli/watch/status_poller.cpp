@@ -17,7 +17,7 @@ std::string fieldText(const Json& json, const char* key) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-// Adds the events of one role's answer to `events`.
+// Adds the events in the answer of one role to `events`.
 void addEvents(const std::string& answer, std::vector<WatchedEvent>& events) {
   const auto json = Json::parse(answer, nullptr, false);
   if (!json.is_array()) return;
@@ -27,7 +27,7 @@ void addEvents(const std::string& answer, std::vector<WatchedEvent>& events) {
   }
 }
 
-// The time of a frame in the last second; nothing if none was drawn.
+// Returns the median time of a frame in the last second [ms]; nothing if none was drawn.
 std::optional<double> frameTime(const Json& status) {
   const auto found = status.find("work_median_ms");
   if (found == status.end() || !found->is_number()) return std::nullopt;
@@ -52,8 +52,8 @@ bool StatusPoller::poll(Timestamp now, WatchedState& state) {
   return true;
 }
 
-// A restarted daemon may have the same addresses or other ones, so the roles are looked up in each
-// round.
+// Begins a round: sends requests for the status to all roles. The roles are looked up in each
+// round, because a restarted daemon may have other addresses.
 void StatusPoller::beginRound(Timestamp now) {
   next_ = now + kPeriod;
   waiting_ = true;
@@ -81,7 +81,8 @@ void StatusPoller::findAgain() {
   std::erase_if(roles_, [&](const auto& role) { return !present.contains(role.first); });
 }
 
-// Takes the answer of the role if it has arrived. True if the role was then asked for its events.
+// Takes the answer of the role if it has arrived; after a status, asks for the events. Returns
+// whether the role was asked for its events.
 bool StatusPoller::takeAnswer(Role& role, Timestamp now) {
   auto answer = role.sender->answer(now);
   if (!answer) return false;
@@ -109,7 +110,7 @@ void StatusPoller::publish(WatchedState& state) const {
   if (!all.empty() && !daemon_.isRemote()) addLostRoles(daemon_.instance, all);
   state.frame_times.add(frameTime(all));
   state.absent = all.empty() ? fault : "";
-  if (all.empty()) return;  // the last state stays
+  if (all.empty()) return;  // the last state is kept
   std::ranges::stable_sort(events, {}, &WatchedEvent::time_utc);
   state.status = std::move(all);
   state.events = std::move(events);

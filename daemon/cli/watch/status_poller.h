@@ -1,5 +1,5 @@
-// StatusPoller: asks every role of a daemon for its status and its last events, once a second, and
-// never waits.
+// StatusPoller: asks every role of a daemon for its status and its last events, once a second,
+// without blocking.
 #pragma once
 
 #include <map>
@@ -15,15 +15,15 @@
 
 namespace merlin::cli {
 
-// Thread-bound. Uses a thread of ZeroMQ's for each role.
+// Thread-bound. ZeroMQ runs a thread for each role.
 class StatusPoller {
  public:
   explicit StatusPoller(DaemonAddress daemon);
 
-  // Sends what is due and takes the answers that have arrived; to be called at least ten times a
-  // second. True if `state` has changed. While no daemon runs, or none of its roles answers,
-  // state.absent says why, and a second without a frame time is added each second; once one answers
-  // again, also after a restart, the state is the current one.
+  // Sends the requests that are due and processes the answers that have arrived; to be called at
+  // least ten times a second. Returns whether `state` has changed. While no daemon runs or no role
+  // answers, state.absent says why, and each second an entry without a value is added to the frame
+  // times. Once a role answers again, also after a restart, the state is current again.
   bool poll(Timestamp now, WatchedState& state);
 
   static constexpr Duration kPeriod = std::chrono::seconds(1);
@@ -32,7 +32,7 @@ class StatusPoller {
   struct Role {
     status::CommandAddress at{""};
     std::unique_ptr<status::CommandSender> sender;
-    bool asked_events = false;  // what the outstanding request is for
+    bool asked_events = false;  // whether the request in progress is for the events
     std::string status, events, fault;
   };
 
@@ -43,10 +43,10 @@ class StatusPoller {
   void publish(WatchedState& state) const;
 
   DaemonAddress daemon_;
-  std::map<std::string, Role> roles_;  // by their endpoints
-  std::string fault_;                  // why there are no roles
+  std::map<std::string, Role> roles_;  // by endpoint
+  std::string fault_;                  // why no role was found
   Timestamp next_{};
-  bool waiting_ = false;  // a round has begun whose answers have not all arrived
+  bool waiting_ = false;  // not all answers of the current round have arrived
 };
 
 }  // namespace merlin::cli

@@ -1,5 +1,4 @@
-// merlin watch: shows the state of the daemon again and again, as a table on a terminal or as
-// lines.
+// merlin watch: shows the status of the daemon continuously, as a table on a terminal or as lines.
 #include <algorithm>
 #include <memory>
 
@@ -37,8 +36,8 @@ void printStatus(const WatchOptions& options, const nlohmann::ordered_json& stat
   std::fflush(stdout);
 }
 
-// Each role publishes its status every second. Prints a line after every N documents, where N is
-// the number of roles.
+// Prints a status line each second for a daemon on this machine. Each role publishes its status
+// every second; a line is printed after every N documents, where N is the number of roles.
 int watchLines(const WatchOptions& options) {
   const auto roles = findRoles(options.instance);
   if (!roles) return fail(roles.error());
@@ -64,8 +63,8 @@ int watchLines(const WatchOptions& options) {
   return kExitDone;
 }
 
-// The same for a daemon on another machine, which does not publish its status over the network and
-// is therefore asked.
+// Prints a status line each second for a daemon on another machine, which is asked for its status
+// each time.
 int askLines(const WatchOptions& options, const DaemonAddress& daemon) {
   SystemClock clock;
   const Timestamp began = clock.now();
@@ -82,8 +81,8 @@ int askLines(const WatchOptions& options, const DaemonAddress& daemon) {
 // Shows the table until the person quits, even while no daemon runs.
 int watchScreen(const WatchOptions& options, const DaemonAddress& daemon) {
   const auto possible = findRoles(daemon);
-  // Ends if keys are missing or wrong, which waiting would not change; a daemon may still start
-  // (kIo).
+  // Missing or wrong keys end the command, because waiting would not help. After kIo, it goes on,
+  // because a daemon may still start.
   if (!possible && possible.error().code != Errc::kIo) return fail(possible.error());
   const SystemClock clock;
   const Timestamp began = clock.now();

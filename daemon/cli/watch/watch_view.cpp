@@ -38,7 +38,7 @@ bool flag(const Json& json, const char* key) {
   return found != json.end() && found->is_boolean() && found->get<bool>();
 }
 
-// The member of that name if it is an object; an empty object otherwise.
+// Returns the member `key` if it is an object, otherwise an empty object.
 const Json& object(const Json& json, const char* key) {
   static const Json kNone = Json::object();
   const auto found = json.find(key);
@@ -87,7 +87,8 @@ Row contentRow(const Json& s) {
   return labelled("content", rest);
 }
 
-// Late frames are coloured only while they happen: only those of the last second count.
+// Returns the style for late frames. Only those of the last second count, so that the colour
+// appears only while they happen.
 CellStyle lateStyle(const Json& s) {
   const double now = number(s, "late_percent_1s").value_or(0);
   return now > 10 ? CellStyle::kBad : now > 0 ? CellStyle::kWarning : CellStyle::kGood;
@@ -131,8 +132,8 @@ Row healthRow(const std::string& name, const std::string& health, const std::str
           {rest}};
 }
 
-// A row for each member of an object of devices or outputs, under a heading; none if there are
-// none.
+// Returns a heading and a row for each member of the object s[key], such as the devices; no rows if
+// it has no members.
 template <typename MakeRow>
 std::vector<Row> table(const Json& s, const char* key, const char* heading, MakeRow row) {
   std::vector<Row> rows;
@@ -146,7 +147,8 @@ std::vector<Row> table(const Json& s, const char* key, const char* heading, Make
   return rows;
 }
 
-// A row for each role that was killed, crashed or hangs; shown above all other rows.
+// Returns a row for each role that was killed, has crashed or hangs; these are shown above all
+// other rows.
 std::vector<Row> lostRows(const Json& s) {
   std::vector<Row> rows;
   for (const auto& [role, lost] : object(s, "lost_roles").items())
@@ -200,16 +202,16 @@ std::string upTime(const Json& s) {
   return fmt::format("up {} h {} min", minutes / 60, minutes % 60);
 }
 
-// "14:05:07" of an ISO 8601 time.
+// Returns the time of day, "14:05:07", of an ISO 8601 time; empty if the text is too short.
 std::string clockOf(const std::string& time_utc) {
   return time_utc.size() >= 19 ? time_utc.substr(11, 8) : "";
 }
 
-// A screen being filled from above.
+// A screen that is filled from the top.
 struct Page {
   CellGrid grid;
-  bool dim = false;  // what is shown is out of date
-  int next = 0;      // row
+  bool dim = false;  // whether to show everything dim, because it is out of date
+  int next = 0;      // index of the next row to fill
 
   void add(const Row& row) {
     int column = 0;
@@ -241,7 +243,7 @@ void addChart(Page& page, const WatchedState& state, int rows, bool blocks) {
   page.next += rows;
 }
 
-// Adds the newest events, as many as there is room for.
+// Adds a heading and the newest events, as many as fit.
 void addEvents(Page& page, const std::vector<WatchedEvent>& events) {
   if (page.left() < 3 || events.empty()) return;
   page.add({});
@@ -252,7 +254,8 @@ void addEvents(Page& page, const std::vector<WatchedEvent>& events) {
         {{fmt::format("  {:9} ", clockOf(events[i].time_utc)), CellStyle::kDim}, {events[i].what}});
 }
 
-// The number of rows for the chart's bars: those of `left` that the events do not need.
+// Returns the number of rows for the bars of the chart: those of the `left` rows that the events do
+// not need; 0 if there is no wall or not enough room.
 int chartRows(int left, const std::vector<WatchedEvent>& events, bool has_wall) {
   constexpr int kHeadings = 2;  // a blank row and a heading, for the chart and for the events
   const int for_events =

@@ -1,5 +1,5 @@
-// What `merlin watch` shows on a terminal: rows made from a status document, events and frame
-// times. Pure.
+// Lays out the screen of `merlin watch`: rows made from a status document, events and frame times.
+// Pure.
 #pragma once
 
 #include <string>
@@ -18,9 +18,9 @@ struct WatchedEvent {
 };
 
 struct WatchedState {
-  std::string name;    // name of the daemon: its instance or its addresses
-  std::string absent;  // why nothing is known at present; empty while the daemon answers
-  // The statuses of all roles, joined by mergeStatus().
+  std::string name;    // the instance of the daemon, or its addresses
+  std::string absent;  // why the daemon does not answer at present; empty while it answers
+  // The status of all roles, merged by mergeStatus().
   nlohmann::ordered_json status = nlohmann::ordered_json::object();
   std::vector<WatchedEvent> events;  // oldest first
   FrameTimes frame_times;
@@ -30,10 +30,10 @@ struct ScreenSize {
   int rows = 24, columns = 80;
 };
 
-// Lays out title, wall, devices, outputs, failed services, chart and last events, as far as there
-// is room: chart and events get the rows that the others leave. If not even those fit, the last row
-// says how many rows are missing. While `absent` is not empty, the last state stays visible, but
-// dim. Values of the wrong type in the status are shown as "-".
+// Lays out title, wall, devices, outputs and failed services; the chart and the last events get the
+// remaining rows. If the others do not fit, the last row says how many rows are missing. While
+// state.absent is not empty, the last state stays visible but dim. Values of the wrong type in the
+// status are shown as "-". `blocks`: as for drawChart().
 CellGrid layOut(const WatchedState& state, const ScreenSize& size, bool blocks);
 
 }  // namespace merlin::cli
