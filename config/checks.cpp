@@ -165,8 +165,10 @@ void checkContents(const WallSettings& wall, LoadedSettings& loaded) {
     int files = 0;
     for (const std::string* file : {&c.model, &c.picture, &c.slides})
       files += file->empty() ? 0 : 1;
-    if (files > 1)
-      loaded.addFinding(at, "names more than one file; give it one of model, picture and slides");
+    if (files != 1) {
+      loaded.addFinding(at, fmt::format("names {}; give it one of model, picture and slides",
+                                        files == 0 ? "no file" : "more than one file"));
+    }
     if (!c.name.empty() && !names.insert(c.name).second)
       loaded.addFinding(
           at + "/name",

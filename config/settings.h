@@ -74,7 +74,7 @@ struct InputSettings {
   std::string keys;        // file with this machine's key pair
 };
 
-// A content of the wall. At most one of `model`, `picture` and `slides` is set.
+// A content of the wall. Exactly one of `model`, `picture` and `slides` is set.
 struct ContentSettings {
   std::string name;     // empty: the name of the file without its ending
   std::string model;    // an .mrm file

@@ -29,6 +29,8 @@ TEST(WallConfig, AContentIsOneFileAndItsNameIsItsOwn) {
       contents(R"({"model": "a.mrm", "picture": "b.tif"})"),
       "f.json:1: /wall/contents/0 names more than one file; give it one of model, picture and "
       "slides\n");
+  EXPECT_EQ(contents(R"({"name": "sky"})"),
+            "f.json:1: /wall/contents/0 names no file; give it one of model, picture and slides\n");
   EXPECT_EQ(contents(R"({"picture": "a.tif", "name": "sky"}, {"picture": "b.tif", "name": "sky"})"),
             "f.json:1: /wall/contents/1/name is \"sky\", the name of another content; give each "
             "its own name\n");

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Error tooLarge(const Conversion& conversion, std::uint64_t bytes) {
-  return {Errc::kUnsupported,
+  return {Errc::kInvalidArgument,
           fmt::format("{}: takes {} MB on the wall; the content folder has room for {} MB "
                       "(/wall/shown/limit_mb)",
                       conversion.input, bytes / 1'000'000, conversion.most_bytes / 1'000'000)};

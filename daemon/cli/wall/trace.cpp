@@ -43,9 +43,11 @@ Result<std::vector<shm::FrameTrace>> collect(const shm::WallSegment& wall, Durat
     ++next;
     heard = clock.now();
   }
+  if (wanted == Duration{}) return frames;
   const std::int64_t from = frames.back().end_ns - wanted.count();
-  if (wanted > Duration{})
-    std::erase_if(frames, [from](const shm::FrameTrace& f) { return f.begin_ns < from; });
+  const auto first = std::find_if(frames.begin(), frames.end() - 1,
+                                  [&](const shm::FrameTrace& f) { return f.begin_ns >= from; });
+  frames.erase(frames.begin(), first);
   return frames;
 }
 
