@@ -12,7 +12,7 @@
 namespace merlin::render::compare {
 namespace {
 
-constexpr double kSampledShare = 0.6;  // of the progress of one direction
+constexpr double kSampledShare = 0.6;  // share of sampling in the progress of one direction
 
 Error invalid(std::string what) { return {Errc::kInvalidArgument, std::move(what)}; }
 
@@ -41,7 +41,9 @@ std::string sizeOf(const mesh::Feature* feature) {
   return feature ? fmt::format("has dimension {}", feature->dimension) : "lacks it";
 }
 
-// Returns the features to compare, without "normal", which is always compared, as angles.
+// Returns the names of the features to compare, without "normal", which is always compared, as
+// angles. Errors: kInvalidArgument if one of the meshes lacks a wanted feature, or the dimensions
+// differ.
 Result<std::vector<std::string>> featuresOf(const mesh::Mesh& a, const mesh::Mesh& b,
                                             const std::vector<std::string>& wanted) {
   std::vector<std::string> names;
@@ -59,7 +61,7 @@ Result<std::vector<std::string>> featuresOf(const mesh::Mesh& a, const mesh::Mes
   return names;
 }
 
-// Builds both trees, in parallel if there are threads.
+// Builds the trees of both meshes, in parallel if there are several threads.
 std::array<std::unique_ptr<const TriangleTree>, 2> treesOf(const mesh::Mesh& a, const mesh::Mesh& b,
                                                            unsigned threads) {
   std::array<std::unique_ptr<const TriangleTree>, 2> trees;

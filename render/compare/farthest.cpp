@@ -8,22 +8,26 @@
 namespace merlin::render::compare {
 namespace {
 
-constexpr std::size_t kBlock = 2048;     // triangles or vertices of the first pass
-constexpr std::size_t kRound = 1024;     // parts halved at once
+constexpr std::size_t kBlock = 2048;     // triangles or vertices per block of the first pass
+constexpr std::size_t kRound = 1024;     // parts that are halved in one round
 constexpr std::size_t kRoundBlock = 64;  // parts
-constexpr double kFirstPassShare = 0.5;  // of the progress
+constexpr double kFirstPassShare = 0.5;  // share of the first pass in the progress
 
-// A triangle of the first surface, or a part of one.
+// A triangle of the first surface, or a part of such a triangle.
 struct Part {
   std::array<Vector, 3> corners;
-  std::array<std::uint32_t, 3> nearest{};          // by corner: place of the nearest triangle
-  std::uint32_t bounded_by = TriangleTree::kNone;  // place of the triangle that gave `upper`
-  double upper = std::numeric_limits<double>::infinity();  // upper bound of its points' distances
+  // By corner: place of its nearest triangle in the other surface.
+  std::array<std::uint32_t, 3> nearest{};
+  // Place of the triangle from which `upper` follows.
+  std::uint32_t bounded_by = TriangleTree::kNone;
+  // Upper bound of the distances of its points.
+  double upper = std::numeric_limits<double>::infinity();
 };
 
 bool isLess(const Part& a, const Part& b) { return a.upper < b.upper; }
 
-// Computes the upper bound of `part`: the lowest one over the triangles known to be near.
+// Computes the upper bound of `part`: the lowest of the bounds that the triangles known to be near
+// give.
 void bound(const TriangleTree& to, Part& part) {
   const std::array<std::uint32_t, 4> candidates = {part.nearest[0], part.nearest[1],
                                                    part.nearest[2], part.bounded_by};
@@ -43,10 +47,10 @@ void bound(const TriangleTree& to, Part& part) {
   part.upper = std::min(part.upper, std::sqrt(least2));
 }
 
-// Both halves of a part, cut at the middle of its longest edge.
+// The two halves of a part, cut at the middle of its longest edge.
 struct Halves {
   std::array<Part, 2> parts;
-  double distance = 0;  // distance of the point at which it was cut
+  double distance = 0;  // distance from the other surface of the point of the cut
 };
 
 Halves halve(const TriangleTree& to, const Part& part) {
@@ -96,8 +100,8 @@ class FarthestSearch {
   const Search& search_;
   const KeepGoing& keep_going_;
 
-  std::vector<std::uint32_t> nearest_;  // by vertex that a triangle uses: its nearest place
-  std::vector<Part> parts_;             // heap, the largest bound first
+  std::vector<std::uint32_t> nearest_;  // by vertex: place of the nearest triangle; kNone if unused
+  std::vector<Part> parts_;             // heap; the part with the largest bound is first
   double low_ = 0;
   double dropped_ = 0;  // largest upper bound of the dropped parts
   double first_gap_ = 0;
@@ -181,7 +185,8 @@ void FarthestSearch::keep(const Part& part) {
   }
 }
 
-// Halves the parts with the largest upper bounds. A round does not depend on the number of threads.
+// Halves the parts with the largest upper bounds. The choice of parts in a round does not depend on
+// the number of threads.
 bool FarthestSearch::refineRound() {
   const double share = shareDone();
   std::vector<Part> round;

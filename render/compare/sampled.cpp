@@ -10,11 +10,11 @@ namespace merlin::render::compare {
 namespace {
 
 constexpr std::size_t kSampleBlock =
-    4096;  // samples that are summed before the blocks' sums are added
+    4096;  // number of samples in a block; the sums of blocks are added later
 
-// A point of a mesh, as needed to interpolate features there.
+// A point of a mesh, in the form in which features are interpolated.
 struct SurfacePoint {
-  const std::uint32_t* corners;  // vertices of its triangle
+  const std::uint32_t* corners;  // the three vertices of its triangle
   std::array<double, 3> barycentric;
 };
 
@@ -97,10 +97,10 @@ class Sampler {
 
   Sums none() const { return {{}, {}, {}, {}, std::vector<Mean>(features_.size())}; }
 
-  // Adds samples kSampleBlock * block to kSampleBlock * (block + 1) - 1 to `sums`, which was none()
-  // before.
+  // Adds samples kSampleBlock * block to kSampleBlock * (block + 1) - 1 to `sums`. REQUIRES: sums
+  // equals none().
   void addBlock(std::size_t block, Sums& sums) const {
-    // A generator of its own for each block; next() keeps neighbouring seeds apart.
+    // Each block has its own generator; next() makes neighbouring seeds independent.
     Random random(Random(sampling_.seed + block).next());
     const std::size_t first = block * kSampleBlock,
                       last = std::min(first + kSampleBlock, sampling_.samples);
@@ -111,7 +111,7 @@ class Sampler {
       const double at = share * area_.back();
       if (i == first) place = placeAt(at);
       while (place + 1 < from_.tree.size() && !(at < area_[place + 1])) ++place;
-      const double area = area_[place + 1] - area_[place];  // the last triangle's may be 0
+      const double area = area_[place + 1] - area_[place];  // may be 0 for the last triangle
       const double within = area > 0 ? std::clamp((at - area_[place]) / area, 0.0, 1.0) : 0.0;
       hint = addSample(place, within, random.uniform(), hint, sums);
     }
@@ -123,8 +123,8 @@ class Sampler {
     return static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(after - 1, 0));
   }
 
-  // Adds the sample at (u, v) of the unit square, which is mapped to the triangle with uniform
-  // density. Returns the place of the nearest triangle.
+  // Adds the sample at (u, v) of the unit square, which is mapped to the triangle at `place` with
+  // uniform density. Returns the place of the nearest triangle of the other surface.
   std::uint32_t addSample(std::uint32_t place, double u, double v, std::uint32_t hint,
                           Sums& sums) const {
     const double root = std::sqrt(u);
@@ -159,7 +159,7 @@ class Sampler {
   const Surface& from_;
   const Surface& to_;
   const Sampling& sampling_;
-  std::vector<double> area_;  // by place: area of all triangles before it
+  std::vector<double> area_;  // by place: total area of all triangles before it
   std::vector<Pair> features_;
   Pair normals_;
 };
@@ -194,7 +194,8 @@ std::optional<SampledError> sampledError(const Surface& from, const Surface& to,
       });
   if (!all) return std::nullopt;
   Sums total = sampler.none();
-  for (const Sums& s : sums) total.add(s);  // fixed order: same bits for any number of threads
+  // Fixed order, so that the result does not depend on the threads.
+  for (const Sums& s : sums) total.add(s);
   return errorOf(total);
 }
 

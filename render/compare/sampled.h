@@ -1,4 +1,5 @@
-// Mean differences between two surfaces, over sample points spread evenly over the first one.
+// Computes mean differences between two surfaces, at sample points that are spread evenly over the
+// first one.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,11 @@
 
 namespace merlin::render::compare {
 
-// Progress callback on the caller's thread: the share of a piece of work that is done, 0..1, and
-// the number of points tested. Returns whether to go on.
+// Progress callback, called on the caller's thread with the share of the work that is done (0..1)
+// and the number of points tested. Returns whether to continue.
 using KeepGoing = std::function<bool(double share, std::size_t points)>;
 
-// A mesh and its tree; both must outlive it.
+// A mesh and its tree; both must outlive this struct.
 struct Surface {
   const mesh::Mesh& mesh;
   const TriangleTree& tree;
@@ -25,18 +26,19 @@ struct Surface {
 struct Sampling {
   std::size_t samples = 0;
   std::uint64_t seed = 0;
-  std::vector<std::string> features;  // both meshes must have them, with equal dimensions
+  // Names of features; both meshes must have them, in equal dimensions.
+  std::vector<std::string> features;
   unsigned threads = 1;
 };
 
 struct SampledError {
-  double rms = 0, mean = 0;              // distance, model units
-  std::optional<double> facet_rms_deg;   // nullopt if no sample met facets with an area
-  std::optional<double> normal_rms_deg;  // nullopt unless both meshes have normals
+  double rms = 0, mean = 0;              // distance [model units]
+  std::optional<double> facet_rms_deg;   // [degrees]; nullopt if no sample met facets with an area
+  std::optional<double> normal_rms_deg;  // [degrees]; nullopt unless both meshes have normals
   std::vector<double> features;          // RMS per component, in the feature's unit
 };
 
-// Averages, over samples of `from`, the differences from the nearest point of `to`.
+// Returns the mean differences between samples of `from` and their nearest points of `to`.
 //
 // Samples are stratified by area: the surface is laid out in the order of the tree's leaves and
 // cut into `samples` strips of equal area, with one random point each. O(samples x log n).

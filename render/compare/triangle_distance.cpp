@@ -10,7 +10,7 @@ namespace {
 // the wrong side of one of its edges.
 constexpr double kSliver = 1e-10;
 
-// Nearest point on the edge from corner i to corner j.
+// Returns the point nearest to p on the edge from corner i to corner j.
 NearestPoint nearestOnEdge(const Vector& p, const std::array<Vector, 3>& corners, std::size_t i,
                            std::size_t j) noexcept {
   const Vector edge = corners[j] - corners[i];
@@ -39,7 +39,7 @@ NearestPoint nearestOnTriangle(const Vector& p, const std::array<Vector, 3>& cor
     best = {height * height / nn, {side[0] / nn, side[1] / nn, side[2] / nn}};
     if (!sliver) return best;
   }
-  // Outside, the nearest point lies on an edge that has p on its outer side.
+  // If p is outside, the nearest point lies on an edge that has p on its outer side.
   for (std::size_t k = 0; k < 3; ++k) {
     if (!sliver && side[k] >= 0) continue;
     const NearestPoint on_edge = nearestOnEdge(p, corners, (k + 1) % 3, (k + 2) % 3);

@@ -19,7 +19,7 @@ Ray::Ray(const Vector& origin, const Vector& direction) noexcept : origin_(origi
   shear_x_ = direction[axes_[0]] / direction[longest];
   shear_y_ = direction[axes_[1]] / direction[longest];
   scale_ = 1 / direction[longest];
-  for (int k = 0; k < 3; ++k) {  // finite, since 0 x infinity is not a number
+  for (int k = 0; k < 3; ++k) {  // keeps the inverse finite, since 0 x infinity is NaN
     constexpr double kLeast = 1e-300;
     const double least = std::copysign(kLeast, direction[k]);
     inverse_[k] = 1 / (std::abs(direction[k]) < kLeast ? least : direction[k]);
@@ -27,7 +27,7 @@ Ray::Ray(const Vector& origin, const Vector& direction) noexcept : origin_(origi
 }
 
 std::optional<RayHit> Ray::hit(const std::array<Vector, 3>& corners) const noexcept {
-  // The corners seen along the ray: the ray is the axis z, from 0 on.
+  // Converts the corners to coordinates in which the ray is the positive z axis.
   double x[3], y[3], z[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector from = corners[i] - origin_;
@@ -49,7 +49,7 @@ std::optional<RayHit> Ray::hit(const std::array<Vector, 3>& corners) const noexc
 
 double Ray::entry(const std::array<float, 3>& low,
                   const std::array<float, 3>& high) const noexcept {
-  constexpr double kRounding = 1e-15;  // each product is off by 4e-16 of itself at most
+  constexpr double kRounding = 1e-15;  // the relative error of each product is at most 4e-16
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double enter = 0, leave = kInfinity;
   for (int k = 0; k < 3; ++k) {

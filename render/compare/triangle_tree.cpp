@@ -8,9 +8,9 @@
 namespace merlin::render::compare {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;  // triangles
+constexpr std::uint32_t kLeaf = 4;  // maximum number of triangles in a leaf
 constexpr std::size_t kBins = 16;
-// From this depth on triangles are split into equal halves, so that no tree is deeper than
+// From this depth on, triangles are split into equal halves, so that no tree is deeper than
 // kDeepest.
 constexpr int kUneven = 60;
 constexpr std::size_t kDeepest = kUneven + 32;
@@ -26,7 +26,7 @@ struct Bounds {
     }
   }
   float centre(std::size_t axis) const noexcept { return low[axis] / 2 + high[axis] / 2; }
-  // Half the surface area; 0 if the box is empty.
+  // Returns half the surface area of the box; 0 if the box is empty.
   double area() const noexcept {
     if (low[0] > high[0]) return 0;
     const double x = double{high[0]} - low[0], y = double{high[1]} - low[1],
@@ -56,9 +56,10 @@ struct Bin {
 };
 using Bins = std::array<Bin, kBins>;
 
-// Returns the bin before which to cut for the lowest cost; 0 if one bin holds all.
+// Returns the index of the bin before which a cut has the lowest cost; 0 if one bin holds all
+// triangles.
 std::size_t cheapestCut(const Bins& bins) {
-  std::array<double, kBins> above{};  // cost of the triangles from each bin on
+  std::array<double, kBins> above{};  // cost of the triangles in this bin and all later ones
   Bin sum;
   for (std::size_t i = kBins; i-- > 1;) {
     sum.bounds.add(bins[i].bounds);
@@ -80,7 +81,7 @@ std::size_t cheapestCut(const Bins& bins) {
   return best;
 }
 
-// Squared distances of p to the boxes of both children; infinite for an empty one.
+// Returns the squared distances from p to the boxes of both children; infinite for an empty box.
 template <typename Node>
 std::array<double, 2> boxDistances(const Node& node, const Vector& p) noexcept {
   const double at[3] = {p.x(), p.y(), p.z()};
@@ -96,7 +97,8 @@ std::array<double, 2> boxDistances(const Node& node, const Vector& p) noexcept {
   return sum;
 }
 
-// Where the ray enters the boxes of both children; infinite if it misses one, or if that is empty.
+// Returns the distances at which the ray enters the boxes of both children; infinite if the ray
+// misses the box or the box is empty.
 template <typename Node>
 std::array<double, 2> boxEntries(const Node& node, const Ray& ray) noexcept {
   std::array<double, 2> entries{};
@@ -125,7 +127,7 @@ class TriangleTree::Builder {
   const References& references() const noexcept { return all_; }
 
  private:
-  // Builds a node over [first, last); returns its number.
+  // Builds a node over the triangles [first, last); returns the index of the node.
   std::uint32_t build(std::uint32_t first, std::uint32_t last, int depth) {
     const auto number = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
@@ -135,7 +137,7 @@ class TriangleTree::Builder {
       const std::uint32_t from = range[side], to = range[side + 1], count = to - from;
       setBox(nodes_[number], side, from, to);
       nodes_[number].count[side] = count <= kLeaf ? count : 0;
-      // An empty side is a leaf of nothing: its box is infinitely far away.
+      // An empty side is a leaf without triangles, whose box is infinitely far away.
       const std::uint32_t child = count <= kLeaf ? from : build(from, to, depth + 1);
       nodes_[number].child[side] = child;
     }
@@ -151,7 +153,7 @@ class TriangleTree::Builder {
     }
   }
 
-  // Divides [first, last) into two parts that are not empty; returns where the second begins.
+  // Divides [first, last) into two non-empty parts; returns the index where the second part begins.
   std::uint32_t split(std::uint32_t first, std::uint32_t last, int depth) {
     Bounds centres;
     for (std::uint32_t i = first; i < last; ++i) {
@@ -175,7 +177,8 @@ class TriangleTree::Builder {
     return half;
   }
 
-  // Divides at the cheapest cut. Returns `first` if no cut leaves triangles on both sides.
+  // Divides the triangles at the cheapest cut. Returns `first` if no cut leaves triangles on both
+  // sides.
   std::uint32_t splitByArea(std::uint32_t first, std::uint32_t last, std::size_t axis, double low,
                             double extent) {
     const auto binOf = [&](const Reference& r) {
@@ -260,7 +263,8 @@ void TriangleTree::walk(const DistancesOf& distancesOf, const double& limit,
     for (const int side : {nearer, 1 - nearer}) {
       if (!isInner(side) && isNear(side)) visitLeaf(node, side);
     }
-    for (const int side : {1 - nearer, nearer}) {  // the nearer one is pushed last: visited next
+    // The nearer child is pushed last, so it is visited next.
+    for (const int side : {1 - nearer, nearer}) {
       if (isInner(side) && isNear(side))
         stack[pending++] = {node.child[side], distances[static_cast<std::size_t>(side)]};
     }

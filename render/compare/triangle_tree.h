@@ -1,10 +1,10 @@
-// TriangleTree: a bounding volume hierarchy over the triangles of a mesh; finds the point of the
-// surface that is nearest to a given point, and the first one along a ray.
+// TriangleTree: a bounding volume hierarchy over the triangles of a mesh. It finds the point of the
+// surface that is nearest to a given point, and the first point along a ray.
 //
-// Binary, axis-aligned boxes, binned surface area heuristic, at most 4 triangles per leaf; a node
-// holds both children's boxes in one cache line. Triangles are stored in the order of the leaves,
-// so that neighbours in that order are close in space. A triangle's `place` is its index in that
-// order.
+// The tree is binary, with axis-aligned boxes, built by a binned surface area heuristic, with at
+// most 4 triangles per leaf; a node holds the boxes of both children in one cache line. Triangles
+// are stored in the order of the leaves, so that neighbours in this order are close in space. A
+// triangle's `place` is its index in this order.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class TriangleTree {
     std::uint32_t place = kNone;
   };
 
-  // O(n log n) time, about 110 bytes a triangle; keeps no reference to the mesh.
+  // Takes O(n log n) time and about 110 bytes per triangle; keeps no reference to the mesh.
   // REQUIRES: validate(mesh).ok(), at least one triangle. Triangles without area are allowed.
   explicit TriangleTree(const mesh::Mesh& mesh);
 
@@ -39,34 +39,34 @@ class TriangleTree {
   std::uint32_t triangleAt(std::uint32_t place) const noexcept { return order_[place]; }
   std::array<Vector, 3> cornersAt(std::uint32_t place) const noexcept;
 
-  // Nearest point on one triangle.
+  // Returns the point of the triangle at `place` that is nearest to p.
   NearestPoint nearestAt(std::uint32_t place, const Vector& p) const noexcept {
     return nearestOnTriangle(p, cornersAt(place));
   }
 
-  // Finds the nearest point on the whole surface. `hint`: a place that may be near, such as the
-  // last result; it affects only the search time, and which of several equally near triangles is
-  // returned.
+  // Returns the point of the whole surface that is nearest to p. `hint`: place of a triangle that
+  // may be near, such as the last result; it affects only the search time, and which of several
+  // equally near triangles is returned.
   Nearest nearest(const Vector& p, std::uint32_t hint = kNone) const noexcept;
 
-  // Finds where the ray first meets the surface, from either side; kNone if it does not. If it
-  // meets several triangles at the same distance (on their common edge), returns the one that is
-  // visited first, which depends only on the tree and the ray.
+  // Returns where the ray first meets the surface, from either side; `place` is kNone if it does
+  // not. If the ray meets several triangles at the same distance (on their common edge), returns
+  // the triangle that is visited first, which depends only on the tree and the ray.
   Crossing firstAlong(const Ray& ray) const noexcept;
 
  private:
   struct Node {
-    float low[3][2], high[3][2];  // axis, child
-    std::uint32_t child[2];       // a node; if count is not 0, the first place of a leaf
+    float low[3][2], high[3][2];  // [axis][child]
+    std::uint32_t child[2];       // index of a node; if count is not 0, first place of a leaf
     std::uint32_t count[2];
   };
   static_assert(sizeof(Node) == 64);
 
   class Builder;
 
-  // Visits the leaves whose boxes are nearer than `limit`, which the visits may lower; nearer boxes
-  // first. distancesOf(node) gives the distances of both children's boxes, infinite for an empty
-  // one.
+  // Calls visitLeaf(node, side) for the leaves whose boxes are nearer than `limit`, nearer boxes
+  // first; the calls may lower `limit`. distancesOf(node) returns the distances of both children's
+  // boxes, infinite for an empty box.
   template <typename DistancesOf, typename VisitLeaf>
   void walk(const DistancesOf& distancesOf, const double& limit,
             const VisitLeaf& visitLeaf) const noexcept;

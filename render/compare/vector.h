@@ -1,4 +1,4 @@
-// 3D vectors of doubles.
+// Functions for 3D vectors of doubles.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@ namespace merlin::render::compare {
 
 using Vector = Eigen::Vector3d;
 
-// Adds the products in the order x, y, z. Eigen's dot() adds in an order of its own, which would
-// change the last bit of results.
+// Returns the dot product, with the products added in the order x, y, z. Eigen's dot() uses a
+// different order, which would change the last bit of results.
 inline double dot(const Vector& a, const Vector& b) noexcept {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
 }

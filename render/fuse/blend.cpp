@@ -8,9 +8,9 @@
 namespace merlin::render::fuse {
 namespace {
 
-constexpr int kMostSteps = 256;  // of spreading: the rest keeps 0
+constexpr int kMostSteps = 256;  // limit of spreading steps; vertices not reached keep 0
 
-// A scan's part in a vertex.
+// The contribution of one scan to a vertex.
 struct Share {
   const View* view;
   Sight sight;
@@ -27,14 +27,15 @@ std::vector<Share> sharesOf(std::span<const View> views, double truncation, cons
   for (const View& view : views) {
     const Sight sight = view.at(at);
     if (sight.kind != Sight::Kind::kNear) continue;
-    // In front of a surface, the weight falls as View::at() lets it fall behind the surface.
+    // Makes the weight fall to 0 in front of a surface, as View::at() does behind it.
     const double front = sight.distance > 0 ? 1 - sight.distance / truncation : 1;
     shares.push_back({&view, sight, sight.weight * front});
   }
   return shares;
 }
 
-// Returns component `k` of the plane where the ray meets the surface.
+// Returns component `k` of the plane at the point where the ray meets the surface; `whole`: the
+// value of the nearest pixel instead of an interpolated one.
 double valueAt(const range::Plane& plane, const Sight& sight, std::size_t k, bool whole) {
   const auto at = [&](std::size_t i) {
     return double{plane.values[sight.pixels[i] * plane.dimension + k]};
@@ -46,7 +47,8 @@ double valueAt(const range::Plane& plane, const Sight& sight, std::size_t k, boo
   return sight.shares[0] * at(0) + sight.shares[1] * at(1) + sight.shares[2] * at(2);
 }
 
-// Sets the vertex' values; returns whether any scan has the plane there.
+// Computes the values of a feature at a vertex and stores them in `out`; returns whether any scan
+// has a value there.
 bool setValues(const std::vector<Share>& shares, const Blended& blended, float* out) {
   double weights = 0, best = 0;
   std::array<double, 16> sums{};
@@ -71,8 +73,9 @@ bool setValues(const std::vector<Share>& shares, const Blended& blended, float* 
   return true;
 }
 
-// One step: a vertex without a value gets the mean of its neighbours' values (for labels, the value
-// of the first), if any of them has one. Returns how many vertices got a value.
+// Does one step of spreading: a vertex without a value gets the mean of its neighbours' values (for
+// labels, the value of the first neighbour) if any of them has a value. Returns the number of
+// vertices that got a value.
 std::size_t spreadOnce(const mesh::Mesh& mesh, bool whole, mesh::Feature& feature,
                        std::vector<std::uint8_t>& has) {
   const std::size_t n = feature.dimension;

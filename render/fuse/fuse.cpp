@@ -13,9 +13,9 @@
 namespace merlin::render::fuse {
 namespace {
 
-constexpr double kSteps = 10;              // steps between pixels that an edge of a scan may span
-constexpr std::size_t kPixelBytes = 15;    // of a View
-constexpr std::size_t kMeshedBytes = 120;  // of a pixel meanwhile
+constexpr double kSteps = 10;              // longest edge of a scan, in steps between its pixels
+constexpr std::size_t kPixelBytes = 15;    // bytes per pixel of a View
+constexpr std::size_t kMeshedBytes = 120;  // bytes per pixel while a View is constructed
 
 double medianOf(std::vector<double>& values) {
   if (values.empty()) return 0;
@@ -83,7 +83,8 @@ Result<Grid> gridOf(std::span<const View> views, const FuseSettings& settings) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double margin = (settings.truncation + 2) * settings.voxel;
-    // A corner of the lattice lies at whole voxels of the world, whatever the scans.
+    // Aligns the lattice to multiples of the voxel size in world coordinates, whatever the scans
+    // are.
     grid.low[k] = std::floor((grid.low[k] - margin) / settings.voxel) * settings.voxel;
     grid.high[k] += margin;
     longest = std::max(longest, grid.high[k] - grid.low[k]);
@@ -97,7 +98,7 @@ Result<Grid> gridOf(std::span<const View> views, const FuseSettings& settings) {
                   settings.voxel, longest / settings.voxel, kMost, 1.01 * longest / kMost)};
 }
 
-// Returns the vertices' keys in ascending order, each once.
+// Returns the keys of all vertices in ascending order, each once.
 std::vector<std::uint64_t> keysOf(const std::vector<Piece>& pieces) {
   std::size_t count = 0;
   for (const Piece& piece : pieces) count += piece.keys.size();
@@ -109,7 +110,7 @@ std::vector<std::uint64_t> keysOf(const std::vector<Piece>& pieces) {
   return keys;
 }
 
-// Sews the pieces together: vertices on common sides become one.
+// Joins the pieces to one mesh: vertices on common sides become one.
 mesh::Mesh meshOf(const std::vector<Piece>& pieces, const Grid& grid) {
   mesh::Mesh mesh;
   const std::vector<std::uint64_t> keys = keysOf(pieces);
@@ -132,8 +133,8 @@ mesh::Mesh meshOf(const std::vector<Piece>& pieces, const Grid& grid) {
   return mesh;
 }
 
-// Adds normals, weighted by the triangles' areas: marching tetrahedra makes thin triangles, whose
-// normals are rough.
+// Adds the feature "normal", weighted by the triangles' areas, because marching tetrahedra makes
+// thin triangles, whose normals are inaccurate.
 void addNormals(mesh::Mesh& mesh) {
   std::vector<double> sums(mesh.positions.size(), 0);
   const auto at = [&](std::size_t v) {

@@ -16,29 +16,29 @@ namespace merlin::render::fuse {
 
 struct FuseSettings {
   double voxel = 0;       // edge of a voxel [units]
-  double truncation = 3;  // distance from a scan's surface up to which its distances count [voxels]
-  // Longest edge of a scan's surface [units]; nothing: 10 times the step between its pixels, as in
+  double truncation = 3;  // largest distance from a scan's surface that is used [voxels]
+  // Longest edge of a scan's surface [units]; not set: 10 times the step between its pixels, as in
   // `merlin mesh import`.
   std::optional<double> max_edge{};
-  // True makes the surface closed: space that no scan saw counts as inside, and space outside the
+  // If true, the surface is closed: space that no scan saw counts as inside, and space outside the
   // box around all scans as empty.
   bool close = false;
-  // Only with `close`: rays in a window of 3 x 3 pixels, none of which has a return, are assumed to
-  // have gone through empty space.
+  // Only used with `close`: rays in a window of 3 x 3 pixels, none of which has a return, are
+  // assumed to have gone through empty space.
   bool background_is_empty = true;
-  std::size_t memory = 0;  // limit of what fuse() takes in addition to the scans [bytes]
+  std::size_t memory = 0;  // memory limit of fuse(), without the scans [bytes]
 };
 
 struct Fused {
-  // With "normal" and the scans' planes as features; with `close` also "measured": 1 if a scan saw
-  // the surface at the vertex, 0 where the surface was closed. There the other features come from
-  // the neighbours.
+  // The surface, with "normal" and the scans' planes as features. With FuseSettings::close, it also
+  // has the feature "measured": 1 if a scan saw the surface at the vertex, 0 where the surface was
+  // closed artificially; there the other features come from the neighbours.
   mesh::Mesh mesh;
-  std::size_t blocks = 0;       // blocks of 8 x 8 x 8 voxels that the surface crosses
-  std::size_t looked_at = 0;    // blocks whose values were computed
-  std::size_t measured = 0;     // vertices that a scan saw
+  std::size_t blocks = 0;       // number of blocks of 8 x 8 x 8 voxels that the surface crosses
+  std::size_t looked_at = 0;    // number of blocks whose values were computed
+  std::size_t measured = 0;     // number of vertices that a scan saw
   std::size_t split = 0;        // vertices added where open surfaces touched in a point or an edge
-  std::size_t not_numbers = 0;  // vertices left with 0 in some feature, as no neighbour has one
+  std::size_t not_numbers = 0;  // vertices with 0 in some feature, as no neighbour has a value
 };
 
 // Returns why fuse() cannot use a scan, as the end of a message; empty if it can.

@@ -29,7 +29,7 @@ Projection::Projection(const range::RangeImage& image)
 }
 
 std::optional<Place> Projection::inside(double column, double row) const {
-  // A point on the first or the last row or column belongs to the cell beside it.
+  // Allows for rounding: a point on the first or last row or column belongs to the adjacent cell.
   constexpr double kRounding = 1e-9;
   if (!(row >= -kRounding) || !(row <= height_ - 1 + kRounding)) return std::nullopt;
   if (wraps_) {

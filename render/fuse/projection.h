@@ -23,7 +23,7 @@ inline Point minus(const Point& a, const Point& b) noexcept {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-// A position in the image, in pixels from the middle of the first pixel.
+// A position in the image, in pixels from the centre of the first pixel.
 struct Place {
   double column = 0, row = 0;
 };
@@ -33,9 +33,9 @@ class Projection {
   // REQUIRES: faultOf(image) and inverseFaultOf(image) are empty.
   explicit Projection(const range::RangeImage& image);
 
-  // Returns the position in the image of the ray through the point (in the scanner's coordinates);
-  // nothing if it is in no cell of 2 x 2 pixels. In a full turn the column may be between the last
-  // pixel and the width.
+  // Returns the position in the image of the ray through a point (in the scanner's coordinates);
+  // nothing if the position is in no cell of 2 x 2 pixels. If the image covers a full turn, the
+  // column may be between the last pixel and the width.
   std::optional<Place> at(const Point& point) const;
 
  private:
@@ -45,12 +45,14 @@ class Projection {
   range::Scanner scanner_;
   double width_, height_;
   bool wraps_;
-  double per_column_ = 1, per_row_ = 1;  // columns and rows per radian, or per unit of tangent
-  std::vector<range::Beam> beams_{};     // kSpinning
+  // Columns and rows per radian, for kPinhole per unit of tangent.
+  double per_column_ = 1, per_row_ = 1;
+  std::vector<range::Beam> beams_{};  // one per row; only for kSpinning
 };
 
-// Returns why points cannot be projected into an image that has no other fault. Empty if they can,
-// i.e. if the scanner is orthogonal, pinhole, or spinning with rows from top to bottom. O(rows).
+// Returns why points cannot be projected into an image for which range::faultOf() finds no fault,
+// as the end of a message. Empty if they can, i.e. if the scanner is orthogonal, pinhole, or
+// spinning with rows from top to bottom. O(rows).
 std::string inverseFaultOf(const range::RangeImage& image);
 
 }  // namespace merlin::render::fuse

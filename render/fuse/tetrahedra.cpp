@@ -7,13 +7,15 @@
 namespace merlin::render::fuse {
 namespace {
 
-// The corners of a cell as bits: 1 is x, 2 is y, 4 is z. A tetrahedron goes from 0 to 7 by one
-// axis after the other; the last two corners of the odd orders are swapped, so that all six have
-// the same orientation: the determinant of the edges from the first corner is positive.
+// Six tetrahedra of a cell. The bits of a corner's number are its coordinates: 1 is x, 2 is y, 4 is
+// z. A tetrahedron goes from corner 0 to 7 along one axis after another; the last two corners of
+// the odd orders are swapped, so that all six have the same orientation: the determinant of the
+// edges from the first corner is positive.
 constexpr unsigned kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
                                         {0, 1, 7, 5}, {0, 2, 7, 3}, {0, 4, 7, 6}};
 
-// A vertex keeps this share of its edge from both ends, so that no triangle has two equal corners.
+// A vertex is at least this share of its edge away from both ends, so that no triangle has two
+// equal corners.
 constexpr float kMargin = 0.02F;
 
 constexpr std::size_t indexOf(std::size_t x, std::size_t y, std::size_t z) {
@@ -52,13 +54,14 @@ class Marching {
     for (const auto& tetrahedron : kTetrahedra) addTetrahedron(tetrahedron, inside, outside);
   }
 
-  // Orders the corners, inside first, by even permutations: then the triangles face outwards.
+  // Adds the triangles of one tetrahedron. Orders its corners, inside first, and tracks whether the
+  // permutation is even, so that the triangles face outwards.
   void addTetrahedron(const unsigned (&t)[4], unsigned inside, unsigned outside) {
     std::array<unsigned, 4> in{}, out{};
     std::size_t ins = 0, outs = 0;
     unsigned swaps = 0;
     for (const unsigned c : t) {
-      if (!((inside | outside) >> c & 1U)) return;  // unknown
+      if (!((inside | outside) >> c & 1U)) return;  // a corner is unknown
       if (inside >> c & 1U) {
         swaps += static_cast<unsigned>(outs);
         in[ins++] = c;
@@ -86,7 +89,8 @@ class Marching {
   }
 
   Vertex vertexOn(const Ends& ends) const {
-    const unsigned low = std::min(ends.first, ends.second);  // a subset of the bits of `high`
+    // Its bits are a subset of those of `high`.
+    const unsigned low = std::min(ends.first, ends.second);
     const unsigned high = std::max(ends.first, ends.second);
     std::uint64_t key = 0;
     for (unsigned k = 3; k-- > 0;) key = key << 20U | (corner_[k] + (low >> k & 1U));
@@ -118,7 +122,7 @@ class Marching {
   const Lattice& block_;
   std::array<float, 8> cell_{};
   Lattice corner_{};
-  std::vector<Vertex> vertices_{};  // three a triangle
+  std::vector<Vertex> vertices_{};  // three per triangle
 };
 
 }  // namespace

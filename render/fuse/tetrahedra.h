@@ -8,20 +8,22 @@
 
 namespace merlin::render::fuse {
 
-inline constexpr std::size_t kCells = 8;             // of a block, along an axis
-inline constexpr std::size_t kCorners = kCells + 1;  // shared with the neighbours
+inline constexpr std::size_t kCells = 8;  // number of cells of a block along an axis
+// Corners along an axis; those at the sides are shared.
+inline constexpr std::size_t kCorners = kCells + 1;
 inline constexpr std::size_t kValues = kCorners * kCorners * kCorners;
-using Lattice = std::array<std::uint32_t, 3>;            // coordinates of a corner, or of a block
-inline constexpr std::uint32_t kMostCorners = 1U << 20;  // along an axis of the lattice
+using Lattice = std::array<std::uint32_t, 3>;            // indices of a corner or of a block
+inline constexpr std::uint32_t kMostCorners = 1U << 20;  // limit of corners along an axis
 
-// Values at the corners of a block, x fastest: positive outside, negative inside, NaN unknown.
+// Values at the corners of a block, with x varying fastest: positive means outside, negative
+// inside, NaN unknown.
 using Values = std::array<float, kValues>;
 
-// The surface in one block.
+// The part of the surface in one block.
 struct Piece {
-  std::vector<std::uint64_t> keys{};       // by vertex, increasing: key of its lattice edge
+  std::vector<std::uint64_t> keys{};       // by vertex: key of its lattice edge, ascending
   std::vector<float> places{};             // by vertex: position along that edge, 0..1
-  std::vector<std::uint32_t> triangles{};  // triangles x 3: index of a vertex of the piece
+  std::vector<std::uint32_t> triangles{};  // triangles x 3: indices of vertices of the piece
 };
 
 // An edge of the lattice, on which a vertex lies: from `corner` to corner + step. Each component of

@@ -11,10 +11,10 @@ namespace merlin::render::fuse {
 namespace {
 
 constexpr double kLeastConfidence = 1e-3;
-// How far behind a surface along the ray, in truncations, an inclined surface still counts: beyond
-// that it need not be plane any more.
+// Largest distance behind a surface along the ray, in truncation distances, at which an inclined
+// surface still counts; farther away it need not be plane any more.
 constexpr double kDeepest = 3;
-// Weight of space that is free only according to neighbouring rays.
+// Weight of space that is known to be free only from neighbouring rays.
 constexpr double kBesides = 0.25;
 
 double length(const Point& p) { return std::sqrt(dot(p, p)); }
@@ -31,7 +31,8 @@ View::View(const range::RangeImage& image, const ViewSettings& settings, const r
   if (most > 0) confidence_ = plane, most_confidence_ = most;
 }
 
-// The triangles are those of `merlin mesh import`: triangulate() says which corners they have.
+// Finds the triangles of the scan's surface. They are the same as in `merlin mesh import`, since
+// triangulate() makes both.
 void View::findSurface(const range::Work& work) {
   cells_.assign(image_.pixels(), 0);
   on_surface_.assign(image_.pixels(), 0);
@@ -50,7 +51,8 @@ void View::findSurface(const range::Work& work) {
     const std::size_t row = std::min({rows[0], rows[1], rows[2]});
     const std::size_t low = std::min({columns[0], columns[1], columns[2]});
     const std::size_t high = std::max({columns[0], columns[1], columns[2]});
-    const std::size_t column = high - low > 1 ? high : low;  // across the ends of a full turn
+    // The cell connects both ends of a full turn.
+    const std::size_t column = high - low > 1 ? high : low;
     unsigned has = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const bool below = rows[k] != row, right = columns[k] != column;
@@ -58,7 +60,7 @@ void View::findSurface(const range::Work& work) {
     }
     cells_[row * image_.width + column] |= static_cast<std::uint8_t>(~has & 15U);
   }
-  range::RangeImage own;  // the same rays without the pose
+  range::RangeImage own;  // the same image without the pose
   own.width = image_.width, own.height = image_.height;
   own.range = image_.range;
   own.geometry = image_.geometry;
@@ -66,8 +68,8 @@ void View::findSurface(const range::Work& work) {
   points_ = range::pointsOf(own, range::partOf(work, 0.8, 1));
 }
 
-// A ray counts as one that met nothing if it lies in a window of 3 x 3 pixels without a return, so
-// that returns that were lost open no tunnel.
+// Marks the rays that met nothing. A ray counts as such if it lies in a window of 3 x 3 pixels
+// without any return, so that single lost returns do not open tunnels.
 void View::findBackground() {
   const std::size_t width = image_.width, height = image_.height;
   background_.assign(image_.pixels(), 0);
@@ -123,19 +125,19 @@ Sight View::at(const Point& point) const {
   const std::uint8_t lacking = cells_[corners[0]];
   if (lacking != 0) {
     Sight sight = onTriangles(corners, lacking, p);
-    if (sight.weight < 0) return besides(corners, in_cell, p);  // the ray passes them
+    if (sight.weight < 0) return besides(corners, in_cell, p);  // the ray misses the triangles
     if (sight.kind == Sight::Kind::kNear) sight.weight *= confidenceAt(sight);
     return sight;
   }
   return besides(corners, in_cell, p);
 }
 
-// Returns the distance from the plane of the triangle that the ray through `p` meets; a negative
-// weight if it meets none.
+// Returns the sight of `p` relative to the triangle that the ray through `p` meets; its weight is
+// negative if the ray meets none. lacking: bit k: the triangle without corner k exists.
 Sight View::onTriangles(const std::array<std::uint32_t, 4>& corners, std::uint8_t lacking,
                         const Point& p) const {
-  // Cells of a spinning scanner have curved sides, but its triangles have not: so a ray slightly
-  // beside a triangle still meets it.
+  // Cells of a spinning scanner have curved sides, but its triangles have straight ones. So a ray
+  // slightly beside a triangle still counts as meeting it.
   constexpr double kOutside = -0.02;
   Sight sight;
   double best = kOutside;
@@ -159,7 +161,8 @@ Sight View::onTriangles(const std::array<std::uint32_t, 4>& corners, std::uint8_
   return sight.weight < 0 ? sight : fromPlane(corner, p, sight);
 }
 
-// Completes a sight of `p` by its distance from the plane of these corners.
+// Completes the sight of `p` with its distance from the plane of these corners, and its kind and
+// weight.
 Sight View::fromPlane(const std::array<Point, 3>& corner, const Point& p, Sight sight) const {
   Point normal = cross(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
   const double area = length(normal), far = length(p);
@@ -172,15 +175,16 @@ Sight View::fromPlane(const std::array<Point, 3>& corner, const Point& p, Sight 
     sight.kind = Sight::Kind::kFree;
     return sight;
   }
-  const double depth = -sight.distance / settings_.truncation;  // behind the surface
+  // Depth behind the surface, in truncation distances.
+  const double depth = -sight.distance / settings_.truncation;
   if (depth >= 1 || depth >= kDeepest * cosine) return {};
   sight.kind = Sight::Kind::kNear;
   sight.weight = cosine * cosine * (depth > 0 ? 1 - depth : 1);
   return sight;
 }
 
-// For a ray that meets no surface in its cell: `p` is free if it is nearer than all returns of the
-// cell, or if the ray's nearest pixel met nothing.
+// Returns the sight of `p` if its ray meets no surface in its cell: `p` is free if it is nearer
+// than all returns of the cell, or if the ray of the nearest pixel met nothing.
 Sight View::besides(const std::array<std::uint32_t, 4>& corners, const Place& in_cell,
                     const Point& p) const {
   Sight free;
@@ -206,7 +210,7 @@ double View::confidenceAt(const Sight& sight) const {
   for (std::size_t k = 0; k < 3; ++k)
     sum += sight.shares[k] * double{confidence_->values[sight.pixels[k]]};
   const double share = sum / most_confidence_;
-  return share > kLeastConfidence ? std::min(share, 1.0) : kLeastConfidence;  // NaN: the least
+  return share > kLeastConfidence ? std::min(share, 1.0) : kLeastConfidence;  // NaN gives the least
 }
 
 }  // namespace merlin::render::fuse

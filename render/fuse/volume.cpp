@@ -9,7 +9,7 @@
 namespace merlin::render::fuse {
 namespace {
 
-constexpr unsigned kBits = 20;  // of a block's coordinate in its key
+constexpr unsigned kBits = 20;  // bits of each block coordinate in a key
 
 std::uint64_t keyOf(const Lattice& block) {
   return std::uint64_t{block[2]} << 2 * kBits | std::uint64_t{block[1]} << kBits | block[0];
@@ -21,8 +21,8 @@ Lattice blockOf(std::uint64_t key) {
   return block;
 }
 
-// Memory [bytes] of a block with 64 cells of surface, until the mesh with its normals is there; and
-// in addition for each float of a feature.
+// Memory [bytes] of a block with 64 cells of surface, until the mesh with its normals is finished;
+// and the additional memory for each float of a feature.
 constexpr std::size_t kBlockBytes = 20 << 10, kValueBytes = 1 << 10;
 
 }  // namespace
@@ -39,8 +39,8 @@ float Volume::valueAt(const Lattice& corner) const {
     near += sight.weight;
     sum += sight.weight * sight.distance;
   }
-  // Scans that saw `p` as free outvote those that put it inside: this removes spikes, and what
-  // moved.
+  // Scans that saw `p` as free outvote scans that put it inside. This removes spikes and objects
+  // that moved between scans.
   const bool outvoted = sum < 0 && free > near;
   if (near > 0 && !outvoted)
     return static_cast<float>(sum / near / (settings_.truncation * grid_.voxel));
@@ -60,7 +60,8 @@ void Volume::findSeeds() {
   std::sort(queue_.begin(), queue_.end());
 }
 
-// Computes the values of a block and its surface; returns the sides that the surface crosses.
+// Computes the values of a block and its surface; returns the sides that the surface crosses, as
+// crossedSides() does.
 std::uint8_t Volume::fill(std::uint64_t key, Piece& piece) const {
   const Lattice block = blockOf(key);
   Values values;
@@ -77,14 +78,15 @@ std::uint8_t Volume::fill(std::uint64_t key, Piece& piece) const {
   return crossedSides(values);
 }
 
-// Appends the blocks beyond the crossed sides of the blocks from `from` on.
+// Appends the neighbours of blocks to the queue. sides[i]: the crossed sides of block queue_[from +
+// i]; the blocks beyond these sides are appended.
 void Volume::grow(const std::vector<std::uint8_t>& sides, std::size_t from) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     for (unsigned side = 0; side < 6; ++side) {
       if (!(sides[i] >> side & 1U)) continue;
       Lattice block = blockOf(queue_[from + i]);
       std::uint32_t& x = block[side / 2];
-      if (side % 2 == 0 && x == 0) continue;  // outside the grid there is no surface
+      if (side % 2 == 0 && x == 0) continue;  // no surface lies outside the grid
       x += side % 2 == 0 ? ~0U : 1U;
       if (x >= kMostCorners / kCells - 1) continue;
       if (const std::uint64_t key = keyOf(block); seen_.insert(key).second) queue_.push_back(key);
@@ -105,7 +107,7 @@ Result<Ok> Volume::checkMemory(std::size_t blocks) const {
 }
 
 Result<Ok> Volume::run(const range::Work& work) {
-  constexpr std::size_t kAtOnce = 1024;  // blocks between two looks at the memory
+  constexpr std::size_t kAtOnce = 1024;  // number of blocks between two checks of the memory limit
   findSeeds();
   if (const auto fits = checkMemory(queue_.size()); !fits) return fits;
   std::size_t done = 0, blocks = 0;

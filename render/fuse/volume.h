@@ -1,4 +1,4 @@
-// Volume: the blocks of voxels that the surface crosses, found by following the surface. Private to
+// Volume: finds the blocks of voxels that the surface crosses, by following the surface. Private to
 // render/fuse.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace merlin::render::fuse {
 
-// A lattice over the world.
+// A lattice of corners in world coordinates.
 struct Grid {
   Point low{}, high{};  // box that may contain the surface
   double voxel = 1;
@@ -34,7 +34,8 @@ struct Grid {
   }
 };
 
-// Thread-bound; run() may be called once. Keeps references to views, settings and grid.
+// Thread-bound; run() may be called once. Keeps references to views, settings and grid, which must
+// outlive it.
 class Volume {
  public:
   Volume(std::span<const View> views, const FuseSettings& settings, const Grid& grid,
@@ -45,8 +46,8 @@ class Volume {
   // surface through their sides. Errors: kInvalidArgument if the memory limit does not suffice.
   Result<Ok> run(const range::Work& work);
 
-  // Returns the signed distance at a corner, in truncations: 1 in free space, negative inside, NaN
-  // if unknown. Pure.
+  // Returns the signed distance at a corner, in truncation distances: 1 in free space, negative
+  // inside, NaN if unknown. Pure.
   float valueAt(const Lattice& corner) const;
 
   const std::vector<Piece>& pieces() const noexcept { return pieces_; }  // in a fixed order
@@ -62,7 +63,7 @@ class Volume {
   std::span<const View> views_;
   const FuseSettings& settings_;
   const Grid& grid_;
-  std::size_t values_;  // floats of features per vertex
+  std::size_t values_;  // number of feature values (floats) per vertex
   std::unordered_set<std::uint64_t> seen_{};
   std::vector<std::uint64_t> queue_{};  // blocks in the order in which they are filled
   std::vector<Piece> pieces_{};

@@ -11,7 +11,8 @@
 namespace merlin::render::import {
 namespace {
 
-// A file in memory, read-only, without a byte order mark that a text editor put before it.
+// A read-only file in memory, without the byte order mark that a text editor may have put before
+// it.
 class MappedStream final : public Assimp::IOStream {
  public:
   explicit MappedStream(MappedFile file) : file_(std::move(file)) {}
@@ -27,7 +28,8 @@ class MappedStream final : public Assimp::IOStream {
   aiReturn Seek(std::size_t offset, aiOrigin from) override {
     const std::size_t size = FileSize();
     const std::size_t base = from == aiOrigin_SET ? 0 : from == aiOrigin_CUR ? at_ : size;
-    const std::size_t to = base + offset;  // a negative offset wraps, as it should
+    // A negative offset wraps around, which gives the right sum.
+    const std::size_t to = base + offset;
     if (to > size) return aiReturn_FAILURE;
     at_ = to;
     return aiReturn_SUCCESS;

@@ -1,4 +1,4 @@
-// Gives assimp access to the model and its companion files, and to no other file.
+// ModelFolder: gives assimp access to the model and its companion files, and to no other file.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace merlin::render::import {
 
-// Read-only. Shows the model under a name whose ending matches its format, and the companion files
-// in the model's folder or below (companion_path.h). `file` must outlive it.
+// A read-only file system for assimp. It shows the model under a name whose ending matches its
+// format, and the companion files in the model's folder or below (companion_path.h). `file` must
+// outlive it.
 class ModelFolder final : public Assimp::IOSystem {
  public:
   explicit ModelFolder(const ModelFile& file);

@@ -1,5 +1,5 @@
-// Reads models with assimp: glTF, COLLADA, FBX, 3DS and the others that input_kinds.cpp of
-// daemon/cli/mesh sends here.
+// Reads models with assimp: glTF, COLLADA, FBX, 3DS and other formats that input_kinds.cpp of
+// daemon/cli/mesh assigns to this reader.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -29,7 +29,7 @@
 namespace merlin::render::import {
 namespace {
 
-// Reports assimp's reading as the first half of the progress. assimp owns the object.
+// Reports assimp's progress as the first half of the whole progress. assimp owns the object.
 class Progress final : public Assimp::ProgressHandler {
  public:
   explicit Progress(const OnTriangles& on_triangles) : on_triangles_(on_triangles) {}
@@ -53,13 +53,13 @@ image::Wrap wrapOf(aiTextureMapMode mode) {
   return ends ? image::Wrap::kClamp : image::Wrap::kRepeat;
 }
 
-// What the triangles of a mesh look like.
+// The appearance of the triangles of a mesh.
 struct Material {
   std::array<float, 3> colour = kPlain;
-  aiColor4D factor{1, 1, 1, 1};  // of the vertices' colours
+  aiColor4D factor{1, 1, 1, 1};  // factor of the vertices' colours
   mesh::SurfaceTexture texture;
-  unsigned texcoords = 0;  // which of the mesh's texture coordinates
-  // Transform of these coordinates: each is multiplied by `scale`, and then `offset` is added.
+  unsigned texcoords = 0;  // index of the mesh's set of texture coordinates
+  // Transform of the texture coordinates: each is multiplied by `scale`, then `offset` is added.
   std::array<float, 2> scale = {1, 1}, offset{};
 };
 
@@ -132,8 +132,9 @@ class SceneReader {
     return textures_.ofPixels(path.C_Str(), std::move(pixels));
   }
 
-  // True for a glTF material with KHR_materials_pbrSpecularGlossiness. Its own colour and texture
-  // are the diffuse ones; its base colour is meant for readers without the extension, or is white.
+  // Returns true for a glTF material with KHR_materials_pbrSpecularGlossiness. Its actual colour
+  // and texture are the diffuse ones; its base colour is white, or is meant for readers without the
+  // extension.
   static bool isSpecularGlossiness(const aiMaterial& material) {
     ai_real glossiness = 0;
     return material.Get(AI_MATKEY_GLOSSINESS_FACTOR, glossiness) == aiReturn_SUCCESS;
@@ -171,8 +172,8 @@ class SceneReader {
     return m;
   }
 
-  // A glTF material's colour is multiplied with its texture. In other formats, it varies what
-  // having both means.
+  // Multiplies a glTF material's texture by the material's colour. In other formats, the meaning of
+  // having both varies.
   void tint(const aiMaterial& material, Material& m) {
     aiColor4D c;
     if (!m.texture.picture || !baseColour(material, c)) return;
@@ -182,9 +183,10 @@ class SceneReader {
       m.texture.picture = textures_.tinted(*m.texture.picture, factor);
   }
 
-  // For glTF, assimp gives the transform for coordinates with v upwards. assimp's own step
-  // (TransformUVCoords) does something else, about the picture's middle. For other formats the
-  // meaning is unknown, so their transforms are only counted.
+  // Takes over the transform of texture coordinates. For glTF, assimp provides it for coordinates
+  // with v upwards; assimp's own step (TransformUVCoords) is not used, since it transforms
+  // differently, about the picture's middle. For other formats the meaning is unknown, so their
+  // transforms are only counted.
   void takeTransform(const aiMaterial& material, aiTextureType type, Material& m) {
     aiUVTransform t;
     const bool there =
@@ -199,8 +201,9 @@ class SceneReader {
     m.offset = {t.mTranslation.x, t.mTranslation.y};
   }
 
-  // Collects the nodes with the transforms that take their coordinates to the model's. These are
-  // relative to an origin near the first node with a mesh, since a node may move a map far away.
+  // Collects the nodes with the transforms from their coordinates to the model's. Model coordinates
+  // are relative to an origin near the first node with a mesh, since a node may move a map far
+  // away.
   void findNodes() {
     findNodesFrom(scene_.mRootNode->mTransformation);
     const auto first =
@@ -232,8 +235,8 @@ class SceneReader {
     }
   }
 
-  // Returns the positions of a mesh's vertices in the model: moved by their bones, or by the mesh's
-  // node if a vertex has no bone.
+  // Returns the positions of a mesh's vertices in the model: transformed by their bones, or by the
+  // mesh's node if a vertex has no bone.
   std::vector<aiVector3D> positionsOf(const aiMesh& mesh, const aiMatrix4x4& to_model) const {
     std::vector<aiVector3D> at(mesh.mNumVertices);
     std::vector<float> held(mesh.mNumVertices);
@@ -258,8 +261,8 @@ class SceneReader {
     return at;
   }
 
-  // Returns the colours of a mesh's vertices; null if it has none. assimp gives an AMF file without
-  // colours black, transparent vertices, which count as none.
+  // Returns the colours of a mesh's vertices; null if it has none. For an AMF file without colours,
+  // assimp makes black, transparent vertices; these count as vertices without colours.
   const aiColor4D* coloursOf(const aiMesh& mesh) const {
     const aiColor4D* const colours = mesh.mColors[0];
     if (!colours || !amf_) return colours;
@@ -268,7 +271,8 @@ class SceneReader {
     return any ? colours : nullptr;
   }
 
-  // Only glTF defines what a texture and vertex colours together mean.
+  // Returns whether a glTF mesh has both a texture and vertex colours other than white. Only glTF
+  // defines the meaning of this combination.
   bool hasColouredPicture(const aiMesh& mesh, const Material& material) const {
     const aiColor4D* const colours = mesh.mColors[0];
     return linear_ && colours && material.texture.picture &&
@@ -312,7 +316,7 @@ class SceneReader {
       std::array<Corner, 3> corners;
       for (unsigned k = 0; k < 3; ++k) {
         const unsigned v = face.mIndices[mirrored ? 2 - k : k];
-        if (v >= mesh.mNumVertices) continue;  // ValidateDataStructure refuses it
+        if (v >= mesh.mNumVertices) continue;  // cannot occur: ValidateDataStructure rejects it
         corners[k] = cornerOf(mesh, material, colours ? colours + v : nullptr, v);
         if (first_row + v < rows_.size()) corners[k].row = rows_[first_row + v];
         corners[k].position = {at[v].x, at[v].y, at[v].z};
@@ -325,7 +329,7 @@ class SceneReader {
   }
 
   const aiScene& scene_;
-  bool linear_;  // colours are proportional to light
+  bool linear_;  // whether colours are proportional to light
   bool amf_;
   ModelTextures textures_;
   const OnTriangles& on_triangles_;
@@ -334,7 +338,8 @@ class SceneReader {
   std::map<std::string, aiMatrix4x4> by_name_;
   mesh::Origin origin_{};
   ModelBuilder builder_;
-  // By vertex of all meshes: its row in the builder's values, or empty; and by mesh, its first one.
+  // rows_: for each vertex of all meshes, its row in the builder's values; empty if there are none.
+  // first_rows_: for each mesh, the index of its first vertex in rows_.
   std::vector<std::uint32_t> rows_;
   std::vector<std::size_t> first_rows_;
   std::size_t others_ = 0, meshes_ = 0, transforms_ = 0, coloured_pictures_ = 0;
@@ -343,7 +348,8 @@ class SceneReader {
 
 bool isGltf(const ModelFile& file) { return file.format == "gltf" || file.format == "glb"; }
 
-// A glTF file, and what its JSON says; the latter refers to the former.
+// A glTF file and the contents that its JSON declares; `promised` refers to `buffers`, and
+// `buffers` to `file`.
 struct CheckedGltf {
   MappedFile file{};
   std::optional<GltfBuffers> buffers{};
@@ -353,21 +359,22 @@ struct CheckedGltf {
 Result<Ok> checkFirst(const ModelFile& file, CheckedGltf& checked) {
   if (!isGltf(file)) return Ok{};
   auto bytes = MappedFile::open(file.path);
-  if (!bytes) return Ok{};  // assimp will report it
+  if (!bytes) return Ok{};  // assimp will report the error
   checked.file = *std::move(bytes);
   checked.buffers.emplace(checked.file.text(), mesh::folderOf(file.path));
   auto promised = checkGltf(checked.file.text(), *checked.buffers);
   if (!promised) return promised.error();
   checked.promised = *std::move(promised);
-  if (checked.promised.own.empty()) {  // no room is taken beside assimp's
+  if (checked.promised.own.empty()) {  // frees the memory before assimp reads the file
     checked.buffers.reset();
     checked.file = MappedFile();
   }
   return Ok{};
 }
 
-// Matches each mesh with a primitive that has as many triangles. Returns the primitives that are
-// left; `lossy`: the meshes without a match. Both are sorted by number of triangles.
+// Matches each mesh with a primitive that has the same number of triangles. Returns the primitives
+// without a match; `lossy` receives the meshes without a match. Both are sorted by number of
+// triangles.
 std::vector<GltfPrimitive> unmatched(std::vector<GltfPrimitive> promised,
                                      std::vector<const aiMesh*> meshes,
                                      std::vector<const aiMesh*>& lossy) {
@@ -387,9 +394,10 @@ std::vector<GltfPrimitive> unmatched(std::vector<GltfPrimitive> promised,
   return left;
 }
 
-// assimp makes a mesh of each primitive that a node shows, in the order in which it comes to them,
-// and leaves out triangles with an index out of range. So each of its meshes has to have as many
-// triangles as one of the file's primitives, each of which stands for one mesh.
+// Checks that assimp has dropped no triangles. assimp makes a mesh of each primitive that a node
+// shows, in the order in which it reaches them, and drops triangles with an index out of range. So
+// each of its meshes must have the same number of triangles as one of the file's primitives, each
+// of which corresponds to one mesh.
 Result<Ok> checkTriangles(std::vector<GltfPrimitive> promised, const aiScene& scene) {
   std::vector<const aiMesh*> meshes, lossy;
   for (std::size_t i = 0; i < scene.mNumMeshes; ++i) {
@@ -421,7 +429,7 @@ std::string namedUnit(const ModelFile& file) {
   }
   if (file.format != "3mf") return {};
   const std::string named = unitOf(beginningOf3mf(file.path, kEnough), "model");
-  return named.empty() ? "millimeter" : named;  // 3MF's default
+  return named.empty() ? "millimeter" : named;  // the default of 3MF
 }
 
 // Returns a note about the attributes that are left out; empty if there are none.
@@ -442,7 +450,8 @@ std::string noteOf(const std::set<std::string>& own_attributes) {
       names);
 }
 
-// Returns a note for coordinates that are not converted to metres: what a person can do about it.
+// Returns a note for coordinates that are not converted to metres, with the option that converts
+// them.
 std::string noteOf(const std::string& unit) {
   const double metres = metresPer(unit);
   const std::string way = metres == 0 || metres == 1
@@ -457,7 +466,7 @@ Result<BuiltModel> readByAssimp(const ModelFile& file, const OnTriangles& on_tri
   CheckedGltf checked;
   if (const auto good = checkFirst(file, checked); !good) return good.error();
   Assimp::Importer importer;
-  auto* const folder = new ModelFolder(file);  // the importer will own it
+  auto* const folder = new ModelFolder(file);  // the importer takes ownership
   importer.SetIOHandler(folder);
   importer.SetProgressHandler(new Progress(on_triangles));
   const aiScene* const scene =

@@ -24,20 +24,23 @@ bool sameFeatures(const GltfValues& a, const GltfValues& b) {
   });
 }
 
-// Finds what a file says of the vertices of assimp's meshes. They are recognised by their places,
-// in the same order, since assimp's meshes need not be in the order of the file's primitives.
+// Finds the file's values for the vertices of assimp's meshes. Meshes are recognised by the
+// positions of their vertices, in the same order, since assimp's meshes need not be in the order of
+// the file's primitives.
 class ValueFinder {
  public:
   explicit ValueFinder(const std::vector<GltfValues>& own) {
     for (const GltfValues& values : own) {
-      // A first one and one that differs say all: a file may have thousands of equal parts.
+      // Two entries suffice, the first one and one that differs: a file may have thousands of equal
+      // parts.
       auto& there = by_place_[hashOf(floatsOf(values.positions))];
       if (there.empty() || (there.size() == 1 && !sameFeatures(*there[0], values)))
         there.push_back(&values);
     }
   }
 
-  // Null if nothing is known of the mesh, or if primitives at the same places differ.
+  // Returns the values of a mesh; null if the file has none for it, or if primitives at the same
+  // positions have different values.
   const GltfValues* find(const aiMesh& mesh) const {
     std::vector<float> places;
     places.reserve(3 * std::size_t{mesh.mNumVertices});
@@ -64,7 +67,7 @@ class ValueFinder {
   std::map<std::uint64_t, std::vector<const GltfValues*>> by_place_;
 };
 
-// Keeps of `features` those that `others` have as well.
+// Removes from `features` those that `others` does not have.
 void keepCommon(const std::vector<GltfFeature>& others, std::vector<GltfFeature>& features) {
   std::erase_if(features, [&](const GltfFeature& f) {
     return std::ranges::find(others, f.name, &GltfFeature::name) == others.end();

@@ -11,10 +11,10 @@
 namespace merlin::render::import {
 namespace {
 
-constexpr double kMostShapes = 1e7;  // each counted as often as it is used
+constexpr double kMostShapes = 1e7;  // limit of shapes, each counted as often as it is used
 
-// Walks a graph whose nodes may have several parents, and finds what no traversal could finish: a
-// node below itself, or shapes that are used too often.
+// Traverses a graph whose nodes may have several parents, and finds structures that no traversal
+// could finish: a node below itself, or shapes that are used too often.
 class GraphCheck {
  public:
   Result<Ok> run(SoNode* root) {
@@ -46,7 +46,7 @@ class GraphCheck {
 
  private:
   void enter(SoNode* node) {
-    shapes_[node] = -1;  // on the path
+    shapes_[node] = -1;  // marks a node on the current path
     path_.emplace_back(node, 0);
     sums_.push_back(node->isOfType(SoShape::getClassTypeId()) ? 1 : 0);
   }
@@ -60,7 +60,7 @@ class GraphCheck {
 
   std::vector<std::pair<SoNode*, int>> path_;
   std::vector<double> sums_;
-  std::unordered_map<SoNode*, double> shapes_;  // below a node; -1: not known yet
+  std::unordered_map<SoNode*, double> shapes_;  // number of shapes below a node; -1: not known yet
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Checks that a traversal of Coin's scene graph ends.
+// Checks that a traversal of Coin's scene graph terminates.
 #pragma once
 
 #include "daemon/base/result.h"
@@ -7,8 +7,8 @@ class SoNode;
 
 namespace merlin::render::import {
 
-// errors   kMalformed: a node is its own descendant, or shared nodes multiply to over 10^7 shapes.
-// cost     O(n) for n nodes; a shared node is visited once
+// Checks the graph below `root`. Errors: kMalformed, if a node is its own descendant, or if shared
+// nodes multiply to more than 10^7 shapes. O(n) for n nodes, since a shared node is visited once.
 Result<Ok> checkGraphEnds(SoNode* root);
 
 }  // namespace merlin::render::import

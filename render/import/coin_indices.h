@@ -9,6 +9,8 @@ class SoShape;
 
 namespace merlin::render::import {
 
+// Checks the indices of a shape.
+//
 // shape    is about to be drawn by the action. Coordinates, colours and texture coordinates that it
 //          does not have itself are taken from the action's state. Normals are not checked.
 // errors   kMalformed: an index or a number of corners is beyond the existing values, or there are

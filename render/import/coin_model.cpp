@@ -52,14 +52,14 @@
 namespace merlin::render::import {
 namespace {
 
-// Coin's complaints about the file, one line each. Static, since Coin has one handler for the
-// process, which reads only one file.
+// Coin's messages about the file, one line each. The list is static, since Coin has one message
+// handler per process; the process reads only one file.
 std::vector<std::string>& complaints() {
   static std::vector<std::string> all;
   return all;
 }
 
-// Keeps a complaint, "Coin read error: WHAT\n\tOccurred at line 4 in PATH", as one line.
+// Stores a message, "Coin read error: WHAT\n\tOccurred at line 4 in PATH", as one line.
 void complain(const SoError* error, void*) {
   std::string text = error->getDebugString().getString();
   for (std::size_t at = 0; (at = text.find("\n\t", at)) != std::string::npos;)
@@ -70,7 +70,7 @@ void complain(const SoError* error, void*) {
   text.erase(std::min(text.find(" in any of the following directories"), text.size()));
   if (text.starts_with("Could not read texture file") ||
       text.find("SbImage::readFile()") != std::string::npos)
-    return;  // ModelTextures reads them
+    return;  // ModelTextures reads the texture files
   if (complaints().size() < 4) complaints().push_back(std::move(text));
 }
 
@@ -86,7 +86,7 @@ class NodeReference {
   SoNode* node_;
 };
 
-// Returns all nodes of a type, each once.
+// Returns all nodes of a type below `root`, each once.
 template <typename Node>
 std::vector<Node*> nodesOf(SoNode* root) {
   SoSearchAction search;
@@ -97,7 +97,7 @@ std::vector<Node*> nodesOf(SoNode* root) {
   std::vector<Node*> nodes;
   std::unordered_set<const SoNode*> known;
   for (int i = 0; i < search.getPaths().getLength(); ++i) {
-    // The whole path: nodes inside VRML's nodes are hidden from others.
+    // Uses the full path, because nodes inside VRML's nodes are hidden from SoPath.
     auto* const path = static_cast<SoFullPath*>(search.getPaths()[i]);
     auto* const node = static_cast<Node*>(path->getTail());
     if (known.insert(node).second) nodes.push_back(node);
@@ -145,13 +145,13 @@ class GraphReader {
  private:
   static GraphReader& of(void* self) { return *static_cast<GraphReader*>(self); }
 
-  // Coin reads no image files here. Instead, a texture gets one pixel, by whose address the
-  // traversal recognises it.
+  // Replaces the image file of each texture by a single pixel, so that Coin reads no image files.
+  // The traversal recognises the texture by the address of the pixel.
   void prepareTextures(SoNode* root) {
     constexpr unsigned char kPixel[3] = {255, 255, 255};
     for (SoTexture2* const node : nodesOf<SoTexture2>(root)) {
       const std::string name = node->filename.getValue().getString();
-      if (name.empty()) continue;  // it has pixels of its own
+      if (name.empty()) continue;  // its pixels are in the file itself
       const image::ImageFile* const image = textures_.named(name);
       node->filename.setValue("");
       if (!image) continue;
@@ -174,7 +174,7 @@ class GraphReader {
   }
 
   // Returns the image of a texture whose pixels are in the file itself. `bytes`: rows from the
-  // lowest, as Coin stores them.
+  // lowest to the highest, as Coin stores them.
   const image::ImageFile* inlineImage(const unsigned char* bytes, const SbVec2s& size,
                                       int components) {
     image::ImageFile image{size[0], size[1], {}};
@@ -203,7 +203,8 @@ class GraphReader {
     return {found->second, wrapOf(action.getTextureWrapS()), wrapOf(action.getTextureWrapT())};
   }
 
-  // Normals are computed anew, so a shape's own, whatever their indices, are not needed.
+  // Makes Coin ignore a shape's normals, whatever their indices are. They are not needed, since
+  // MERLIN computes normals from the surface.
   static SoCallbackAction::Response leaveOutNormals(void*, SoCallbackAction* action,
                                                     const SoNode* node) {
     SoState* const state = action->getState();
@@ -241,7 +242,7 @@ class GraphReader {
     return name.empty() ? std::string(type) : fmt::format("{} '{}'", type, name);
   }
 
-  // Returns whether a VRML 97 node's faces are clockwise, which Coin does not pass on; nothing for
+  // Returns whether a VRML 97 node's faces are clockwise, which Coin does not provide; nothing for
   // other nodes.
   static std::optional<bool> clockwiseOf(const SoNode& node) {
     if (const auto* const faces = dynamic_cast<const SoVRMLIndexedFaceSet*>(&node))
@@ -251,8 +252,8 @@ class GraphReader {
     return std::nullopt;
   }
 
-  // Returns the colours of an ElevationGrid, which Coin does not make its material; null if it has
-  // none.
+  // Returns the colours of an ElevationGrid, which Coin does not apply as its material; null if it
+  // has none.
   static const SoMFColor* coloursOf(const SoVRMLElevationGrid& grid) {
     const auto* const colours = dynamic_cast<const SoVRMLColor*>(grid.color.getValue());
     return colours && colours->color.getNum() > 0 ? &colours->color : nullptr;
@@ -263,11 +264,12 @@ class GraphReader {
     return SoCallbackAction::PRUNE;
   }
 
-  // Returns the colour of an index; if that is too large, the last colour, as Coin draws it.
+  // Returns the colour with this index; if the index is too large, the last colour, as Coin draws
+  // it.
   SbColor colourOf(const SoCallbackAction& action, int index) const {
     const auto within = [&index](int number) { return std::clamp(index, 0, number - 1); };
     if (grid_colours_) {
-      // The grid's faces are squares of two triangles; Coin's own index is that of their row.
+      // A face of the grid is a square of two triangles; Coin's own index counts only rows.
       if (!grid_->colorPerVertex.getValue()) index = drawn_ / 2;
       return (*grid_colours_)[within(grid_colours_->getNum())];
     }
@@ -275,7 +277,8 @@ class GraphReader {
     const int number = SoLazyElement::getInstance(state)->getNumDiffuse();
     const SbColor diffuse =
         number > 0 ? SoLazyElement::getDiffuse(state, within(number)) : SbColor(0, 0, 0);
-    // In VRML, a black diffuse and another emissive colour mean a colour without shading.
+    // In VRML, a black diffuse colour with an emissive colour that is not black means a colour
+    // without shading.
     const SbColor& emission = SoLazyElement::getEmissive(state);
     const bool glows = diffuse == SbColor(0, 0, 0) && emission != SbColor(0, 0, 0);
     return glows ? emission : diffuse;
@@ -296,7 +299,8 @@ class GraphReader {
   static void takeTriangle(void* self, SoCallbackAction* action, const SoPrimitiveVertex* a,
                            const SoPrimitiveVertex* b, const SoPrimitiveVertex* c) {
     GraphReader& reader = of(self);
-    // Only now do the action's material and texture belong to this shape.
+    // At the first triangle, the action's material and texture are those of this shape; not
+    // earlier.
     if (!std::exchange(reader.begun_, true)) {
       const mesh::SurfaceTexture texture = reader.textureOf(*action);
       reader.textured_ = texture.picture != nullptr;
@@ -326,7 +330,7 @@ class GraphReader {
   ModelBuilder builder_;
   std::unordered_map<const unsigned char*, const image::ImageFile*> pictures_;
   std::size_t shapes_ = 0, others_ = 0, unmade_ = 0;
-  Result<Ok> shapes_are_whole_ = Ok{};  // or the fault of the last one
+  Result<Ok> shapes_are_whole_ = Ok{};  // or the error of the last shape
   // State of the current shape.
   bool begun_ = false, turned_ = false, textured_ = false;
   std::optional<bool> vrml_clockwise_;
@@ -340,10 +344,11 @@ SbBool reportReading(const SbName&, float share, SbBool, void* on_triangles) {
   return TRUE;
 }
 
-// Returns the content of a file that Coin cannot read as it is; empty if it can. Coin could unpack
-// gzip as well, but without a limit, and does not recognise a file behind a byte order mark.
+// Returns the unpacked content of a file that Coin cannot read directly; empty if Coin can. Coin
+// could unpack gzip as well, but without a limit of size, and it does not recognise a file that
+// begins with a byte order mark.
 Result<std::string> unpacked(const std::string& path) {
-  constexpr std::size_t kMost = std::size_t{1} << 30;  // [bytes]
+  constexpr std::size_t kMost = std::size_t{1} << 30;  // limit of the unpacked size [bytes]
   const auto beginning = FileCopy::read(path, 2);
   const bool gzip = beginning && mesh::isGzip(beginning->text());
   const bool marked = beginning && beginning->text().starts_with('\xEF');
@@ -362,7 +367,7 @@ Result<std::string> unpacked(const std::string& path) {
   return text;
 }
 
-// Returns why Coin gave up.
+// Returns Coin's messages about why it could not read the file.
 std::string reasons() {
   std::string text;
   for (const std::string& c : complaints()) text += (text.empty() ? "" : "; ") + c;

@@ -7,7 +7,8 @@
 namespace merlin::render::import {
 namespace {
 
-// A "%" without two hexadecimal digits stays, and so does "%00", which would end the name.
+// Decodes %XX in a URI. A "%" without two hexadecimal digits stays unchanged, and so does "%00",
+// which would end the name.
 std::string percentDecoded(const std::string& name) {
   std::string decoded;
   for (std::size_t i = 0; i < name.size(); ++i) {

@@ -1,4 +1,4 @@
-// Finds the companion files that a model names.
+// Finds the companion files that a model refers to.
 #pragma once
 
 #include <string>
@@ -8,11 +8,12 @@
 namespace merlin::render::import {
 
 // Returns the path of the file that a model in `folder` calls `name`: the name as it is written or,
-// if there is no such file, decoded as a URI, in which "%20" is a blank. Neither can leave the
-// folder, since both pass through pathBeside() of render/mesh/io.
+// if there is no such file, the name decoded as a URI, in which "%20" is a blank. No name can lead
+// out of the folder, since both pass through pathBeside() of render/mesh/io.
 std::string companionPath(const std::string& folder, const std::string& name);
 
-// The same, but names may also differ in upper and lower case, as `files` finds them.
+// Does the same, but also accepts names that differ from the file's in upper and lower case, as
+// `files` finds them.
 std::string companionPath(mesh::CompanionFinder& files, const std::string& name);
 
 }  // namespace merlin::render::import

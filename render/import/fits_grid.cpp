@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMostAxes = 9, kMostImages = 1000;
 
-// CFITSIO's words for a status, on one line.
+// Returns CFITSIO's message for a status, on one line.
 std::string wordsOf(int status) {
   std::array<char, FLEN_STATUS> text{};
   fits_get_errstatus(status, text.data());
@@ -40,7 +40,7 @@ struct CloseFits {
 };
 using File = std::unique_ptr<fitsfile, CloseFits>;
 
-// The cards of an image's header.
+// Reads the cards (header records) of an image. The first fault is kept in fault().
 class Cards {
  public:
   explicit Cards(fitsfile* file) : file_(file) {}
@@ -51,7 +51,7 @@ class Cards {
     if (there && !(std::abs(value) <= 1e30)) setFault(name, "is not a number of up to 1e30");
     return there && fault_.empty() ? std::optional(value) : std::nullopt;
   }
-  // Reads a text of any length, including the cards that continue it.
+  // Reads a text of any length, including the cards that continue it; empty if the card is missing.
   std::string text(const std::string& name) {
     char* value = nullptr;
     int status = 0;
@@ -109,7 +109,7 @@ void readCamera(Cards& cards, range::ImageHeader& header) {
   }
 }
 
-// FEAT1, FEAT2, ...: files of registered images, as the key `feature`.
+// Reads the cards FEAT1, FEAT2, ..., which name files of registered images, like the key `feature`.
 void readFeatures(Cards& cards, range::ImageHeader& header) {
   for (std::size_t i = 1;; ++i) {
     const std::string name = fmt::format("FEAT{}", i);
@@ -158,7 +158,7 @@ class FitsGrid final : public GridSource {
  public:
   explicit FitsGrid(File file) : file_(std::move(file)) {}
 
-  // Finds the image and reads its cards. Returns the fault.
+  // Finds the image `wanted` and reads its cards. Errors: as openFits().
   Result<Ok> prepare(const std::string& wanted) {
     if (const auto found = findImage(wanted); !found) return found;
     head_.format = "FITS";
@@ -180,7 +180,7 @@ class FitsGrid final : public GridSource {
     first.fill(1);
     first[1] = static_cast<long>(bottom_first_ ? head_.height - row : row + 1);
     float none = std::numeric_limits<float>::quiet_NaN();
-    int status = 0, any = 0;  // CFITSIO 4.2 writes to `any` even if it is null
+    int status = 0, any = 0;  // CFITSIO 4.2 would write to `any` even if it were null
     fits_read_pix(file_.get(), TFLOAT, first.data(), static_cast<LONGLONG>(values.size()), &none,
                   values.data(), &any, &status);
     // A number that is too large for a float also counts as no return.
@@ -189,7 +189,7 @@ class FitsGrid final : public GridSource {
   }
 
  private:
-  // Goes to the image that is wanted, else to the first one.
+  // Selects the image `wanted`; if that is empty, the first image.
   Result<Ok> findImage(const std::string& wanted) {
     if (const auto listed = listImages(); !listed) return listed;
     if (images_.empty()) return Error{Errc::kUnsupported, "has no image of two axes"};
@@ -217,12 +217,13 @@ class FitsGrid final : public GridSource {
 
   // An image of two axes.
   struct Image {
-    int number = 0;      // of its header-data unit, 0: the primary one
-    std::string name{};  // the card EXTNAME, one line
+    int number = 0;      // number of its header-data unit; 0: the primary one
+    std::string name{};  // value of the card EXTNAME, one line
     std::size_t width = 0, height = 0;
   };
 
-  // If the file is damaged behind an image, lists the images before the damage.
+  // Lists the images of the file. If the file is damaged after an image, lists the images before
+  // the damage.
   Result<Ok> listImages() {
     int units = 0, status = 0;
     if (fits_get_num_hdus(file_.get(), &units, &status) != 0)
@@ -243,7 +244,7 @@ class FitsGrid final : public GridSource {
     return Ok{};
   }
 
-  // Compares with the image's number, or with its name, ignoring case.
+  // Returns whether `wanted` is the image's number or, ignoring case, its name.
   static bool isCalled(const Image& image, const std::string& wanted) {
     return std::to_string(image.number) == wanted ||
            (!image.name.empty() && lowerCase(image.name) == lowerCase(wanted));
@@ -264,8 +265,8 @@ class FitsGrid final : public GridSource {
                                   : list;
   }
 
-  // Takes the image's size. Returns whether the image has two axes; more are allowed if their size
-  // is 1.
+  // Stores the image's size in head_. Returns whether the image has two axes; further axes of
+  // length 1 are allowed.
   bool takeSize() {
     int axes = 0, status = 0;
     std::array<LONGLONG, kMostAxes> sizes{};
@@ -294,7 +295,8 @@ bool isFits(std::string_view bytes) noexcept { return bytes.starts_with("SIMPLE 
 Result<std::unique_ptr<GridSource>> openFits(const std::string& path, const std::string& wanted) {
   fitsfile* opened = nullptr;
   int status = 0;
-  // This call takes the name as it is; fits_open_file() would take more than file names.
+  // This call uses the file name as it is; fits_open_file() would also interpret an extended
+  // syntax.
   if (fits_open_diskfile(&opened, path.c_str(), READONLY, &status) != 0)
     return Error{Errc::kMalformed, wordsOf(status)};
   auto grid = std::make_unique<FitsGrid>(File(opened));

@@ -24,7 +24,7 @@
 namespace merlin::render::import {
 namespace {
 
-// Readers that open other files or addresses which a file names.
+// Readers that are not allowed, because they open other files or addresses that a file names.
 constexpr std::string_view kNotAllowed[] = {
     "VRT",        "WMS",           "WCS",       "WMTS",         "HTTP",     "DAAS",
     "EEDA",       "EEDAI",         "NGW",       "OGCAPI",       "PLMOSAIC", "PLSCENES",
@@ -59,7 +59,7 @@ std::string projectionOf(OGRSpatialReferenceH reference) {
   return wkt;
 }
 
-// Returns the metres in a unit of height; nothing if the unit's name is not known.
+// Returns the length of a unit of height in metres; nothing if the unit's name is unknown.
 std::optional<double> metresOf(std::string_view unit) {
   constexpr std::pair<const char*, double> kUnits[] = {{"", 1},
                                                        {"m", 1},
@@ -137,7 +137,7 @@ class GdalGrid final : public GridSource {
     return Ok{};
   }
 
-  // Takes the map's cell size, the order of its cells, and its position.
+  // Sets the map's cell size, the order of its cells, and its position.
   void takeCells() {
     std::array<double, 6> t{};
     const bool placed = GDALGetGeoTransform(dataset_.get(), t.data()) == CE_None;
@@ -156,7 +156,8 @@ class GdalGrid final : public GridSource {
     takeProjection((*head_.header.origin)[1] + dy * (height - 1) / 2);
   }
 
-  // GTOPO30 has no projection that GDAL knows: small cells at small coordinates are in degrees.
+  // Guesses whether coordinates are in degrees: small cells at small coordinates are. This is for
+  // GTOPO30, for which GDAL provides no projection.
   void guessDegrees(double north) {
     const double east = (*head_.header.origin)[0];
     if ((*head_.header.cell)[0] >= 0.1 || std::abs(east) > 360 || std::abs(north) > 90) return;
@@ -164,7 +165,8 @@ class GdalGrid final : public GridSource {
     head_.notes.emplace_back("the map has no projection; its coordinates are taken as degrees");
   }
 
-  // `north`: the coordinate of the map's middle.
+  // Sets the projection, and converts the cell size by its unit. `north`: northern coordinate of
+  // the map's middle.
   void takeProjection(double north) {
     OGRSpatialReferenceH reference = GDALGetSpatialRef(dataset_.get());
     if (!reference) {
@@ -230,13 +232,13 @@ Result<Dataset> openDataset(const std::string& address) {
 
 // A map among several in one file, which GDAL calls a subdataset.
 struct Map {
-  std::string address;  // for openDataset()
-  std::string name;     // of its variable; empty: it has none
+  std::string address;  // address for openDataset()
+  std::string name;     // name of its variable; empty: it has none
   std::string about;    // GDAL's description, one line
 };
 
-// The variable in an address such as NETCDF:"a.nc":z or HDF5:"a.h5"://maps/z; a page of a TIFF file
-// (GTIFF_DIR:1:a.tif) has no name.
+// Returns the name of the variable in an address such as NETCDF:"a.nc":z or HDF5:"a.h5"://maps/z. A
+// page of a TIFF file (GTIFF_DIR:1:a.tif) has no name.
 std::string variableIn(std::string_view address) {
   if (address.starts_with("GTIFF_DIR")) return {};
   const std::string_view last = address.substr(address.rfind(':') + 1);
@@ -271,8 +273,8 @@ std::string listOf(const std::vector<Map>& maps) {
   return maps.size() > kNamed ? fmt::format("{} and {} more", list, maps.size() - kNamed) : list;
 }
 
-// Returns the map with this number, from 1, or with this name, ignoring case; a single map need not
-// be named. Errors: kInvalidArgument, with the list.
+// Returns the map with this number, counted from 1, or with this name, ignoring case. If there is
+// only one map, `wanted` may be empty. Errors: kInvalidArgument, with the list of maps.
 Result<Map> chosenMap(const std::vector<Map>& maps, const std::string& wanted) {
   if (wanted.empty() && maps.size() == 1) return maps.front();
   if (maps.empty())

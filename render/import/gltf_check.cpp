@@ -20,8 +20,9 @@ using nlohmann::json;
 
 constexpr std::int64_t kFloat = 5126;  // componentType
 
-// Extensions that a file may require: they change nothing of what MERLIN shows (light, shine), or
-// are read (texture transforms), or are judged by what they allow (quantised attributes).
+// Extensions that a file may require. They do not change what MERLIN displays (light, shine), or
+// are supported (texture transforms), or their effects are checked separately (quantised
+// attributes).
 constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
                                           "KHR_texture_transform",
                                           "KHR_lights_punctual",
@@ -40,13 +41,15 @@ constexpr std::string_view kHarmless[] = {"KHR_mesh_quantization",
                                           "KHR_materials_volume",
                                           "KHR_xmp_json_ld"};
 
-// Attributes that MERLIN takes from assimp and that may be other than floats, by their beginnings.
-// Normals are made anew; assimp converts colours.
+// Attributes that MERLIN takes from assimp and that must be floats, by the beginnings of their
+// names. Normals are not listed, since they are computed from the surface; neither are colours,
+// which assimp converts.
 constexpr std::string_view kFloats[] = {"POSITION", "TEXCOORD_", "WEIGHTS_"};
 
 Error malformedGltf(const std::string& what) { return {Errc::kMalformed, "glTF: " + what}; }
 
-// The array of that name: an empty one if there is none.
+// Returns the array of this name; an empty one if there is none. Errors: kMalformed if it is not an
+// array.
 Result<const json*> arrayOf(const json& object, const char* name) {
   static const json kEmpty = json::array();
   const json* found = memberOf(object, name);
@@ -55,7 +58,8 @@ Result<const json*> arrayOf(const json& object, const char* name) {
   return found;
 }
 
-// Returns the JSON of the file: for a .glb, its first chunk. Nothing for a .glb of another version.
+// Returns the JSON of the file; for a .glb, this is its first chunk. Returns nothing for a .glb of
+// another version.
 Result<std::optional<std::string_view>> textOf(std::string_view file) {
   constexpr std::size_t kHead = 12, kChunkHead = 8;
   if (!file.starts_with("glTF")) return std::optional(file);
@@ -72,7 +76,7 @@ Result<std::optional<std::string_view>> textOf(std::string_view file) {
   return std::optional(text.substr(0, text.find_last_not_of('\0') + 1));
 }
 
-// True for glTF 1, whose JSON has another form.
+// Returns true for glTF 1, whose JSON has a different form.
 bool isFirstVersion(const json& model) {
   const json* asset = memberOf(model, "asset");
   const json* version = asset ? memberOf(*asset, "version") : nullptr;
@@ -97,7 +101,7 @@ Result<Ok> checkExtensions(const json& model) {
   return Ok{};
 }
 
-// `where`: the primitive, for a message.
+// Checks that an attribute is of floats, if it must be. `where`: the primitive, for messages.
 Result<Ok> checkAttribute(const json& accessors, const std::string& where, const std::string& name,
                           const json& index) {
   const auto reads = [&](std::string_view begin) { return name.starts_with(begin); };
@@ -129,7 +133,8 @@ std::uint64_t trianglesOf(const json& primitive, std::uint64_t count) {
   }
 }
 
-// Returns the number of a primitive's triangles; 0 if it is malformed, which assimp reports.
+// Returns the number of triangles that a primitive declares; 0 if it is malformed, which assimp
+// reports.
 std::uint64_t promisedTriangles(const json& accessors, const json& primitive,
                                 const json& attributes) {
   const json* of = memberOf(primitive, "indices");

@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr std::uint64_t kComponentFloat = 5126;  // componentType
 
-// The element of that number; null if there is none.
+// Returns the array's element with this number; null if there is none.
 const json* elementOf(const json* array, std::optional<std::uint64_t> number) {
   const bool there = array && array->is_array() && number && *number < array->size();
   return there ? &(*array)[*number] : nullptr;
@@ -32,7 +32,8 @@ std::optional<std::uint64_t> unsignedOf(const json& object, const char* name) {
   return found->get<std::uint64_t>();
 }
 
-// The same as unsignedOf() for byteOffset, but 0 if there is no such member.
+// Returns the member byteOffset of an object; 0 if there is no such member, nothing if it is not an
+// unsigned number.
 std::optional<std::uint64_t> offsetOf(const json& object) {
   return memberOf(object, "byteOffset") ? unsignedOf(object, "byteOffset") : std::uint64_t{0};
 }
@@ -42,14 +43,14 @@ bool isString(const json& object, const char* name, std::string_view text) {
   return found && found->is_string() && found->get_ref<const std::string&>() == text;
 }
 
-// The binary chunk, which stands behind the JSON; empty if there is none.
+// Returns the binary chunk of a .glb, which follows the JSON; empty if there is none.
 std::string_view binaryChunk(std::string_view glb) {
   constexpr std::size_t kHead = 12, kChunkHead = 8;
   const auto number = [&](std::size_t at) {
     return std::size_t{loadLe32(reinterpret_cast<const std::uint8_t*>(glb.data()) + at)};
   };
   if (glb.size() < kHead + kChunkHead) return {};
-  const std::size_t at = kHead + kChunkHead + number(kHead);  // of at most 32 bits
+  const std::size_t at = kHead + kChunkHead + number(kHead);  // number() has at most 32 bits
   if (at > glb.size() || glb.size() - at < kChunkHead) return {};
   const std::size_t length = number(at);
   if (glb.substr(at + 4, 4) != std::string_view("BIN\0", 4)) return {};
@@ -57,7 +58,7 @@ std::string_view binaryChunk(std::string_view glb) {
   return glb.substr(at + kChunkHead, length);
 }
 
-// The value of a digit of base64 (RFC 4648); 64 for any other character.
+// Returns the value of a base64 digit (RFC 4648); 64 for any other character.
 std::uint32_t digitOf(char c) {
   if (c >= 'A' && c <= 'Z') return static_cast<std::uint32_t>(c - 'A');
   if (c >= 'a' && c <= 'z') return static_cast<std::uint32_t>(c - 'a' + 26);
@@ -65,7 +66,7 @@ std::uint32_t digitOf(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : 64;
 }
 
-// Returns the bytes of "data:...;base64,..."; nothing if the text is of another form.
+// Returns the bytes of a URI "data:...;base64,..."; nothing if the text has another form.
 std::optional<std::string> decodedUri(std::string_view uri) {
   constexpr std::string_view kCoded = ";base64";
   const std::size_t comma = uri.find(',');
@@ -93,7 +94,7 @@ class ValueReader {
   ValueReader(const json& model, GltfBuffers& buffers) : model_(model), buffers_(buffers) {}
 
   // Returns the bytes of an accessor of floats, `dimension` per element, without gaps; nothing if
-  // it is of another kind or goes beyond its view or its buffer.
+  // it has another type, or extends beyond its view or its buffer.
   std::optional<std::string_view> bytesOf(const json* accessor, const char* type,
                                           std::size_t dimension) const {
     if (!accessor || unsignedOf(*accessor, "componentType") != kComponentFloat ||
@@ -112,8 +113,8 @@ class ValueReader {
   }
 
  private:
-  // Returns the view of an accessor; nothing if there are gaps between its elements of `bytes`
-  // bytes.
+  // Returns the bytes of an accessor's buffer view; nothing if there are gaps between its elements,
+  // each of `bytes` bytes.
   std::optional<std::string_view> viewOf(const json& accessor, std::size_t bytes) const {
     const json* view =
         elementOf(memberOf(model_, "bufferViews"), unsignedOf(accessor, "bufferView"));
@@ -133,15 +134,15 @@ class ValueReader {
   GltfBuffers& buffers_;
 };
 
-// Whether MERLIN wrote vertex colours beside a texture, as its own attribute: glTF's vertex colours
-// would be multiplied with the texture.
+// Returns whether MERLIN wrote vertex colours as an application-specific attribute in addition to a
+// texture: glTF's own vertex colours would be multiplied with the texture.
 bool hasColoursBesideTexture(const json& model, const json& attributes) {
   const json* asset = memberOf(model, "asset");
   return asset && isString(*asset, "generator", "MERLIN") && memberOf(attributes, "TEXCOORD_0");
 }
 
-// Returns how many floats per vertex the feature of an attribute with this name has; 0 if it is no
-// feature.
+// Returns the number of floats per vertex of the feature that an attribute with this name becomes;
+// 0 if it becomes no feature.
 std::size_t dimensionOf(const std::string& name, bool coloured) {
   if (!name.starts_with('_')) return 0;
   const std::string feature = name.substr(1);
@@ -150,7 +151,7 @@ std::size_t dimensionOf(const std::string& name, bool coloured) {
   return other || !mesh::featureNameFault(feature).empty() ? 0 : 1;
 }
 
-// Returns what can be read of a primitive's own attributes.
+// Returns the values of a primitive's application-specific attributes, as far as they can be read.
 GltfValues valuesOf(const ValueReader& reader, const json& model, const json& attributes) {
   GltfValues own;
   const json* position = memberOf(attributes, "POSITION");
@@ -187,7 +188,7 @@ std::vector<const json*> attributesOf(const json& model) {
   return all;
 }
 
-// Whether a primitive may have values of its own, for which the buffers are worth reading.
+// Returns whether a primitive may have application-specific values; only then are the buffers read.
 bool hasOwnAttribute(const json& attributes) {
   for (const auto& [name, index] : attributes.items()) {
     if (name.starts_with('_')) return true;

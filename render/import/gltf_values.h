@@ -1,4 +1,5 @@
-// Reads the vertex attributes of a glTF file that glTF does not define, since assimp skips them.
+// Reads application-specific vertex attributes of a glTF file, i.e. those that the format does not
+// define, since assimp skips them.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +18,17 @@
 
 namespace merlin::render::import {
 
-// The bytes of a glTF file's buffers: the binary chunk of a .glb, base64 in the JSON, or a file
-// beside it. Each is read when it is first asked for. Thread-bound.
+// The bytes of a glTF file's buffers: the binary chunk of a .glb, base64 in the JSON, or a separate
+// file in the same folder or below. Each buffer is read on its first use. Thread-bound.
 class GltfBuffers {
  public:
-  // `file`: the whole file, and must outlive this; `folder`: that of the file ("" or with a
-  // trailing slash), below which other files are opened (companion_path.h).
+  // `file`: the whole glTF file, which must outlive this object. `folder`: the folder of the file
+  // ("" or with a trailing slash), below which other files are opened (companion_path.h).
   GltfBuffers(std::string_view file, std::string folder)
       : file_(file), folder_(std::move(folder)) {}
 
-  // Returns the bytes of that buffer, which stay as long as this; nothing if there is no such
-  // buffer or it cannot be read. `model`: the file's JSON, the same one each time.
+  // Returns the bytes of buffer `number`, which stay valid as long as this object; nothing if there
+  // is no such buffer or it cannot be read. `model`: the file's JSON, the same object in each call.
   std::optional<std::string_view> bytesOf(const nlohmann::json& model, std::uint64_t number);
 
  private:
@@ -43,29 +44,29 @@ class GltfBuffers {
   std::map<std::uint64_t, Buffer> buffers_{};
 };
 
-// Numbers of a primitive's vertices, as little-endian floats in one of the file's buffers.
+// A feature of a primitive's vertices: little-endian floats in one of the file's buffers.
 struct GltfFeature {
-  std::string name{};  // of the feature: "heat" of the attribute "_heat"
+  std::string name{};  // name of the feature: "heat" for the attribute "_heat"
   std::size_t dimension = 1;
   std::string_view bytes{};
 };
 
-// What could be read of a primitive; all empty if its positions could not.
+// The values that could be read of a primitive; all are empty if its positions could not be read.
 struct GltfValues {
-  std::string_view positions{};  // vertices x 3 floats, to match them with another reader's
-  // Also "colour" (3, proportional to light) if MERLIN wrote the file with a texture. May contain
-  // NaN.
+  std::string_view positions{};  // vertices x 3 floats, for matching with assimp's meshes
+  // Features of the vertices. They include "colour" (3, proportional to light) if MERLIN wrote the
+  // file with a texture. Values may be NaN.
   std::vector<GltfFeature> features{};
 };
 
-// Finds the vertex attributes of floats whose names begin with "_". They must lie without gaps in a
-// buffer; others are ignored, and the caller may add a note about them. Returns an entry for each
-// primitive, or none at all if no primitive has such an attribute. `model`: the JSON of a whole
-// file of version 2. Each offset and count is checked against the buffer. The values stay as long
-// as `buffers`. May throw std::bad_alloc.
+// Finds vertex attributes of floats whose names begin with "_". Attributes with gaps between their
+// elements in the buffer are ignored; the caller may add a note about them. Returns an entry for
+// each primitive, or none at all if no primitive has such an attribute. `model`: the JSON of a
+// whole file of glTF 2. Each offset and count is checked against the buffer. The values stay valid
+// as long as `buffers`. May throw std::bad_alloc.
 std::vector<GltfValues> ownValuesOf(const nlohmann::json& model, GltfBuffers& buffers);
 
-// The numbers of such bytes.
+// Converts little-endian floats, such as GltfFeature::bytes, to numbers.
 std::vector<float> floatsOf(std::string_view bytes);
 
 // Returns for each row of the features the index of the first row with the same values. O(n log n).

@@ -27,13 +27,15 @@ Result<std::unique_ptr<GridSource>> openGrid(const GridInput& input) {
   if (fits) return openFits(in, input.hdu);
   if (!input.hdu.empty())
     return Error{Errc::kInvalidArgument, "--hdu is for FITS files, and this is not one"};
-  // GDAL takes an absolute path for a file's; other names could be addresses or databases.
+  // GDAL treats an absolute path as a file; it could interpret other names as addresses or
+  // databases.
   std::error_code error;
   const auto path = std::filesystem::absolute(in, error);
   return openGdal(error ? in : path.lexically_normal().string(), input.variable);
 }
 
-// Why the grid was not written: the source's reason, or the disk's.
+// Returns the error because of which the grid was not written: the source's message if there is
+// one, else the error of writing.
 Error fault(const std::string& in, const std::string& reading, const Error& writing) {
   if (!reading.empty()) return {Errc::kMalformed, fmt::format("{}: {}", in, reading)};
   return writing;

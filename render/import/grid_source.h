@@ -1,5 +1,5 @@
-// GridSource: a range image or an elevation map that a library reads row by row. Private to
-// render/import.
+// GridSource: interface to a range image or an elevation map that a library reads row by row.
+// Private to render/import.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ class GridSource {
   GridSource& operator=(const GridSource&) = delete;
 
   virtual const range::GridHead& head() const = 0;
-  // Sets the values of a row, counted from the top; NaN for missing values. Returns the library's
-  // message if that failed, else an empty string.
+  // Reads the values of a row, counted from the top, into `values` (one per column); missing values
+  // become NaN. Returns an empty string, or the library's message on failure.
   virtual std::string readRow(std::size_t row, std::span<float> values) = 0;
 };
 

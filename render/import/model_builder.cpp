@@ -11,14 +11,14 @@
 namespace merlin::render::import {
 namespace {
 
-constexpr float kFarthest = 1e18F;  // as validate() has it
+constexpr float kFarthest = 1e18F;  // the limit of validate()
 
 bool isUsable(const Corner& corner) {
   return std::ranges::all_of(corner.position,
                              [](float x) { return std::isfinite(x) && std::abs(x) <= kFarthest; });
 }
 
-// Texture coordinates and colours that are not numbers are replaced.
+// Replaces texture coordinates and colours that are not finite by 0, and clamps colours to 0..1.
 void clean(Corner& corner) {
   for (float& x : corner.texcoord) x = std::isfinite(x) ? x : 0;
   for (float& x : corner.colour) x = std::isfinite(x) ? std::clamp(x, 0.0F, 1.0F) : 0;
@@ -56,7 +56,7 @@ std::uint32_t ModelBuilder::vertexOf(const Corner& corner) {
   Key key{};
   const float numbers[] = {p[0], p[1], p[2], c[0], c[1], c[2], t[0], t[1]};
   for (std::size_t i = 0; i < std::size(numbers); ++i)
-    key[i] = std::bit_cast<std::uint32_t>(numbers[i] + 0.0F);  // -0 is 0
+    key[i] = std::bit_cast<std::uint32_t>(numbers[i] + 0.0F);  // turns -0 into 0
   key.back() = row;
   const auto next = static_cast<std::uint32_t>(model_.mesh.vertexCount());
   const auto [found, fresh] = vertices_.try_emplace(key, next);

@@ -13,7 +13,7 @@
 namespace merlin::render::import {
 namespace {
 
-// What the sandbox leaves this process.
+// Returns the memory that the sandbox allows this process to use, for a message.
 std::string allowedMemory() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "there is";
@@ -33,8 +33,8 @@ Result<BuiltModel> readModel(const ModelFile& file, const OnTriangles& on_triang
   const auto named = [&](Errc code, const std::string& why) {
     return Error{code, file.path + ": " + why};
   };
-  // Mapping reads nothing, and says what the libraries do not: that the file is larger than the
-  // allowed memory.
+  // Mapping the file reads no data, but shows whether the file is larger than the allowed memory,
+  // which the libraries do not report.
   if (const auto whole = MappedFile::open(file.path);
       !whole && whole.error().code == Errc::kNoMemory)
     return needsMoreMemory(file.path);

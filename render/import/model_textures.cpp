@@ -13,13 +13,14 @@
 namespace merlin::render::import {
 namespace {
 
-// Whether the file exists but the sandbox of daemon/import does not allow opening it.
+// Returns whether the file exists but the sandbox of daemon/import forbids opening it.
 bool isForbidden(const std::string& path) {
   const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   return !file.valid() && errno == EACCES;
 }
 
-// The files beside a model, as paths that begin with its folder as it is written.
+// Returns the files in the model's folder and below, as paths that begin with the folder as the
+// model's path spells it.
 std::vector<std::string> filesBeside(const ModelFile& model) {
   const std::string folder = mesh::folderOf(model.path);
   const std::string whole = mesh::folderOf(std::filesystem::absolute(model.path).string());

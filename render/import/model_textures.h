@@ -19,18 +19,21 @@ namespace merlin::render::import {
 
 class ModelTextures {
  public:
-  // Texture images are searched for in the model's folder and below it.
+  // Makes an empty collection. Texture images will be searched for in the model's folder and below
+  // it.
   explicit ModelTextures(const ModelFile& model);
 
-  // Returns the image that the model calls `name`; null if it cannot be read, and a note says why.
+  // Returns the image that the model calls `name`; null if it cannot be read, and a note explains
+  // why. All images stay valid as long as this object.
   const image::ImageFile* named(const std::string& name);
-  // Decodes an image that the model contains as PNG or JPEG; `name` is its name in the model.
+  // Decodes a PNG or JPEG image that is embedded in the model; `name` is its name in the model.
+  // Returns null if it cannot be decoded, and a note explains why.
   const image::ImageFile* inside(const std::string& name, std::span<const std::uint8_t> file);
-  // Takes an image that the model contains as pixels; returns null if it is empty.
+  // Stores an image that is embedded in the model as pixels; returns null if it is empty.
   const image::ImageFile* ofPixels(const std::string& name, image::ImageFile pixels);
 
   // Returns the image multiplied by a colour, proportional to light; each product is computed once.
-  // If that fails, returns the image itself, and a note says so.
+  // On failure returns the image itself and adds a note.
   const image::ImageFile* tinted(const image::ImageFile& image, const std::array<float, 3>& factor);
 
   std::vector<std::string> notes() const;

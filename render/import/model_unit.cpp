@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-// Returns the text after `begin`, up to the first character that is in `end`; empty if one is
-// missing.
+// Returns the text after `begin`, up to the first character that is in `end`; empty if `begin` or
+// such a character is missing.
 std::string_view between(std::string_view text, std::string_view begin, std::string_view end) {
   const std::size_t at = text.find(begin);
   if (at == std::string_view::npos) return {};

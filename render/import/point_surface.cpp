@@ -23,10 +23,12 @@ using points::PointCloud;
 
 constexpr std::size_t kLeastPoints = 10;
 constexpr std::size_t kSpacingSamples = 10'000;
-constexpr int kGraphNeighbours = 10;  // per point, itself included; at most kLeastPoints
-constexpr int kSources = 4;           // points that give a vertex its features
+// Neighbours per point, including itself; at most kLeastPoints.
+constexpr int kGraphNeighbours = 10;
+constexpr int kSources = 4;  // number of points from which a vertex gets its features
 
-// The library reckons in floats: it gets points within a cube of side 1, whatever the file's unit.
+// Maps the points to a cube of side 1, because Open3D computes with floats; so the file's unit does
+// not matter.
 struct UnitCube {
   explicit UnitCube(const PointCloud& cloud) {
     const mesh::Box box = mesh::boundingBox(cloud.positions);
@@ -53,11 +55,12 @@ o3d::PointCloud cloudOf(const PointCloud& cloud, const UnitCube& cube) {
   return made;
 }
 
-// Returns the median distance to the fourth neighbour. On a square grid, that is the spacing; for
-// as many points at random places it is about the same, while their nearest neighbour is half as
-// far.
+// Returns the median distance to the fourth neighbour. On a square grid this is the spacing; for
+// the same number of points at random positions it is about the same, while the nearest neighbour
+// is at half that distance.
 double spacingOf(const o3d::PointCloud& cloud, const o3d::KDTreeFlann& tree) {
-  constexpr int kFourth = 4, kLooked = 16;  // 0 is the point; others may lie in the same place
+  // Index 0 is the point; others may be at the same position.
+  constexpr int kFourth = 4, kLooked = 16;
   const std::size_t step = std::max<std::size_t>(1, cloud.points_.size() / kSpacingSamples);
   std::vector<double> distances, squared;
   std::vector<int> indices;
@@ -71,7 +74,7 @@ double spacingOf(const o3d::PointCloud& cloud, const o3d::KDTreeFlann& tree) {
   return points::medianSpacing(std::move(distances));
 }
 
-// Returns kGraphNeighbours indices per point, itself included.
+// Returns kGraphNeighbours indices of neighbours per point, including the point itself.
 std::vector<std::uint32_t> neighboursOf(const o3d::PointCloud& cloud,
                                         const o3d::KDTreeFlann& tree) {
   std::vector<std::uint32_t> neighbours;
@@ -92,7 +95,7 @@ bool takeNormals(const PointCloud& cloud, o3d::PointCloud& to) {
   for (std::size_t p = 0; p < cloud.size(); ++p) {
     const float* n = &normal->values[3 * p];
     const Eigen::Vector3d v(n[0], n[1], n[2]);
-    if (!(v.norm() > 0.5)) {  // a normal that was not known
+    if (!(v.norm() > 0.5)) {  // an unknown normal
       to.normals_.clear();
       return false;
     }
@@ -101,7 +104,7 @@ bool takeNormals(const PointCloud& cloud, o3d::PointCloud& to) {
   return true;
 }
 
-// Adds normals; returns where they come from.
+// Adds normals to the cloud; returns a text for the user about their origin.
 std::string addNormals(const PointCloud& cloud, const UnitCube& cube, const o3d::KDTreeFlann& tree,
                        int neighbours, o3d::PointCloud& to) {
   if (takeNormals(cloud, to)) return "of the file";
@@ -121,7 +124,7 @@ std::string addNormals(const PointCloud& cloud, const UnitCube& cube, const o3d:
   return fmt::format("of {} neighbours, turned alike along the surface", neighbours);
 }
 
-// The points nearest to a vertex, the nearest one first.
+// The points nearest to a vertex, nearest first, with their squared distances.
 struct Sources {
   std::vector<int> points;
   std::vector<double> squared;
@@ -130,7 +133,8 @@ struct Sources {
 void mixFeature(const mesh::Feature& from, const Sources& sources, std::vector<float>& to) {
   const bool whole = from.name == "label";
   const auto nearest = static_cast<std::size_t>(sources.points.front()) * from.dimension;
-  const double least = 1e-30 + 1e-6 * sources.squared.back();  // in case a vertex lies on a point
+  // Avoids a division by 0 if a vertex lies on a point.
+  const double least = 1e-30 + 1e-6 * sources.squared.back();
   for (std::size_t k = 0; k < from.dimension; ++k) {
     double sum = 0, weights = 0;
     for (std::size_t i = 0; i < sources.points.size(); ++i) {
@@ -151,7 +155,7 @@ std::vector<bool> addVertices(const o3d::TriangleMesh& made, const PointCloud& c
   const double trim = surface.settings.trim / cube.side;
   std::vector<const mesh::Feature*> from;
   for (const mesh::Feature& f : cloud.features) {
-    if (f.name == "normal") continue;  // the surface has its own
+    if (f.name == "normal") continue;  // the surface gets its own normals
     from.push_back(&f);
     to.features.push_back({f.name, f.dimension, {}});
     to.features.back().values.reserve(made.vertices_.size() * f.dimension);
@@ -181,7 +185,8 @@ void addTriangles(const o3d::TriangleMesh& made, const std::vector<bool>& near,
   }
 }
 
-// Points far away from the others make the cube large, and the cells of the octree with it.
+// Adds a note if the cells of the octree are coarse. Points far away from the others make the cube
+// large, and with it the cells.
 void noteCoarseCells(double side, PointSurface& surface) {
   constexpr double kCoarse = 4;  // spacings
   const double cell = points::cellOf(surface.settings.depth, side);
@@ -194,8 +199,8 @@ void noteCoarseCells(double side, PointSurface& surface) {
 
 Result<PointSurface> reconstruct(const PointCloud& cloud, const points::SurfaceSettings& said,
                                  const OnSurfaceProgress& on_progress) {
-  constexpr float kScale = 1.1F;  // the reconstruction's cube, in sides of the points' box
-  constexpr int kOneThread = 1;   // several would sum in another order each time
+  constexpr float kScale = 1.1F;  // side of the reconstruction's cube / side of the points' box
+  constexpr int kOneThread = 1;   // several threads would add up in a different order each time
   const UnitCube cube(cloud);
   if (!(cube.side > 0))
     return Error{Errc::kMalformed, fmt::format("its {} points lie in one place", cloud.size())};
@@ -226,7 +231,8 @@ Result<PointSurface> reconstruct(const PointCloud& cloud, const points::SurfaceS
 }  // namespace
 
 Result<Ok> preparePoints(const char* /*program*/) {
-  open3d::utility::SetVerbosityLevel(open3d::utility::VerbosityLevel::Error);  // stdout is ours
+  // Keeps stdout free for our output.
+  open3d::utility::SetVerbosityLevel(open3d::utility::VerbosityLevel::Error);
   return Ok{};
 }
 

@@ -20,24 +20,26 @@ namespace merlin::render::import {
 struct PointSurface {
   mesh::Mesh mesh;
   points::SurfaceSettings settings;  // the values that were used
-  double spacing = 0;                // median distance to the fourth neighbour
-  std::size_t trimmed = 0;           // triangles that were too far from all points
-  std::string normals;               // origin of the normals, for the user
-  std::vector<std::string> notes;    // for the user
+  double spacing = 0;                // median distance of points to their fourth neighbour
+  std::size_t trimmed = 0;           // number of triangles removed, as too far from all points
+  std::string normals;               // text for the user: how the normals were obtained
+  std::vector<std::string> notes;    // notes for the user
 };
 
-// Called with the share of the work that is done, 0..1, and the number of points or triangles.
+// Progress callback: receives the share of the work that is done, 0..1, and the number of points or
+// triangles.
 using OnSurfaceProgress = std::function<void(double share, std::int64_t items)>;
 
-// Silences the library's messages. To be called once, before the sandbox closes.
+// Silences Open3D's messages. Call once, before the sandbox closes. Always succeeds.
 Result<Ok> preparePoints(const char* program);
 
-// Uses the cloud's own normals; if it has none, they are estimated from the nearest neighbours and
-// oriented towards the viewpoint, upwards (kAbove), or consistently along the surface [HOPPE92].
-// The features of a vertex are the means over the four nearest points, weighted by inverse
-// distance; a label is that of the nearest point. The same cloud gives the same mesh. Errors:
-// kMalformed (fewer than ten points, or points at only a few positions), kUnsupported (nothing is
-// left after trimming; or the library's own reason), kNoMemory.
+// Reconstructs a surface. Uses the cloud's own normals; if it has none, normals are estimated from
+// the nearest neighbours and oriented towards the viewpoint, upwards (kAbove), or consistently
+// along the surface [HOPPE92]. The features of a vertex are the means over the four nearest points,
+// weighted by inverse distance; a label is that of the nearest point. `said`: settings of the user,
+// which may contain values to guess. The same cloud gives the same mesh. Errors: kMalformed (fewer
+// than ten points, or points at only a few positions), kUnsupported (nothing is left after
+// trimming; or an error of the library, with its message), kNoMemory.
 Result<PointSurface> surfaceOf(const points::PointCloud& cloud, points::SurfaceSettings said,
                                const OnSurfaceProgress& on_progress);
 

@@ -11,20 +11,20 @@
 namespace merlin::render::import {
 namespace {
 
-constexpr int kRows = 64;  // read at a time
+constexpr int kRows = 64;  // number of rows read at a time
 constexpr std::int64_t kMostSampled = 1'000'000;
 
 using Region = std::unique_ptr<VipsRegion, Unref>;
 
 int bandsShown(const VipsImage* image) { return vips_image_get_bands(image) >= 3 ? 3 : 1; }
 
-// The first band of a pixel; `row` is counted from the top of what the region holds.
+// Returns a pointer to the first band of a pixel; `row` is counted from the top of the region.
 const float* pixelAt(const VipsRegion* region, std::int64_t column, std::int64_t row) {
   const std::int64_t size = vips_image_get_bands(region->im) * std::int64_t{sizeof(float)};
   return reinterpret_cast<const float*>(region->data + row * region->bpl + column * size);
 }
 
-// Every `step`th pixel of the rows, counted through the whole picture.
+// Appends the finite values of every `step`th pixel of the rows, counted through the whole picture.
 void sample(VipsRegion* region, const VipsRect& rows, std::int64_t step,
             std::vector<float>& values) {
   const VipsImage* const image = region->im;

@@ -1,4 +1,4 @@
-// An owning handle for libvips' images, and a helper to process them in steps. Private to
+// Image: an owning handle for libvips' images, and a helper to process them in steps. Private to
 // render/import.
 #pragma once
 
@@ -13,9 +13,9 @@ struct Unref {
 };
 using Image = std::unique_ptr<VipsImage, Unref>;
 
-// Replaces the image by the one that `step` makes from it; the new image keeps its own reference to
-// the old one if it needs it. `step` returns 0 for success, as functions of libvips do. Returns
-// whether it succeeded; if not, the image stays as it was.
+// Replaces the image by the image that `step` makes from it; the new image keeps its own reference
+// to the old one if it needs it. step(image, &made) returns 0 for success, as functions of libvips
+// do. Returns whether the step succeeded; if not, the image stays unchanged.
 template <typename Step>
 bool applyStep(Image& image, const Step& step) {
   VipsImage* made = nullptr;

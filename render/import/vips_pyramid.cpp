@@ -17,19 +17,20 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// What libvips reported, on one line; empty if it reported nothing.
+// Returns libvips' messages on one line and clears them; empty if there are none.
 std::string reported() {
   std::string text = vips_error_buffer();
   vips_error_clear();
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::ranges::replace(text, '\n', ';');
-  if (text.find("memory area too small") != std::string::npos)  // of a file that is mapped
+  // Message for a truncated file that is mapped.
+  if (text.find("memory area too small") != std::string::npos)
     text = "it is cut short: it has fewer bytes than its header says";
   return text;
 }
 
-// Whether a file that begins like this is a video: MP4 and QuickTime but not HEIF and AVIF, which
-// have the same boxes; Matroska and WebM; AVI; MPEG's streams.
+// Returns whether a file that begins with these bytes is a video: MP4 and QuickTime (but not HEIF
+// and AVIF, which have the same boxes), Matroska and WebM, AVI, and MPEG streams.
 bool isVideo(std::string_view begin) {
   if (begin.size() < 12) return false;
   const std::string_view brand = begin.substr(8, 4);
@@ -54,8 +55,8 @@ Error broken(const std::string& in) {
   return {Errc::kMalformed, fmt::format("{}: cannot be read as a picture: {}", in, why)};
 }
 
-// Opens a picture to read its rows once, from top to bottom; one that must be turned is needed as a
-// whole.
+// Opens a picture and turns it upright. Its rows can then be read once, from top to bottom; a
+// picture that must be turned is loaded as a whole.
 Result<Image> open(const std::string& in) {
   for (const VipsAccess access : {VIPS_ACCESS_SEQUENTIAL, VIPS_ACCESS_RANDOM}) {
     Image image(vips_image_new_from_file(in.c_str(), "access", access, "fail_on",
@@ -75,21 +76,22 @@ std::string textOf(const ValueRange& range) {
   return fmt::format("values from {:.6g} (black) to {:.6g} (white)", range.low, range.high);
 }
 
-constexpr double kFinding = 0.5;  // part of the work that finding a picture's range is
+constexpr double kFinding = 0.5;  // share of the work that finding the range takes
 
-// Whether the picture's range has to be found before it can be imported.
+// Returns whether the picture's range must be found before the picture can be converted, for which
+// it is read twice.
 bool isReadTwice(const VipsImage* image, const PyramidOptions& options) {
   return !options.range && (isMeasured(image) || isGrey16(image));
 }
 
 // Returns the range that maps the picture's values to shades; nothing if the values are colours. If
-// isReadTwice(), reads the picture, which then has to be opened again.
+// isReadTwice(), this reads the picture, which must then be opened again.
 std::optional<ValueRange> rangeFor(VipsImage* image, const PyramidOptions& options,
                                    const PictureReports& reports) {
   if (options.range) return ValueRange{(*options.range)[0], (*options.range)[1]};
   if (!isReadTwice(image, options)) return std::nullopt;
   const auto found = rangeOf(image, [&](double share) { reports.progress(kFinding * share, 0); });
-  // Reported when it is read again.
+  // The error will be reported when the picture is read again.
   if (!found && vips_error_buffer()[0] != '\0') return std::nullopt;
   vips_error_clear();
   const bool dark = !isMeasured(image) && (!found || found->high >= kMostOfDarkGrey);
@@ -104,10 +106,10 @@ std::optional<ValueRange> rangeFor(VipsImage* image, const PyramidOptions& optio
 
 struct Opened {
   Image image;
-  double done = 0;  // part of the work that finding the range was
+  double done = 0;  // share of the work that was done to find the range
 };
 
-// Opens the picture; values that are no colours are mapped to shades.
+// Opens the picture and reports its size; values that are not colours are mapped to shades.
 Result<Opened> openShaded(const std::string& in, const PyramidOptions& options,
                           const PictureReports& reports) {
   auto image = open(in);
@@ -130,7 +132,7 @@ bool toSrgb(Image& image) {
       profile && applyStep(image, [](VipsImage* from, VipsImage** to) {
         return vips_icc_transform(from, to, "srgb", "embedded", TRUE, "depth", 8, nullptr);
       });
-  if (!by_profile) vips_error_clear();  // a profile that does not fit the picture is left out
+  if (!by_profile) vips_error_clear();  // ignores a profile that does not fit the picture
   if (vips_image_get_coding(image.get()) == VIPS_CODING_RAD &&
       !applyStep(image,
                  [](VipsImage* from, VipsImage** to) { return vips_rad2float(from, to, nullptr); }))
@@ -153,7 +155,7 @@ bool toSrgb(Image& image) {
   });
 }
 
-// Removes the file's metadata and sets the mark alone.
+// Removes the file's metadata, then sets the mark of a picture or panorama.
 bool mark(Image& image, bool panorama) {
   if (!applyStep(image,
                  [](VipsImage* from, VipsImage** to) { return vips_copy(from, to, nullptr); }))
@@ -173,9 +175,9 @@ void evaluated(VipsImage* /*image*/, VipsProgress* progress, void* data) {
               progress->npels);
 }
 
-// Levels are halved until a side is one pixel, so the coarsest level of a long and thin picture
-// could still be too long to be read. Returns 0 if the picture is not too thin; otherwise the
-// pixels that its shorter side needs.
+// Returns 0 if the picture is suitable for a pyramid; if it is too thin, returns the number of
+// pixels that its shorter side needs. Levels are halved until a side is one pixel, so the coarsest
+// level of a long and thin picture could still be too long to be read.
 int neededSide(const ImportedPicture& size) {
   const std::int64_t longest = std::max(size.width, size.height);
   int needed = 1;

@@ -13,11 +13,11 @@
 namespace merlin::render::import {
 
 struct PyramidOptions {
-  bool panorama = false;  // mark the file as an equirectangular panorama
-  int quality = 90;       // of JPEG, 1 to 100; 0: lossless (deflate)
-  int tile_px = 256;      // 256 or 512
-  // The values that become black and white. Nothing: for measured values (value_range.h) the range
-  // found in the image, for colours the range of the format.
+  bool panorama = false;  // whether to mark the file as an equirectangular panorama
+  int quality = 90;       // JPEG quality, 1 to 100; 0: lossless (deflate)
+  int tile_px = 256;      // side of a tile [px]: 256 or 512
+  // The values displayed as black and white. If not set: for measured values (value_range.h) the
+  // range found in the image, for colours the range of the format.
   std::optional<std::array<double, 2>> range{};
 };
 
@@ -25,16 +25,17 @@ struct ImportedPicture {
   std::int64_t width = 0, height = 0;  // [px]
 };
 
-// Loads what the library needs from the system, such as its modules. To be called once, before the
+// Loads the files that libvips needs from the system, such as its modules. Call once, before the
 // sandbox closes. Errors: kUnsupported.
 Result<Ok> prepareImport(const char* program);
 
-// Called with the share of the work that is done, 0..1, and the number of pixels that have been
-// read.
+// Progress callback: receives the share of the work that is done, 0..1, and the number of pixels
+// that have been read.
 using OnProgress = std::function<void(double share, std::int64_t pixels)>;
-// Called with the image's size as soon as it is known; if it returns an error, the import ends.
+// Callback that receives the image's size as soon as it is known; if it returns an error, the
+// import ends with that error.
 using OnSize = std::function<Result<Ok>(const ImportedPicture&)>;
-// Called with sentences for the user about what was assumed.
+// Callback that receives sentences for the user about assumptions that were made.
 using OnNote = std::function<void(const std::string&)>;
 
 // The callbacks of an import.
@@ -44,11 +45,12 @@ struct PictureReports {
   OnNote note;
 };
 
-// Reads `in`, turns it upright, converts it to 8-bit sRGB (by its colour profile, if it has one;
-// measured values by their range), blends transparent pixels with black, and writes the pyramid to
-// `out`. Pixels are streamed if the format allows it; measured values are read twice. Errors:
-// kMalformed (not an image, damaged or truncated), kUnsupported (a video), kIo (the result cannot
-// be written), each with libvips' own message if there is one.
+// Reads the picture `in`, turns it upright, converts it to 8-bit sRGB (by its colour profile, if it
+// has one; measured values by their range), blends transparent pixels with black, and writes the
+// pyramid to `out`. Returns the picture's size. Pixels are streamed if the format allows it;
+// measured values are read twice. Errors: kMalformed (not an image, damaged or truncated),
+// kUnsupported (a video; a picture too thin for a pyramid), kIo (the result cannot be written),
+// each with libvips' own message if there is one.
 Result<ImportedPicture> importPicture(const std::string& in, const std::string& out,
                                       const PyramidOptions& options, const PictureReports& reports);
 

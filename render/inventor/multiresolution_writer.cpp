@@ -1,4 +1,5 @@
-// Every declared field is written with a value: Coin without the module requires that.
+// Writes SoMRFaceSet files. Every declared field is written with a value, because Coin without the
+// module requires that.
 #include "render/inventor/multiresolution_writer.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 namespace merlin::render::inventor {
 namespace {
 
-constexpr const char* kTextureName = "MERLIN_TEXTURE";  // of the texture's node
+constexpr const char* kTextureName = "MERLIN_TEXTURE";  // name of the texture's node
 
 struct ModelField {
   const char* field;
@@ -38,8 +39,8 @@ const lod::FeatureView* featureOf(const lod::Dendrogram& model, const ModelField
   return found && found->dimension == field.dimension ? found : nullptr;
 }
 
-// The fields that the file has. As in a file of one resolution, a textured model has no colours,
-// since viewers multiply the texture by them.
+// Returns the fields that the file gets. As in a file of one resolution, a textured model has no
+// colours, since viewers multiply the texture by them.
 std::vector<WrittenField> fieldsOf(const lod::Dendrogram& model, bool textured) {
   std::vector<WrittenField> fields;
   for (const ModelField& field : kFeatureFields) {
@@ -75,10 +76,11 @@ void printWhole(mesh::TextSink& out, const char* field, std::span<const std::uin
   out.print("\n    ]\n");
 }
 
-// The plain surface for programs without the module, and the texture of both.
+// The data besides the model: the plain surface for programs without the module, and the texture
+// image of both.
 struct Beside {
   mesh::Mesh plain;
-  std::vector<mesh::CompanionFile> picture;  // one, or none
+  std::vector<mesh::CompanionFile> picture;  // one entry, or none
 };
 
 bool write(const lod::Dendrogram& model, std::span<const WrittenField> fields, const Beside& beside,
@@ -94,7 +96,7 @@ bool write(const lod::Dendrogram& model, std::span<const WrittenField> fields, c
       "    minimumResolution {}\n    maximumResolution {}\n    currentResolution {}\n"
       "    desiredFrameRate {}\n    alternateRep ",
       a.alive.back(), a.alive.front(), a.alive.front(), kWrittenFrameRate_hz);
-  // Refers to the texture, so that viewers read its image once.
+  // The plain surface refers to the texture node, so that viewers read its image only once.
   mesh::printSeparator(out, beside.plain, textured ? fmt::format("USE {}", kTextureName) : "");
   printRows(out, "vertex", a.positions, 3);
   for (const WrittenField& f : fields)

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kAll = std::numeric_limits<int>::max();
 
-constexpr double kSettle_s = 0.25;  // after the last frame of a motion, until it counts as ended
+constexpr double kSettle_s = 0.25;  // time after its last frame at which a motion counts as ended
 
 SbMatrix viewOf(SoState* state) {
   SbMatrix view = SoModelMatrixElement::get(state);
@@ -38,7 +38,8 @@ SbVec3f facing(const SoMFVec3f& vertex, const int* corners) {
   return normal;
 }
 
-// An attribute for which the model has no values stays unchanged.
+// Sets the attributes of a corner from a node of the dendrogram. An attribute for which the model
+// has no values stays unchanged.
 void setCorner(const SoVertexProperty& attributes, int node, SoPrimitiveVertex& corner,
                SoPointDetail& point) {
   corner.setPoint(attributes.vertex[node]);
@@ -88,7 +89,8 @@ SoMRFaceSet::~SoMRFaceSet() = default;
 
 void SoMRFaceSet::notify(SoNotList* list) {
   const SoField* field = list->getLastField();
-  if (field == &frameTime) return applyFrameTime();  // no notification: a redraw would set it again
+  // No notification, as a redraw would set the field again.
+  if (field == &frameTime) return applyFrameTime();
   if (field == &interacting) law_.rest();
   const SoField* const kOfNoModel[] = {&minimumResolution, &maximumResolution, &currentResolution,
                                        &desiredFrameRate,  &interacting,       &alternateRep};
@@ -151,8 +153,8 @@ void SoMRFaceSet::GLRender(SoGLRenderAction* action) {
   shown()->GLRender(action);
 }
 
-// A frame with other matrices than the one before belongs to a motion. The alarm that ends the
-// motion is stopped until the frame is drawn, however long that takes.
+// Detects motion: a frame whose matrices differ from those of the frame before belongs to a motion.
+// The alarm that ends the motion is stopped until the frame is drawn, however long that takes.
 void SoMRFaceSet::watchMatrices(SoGLRenderAction* action) {
   const SbMatrix view = viewOf(action->getState());
   const bool moved = last_view_ && view != *last_view_;
@@ -209,7 +211,7 @@ void SoMRFaceSet::becomeStill(void* self, SoSensor*) {
   auto* const node = static_cast<SoMRFaceSet*>(self);
   node->matrices_move_ = false;
   node->law_.rest();
-  node->currentResolution.touch();  // draw again
+  node->currentResolution.touch();  // causes a redraw
 }
 
 void SoMRFaceSet::getPrimitiveCount(SoGetPrimitiveCountAction* action) {
@@ -223,7 +225,7 @@ void SoMRFaceSet::getPrimitiveCount(SoGetPrimitiveCountAction* action) {
 void SoMRFaceSet::computeBBox(SoAction*, SbBox3f& box, SbVec3f& center) {
   Surface* const ready = surface();
   if (!ready) return;
-  box = ready->box();  // the same for every resolution
+  box = ready->box();  // is the same for every resolution
   center = box.getCenter();
 }
 

@@ -1,8 +1,8 @@
-// SoMRFaceSet: the multiresolution face set of [GOURLEY98] (4.2.2, 5.4) as an Open Inventor node. A
-// separate module, which Coin loads when a file or a program names the class.
+// SoMRFaceSet: the multiresolution face set of [GOURLEY98] (4.2.2, 5.4) as an Open Inventor node.
+// It is a separate module, which Coin loads when a file or a program names the class.
 //
-// Thread-bound, as all of Open Inventor. In the global namespace, because Coin finds initClass() by
-// its mangled name.
+// Thread-bound, like all of Open Inventor. The class is in the global namespace, because Coin finds
+// initClass() by its mangled name.
 #pragma once
 
 #include <memory>
@@ -38,31 +38,32 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   SoMRFaceSet(const SoMRFaceSet&) = delete;
   SoMRFaceSet& operator=(const SoMRFaceSet&) = delete;
 
-  // In triangles. The resolution drawn is currentResolution, limited to the range of the other two
-  // and to what the model has.
+  // Resolutions, as numbers of triangles. The resolution drawn is currentResolution, limited to the
+  // range from minimumResolution to maximumResolution and to what the model has.
   SoSFInt32 minimumResolution, maximumResolution, currentResolution;
-  // [Hz] 0: currentResolution is drawn, which the user sets. Otherwise, while anything moves, the
-  // node sets currentResolution such that this rate is held and draws it; while nothing moves it
-  // draws maximumResolution.
+  // Desired frame rate [Hz]. If it is 0, the node draws currentResolution, which the user sets.
+  // Otherwise the node controls the resolution: while anything moves, it sets currentResolution so
+  // that this rate is held, and draws it; while nothing moves, it draws maximumResolution.
   SoSFFloat desiredFrameRate;
-  // A viewer may set this while it moves; otherwise the node detects motion by changes of the
-  // matrices that it is drawn with.
+  // A viewer may set this to TRUE while it moves; otherwise the node detects motion by changes of
+  // the matrices with which it is drawn.
   SoSFBool interacting;
-  // A viewer may set this after each frame, to the time of any clock. While it is not 0, the node
-  // ignores its own times of frames and its own detection of motion. Setting it causes no redraw.
+  // A viewer may set this after each frame to the time of any clock. While it is not 0, the node
+  // ignores its own frame times and its own detection of motion. Setting it causes no redraw.
   // Values of `interacting` and `frameTime` in a file are ignored.
   SoSFTime frameTime;
 
-  // Attributes of all nodes of the dendrogram, in its order of nodes; the last three may be empty.
+  // Attributes of all nodes of the dendrogram, in its order of nodes; `normal`, `diffuseColor` and
+  // `texCoord` may be empty.
   SoMFVec3f vertex, normal;
   SoMFColor diffuseColor;
   SoMFVec2f texCoord;
-  // The arrays triangles, parents, alive and error of render/lod/dendrogram.h; levelErrors may be
-  // empty.
+  // The arrays triangles (`faces`), parents, alive (`aliveCounts`) and error (`levelErrors`) of
+  // render/lod/dendrogram.h; levelErrors may be empty.
   SoMFInt32 faces, parents, aliveCounts;
   SoMFFloat levelErrors;
 
-  SoSFNode alternateRep;  // for programs without this module; not drawn here
+  SoSFNode alternateRep;  // surface for programs without this module; never drawn by this node
 
   void GLRender(SoGLRenderAction* action) override;
   void getPrimitiveCount(SoGetPrimitiveCountAction* action) override;
@@ -78,10 +79,10 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   using Surface = merlin::render::inventor::Surface;
 
   void addModelFields();
-  Surface* surface();  // rebuilt if the fields have changed; nullptr if they are invalid
+  Surface* surface();  // rebuilds it if fields have changed; nullptr if they are invalid
   bool automatic() const;
   bool moving() const;
-  int budget() const;  // limit of triangles for the next frame
+  int budget() const;  // returns the limit of triangles for the next frame
   SoIndexedFaceSet* shown();
 
   void watchMatrices(SoGLRenderAction* action);
@@ -91,9 +92,9 @@ class __attribute__((visibility("default"))) SoMRFaceSet : public SoShape {
   static void becomeStill(void* self, SoSensor* sensor);
 
   std::unique_ptr<Surface> surface_;
-  bool changed_ = true;         // fields of the model have changed since surface_ was made
-  bool viewer_counts_ = false;  // frameTime is not 0
-  bool reading_ = false;        // readInstance() is running
+  bool changed_ = true;         // whether model fields have changed since surface_ was made
+  bool viewer_counts_ = false;  // whether frameTime is not 0
+  bool reading_ = false;        // whether readInstance() is running
 
   merlin::render::inventor::FrameRateLaw law_;
   std::optional<int> next_resolution_;

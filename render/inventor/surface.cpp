@@ -13,16 +13,18 @@
 namespace merlin::render::inventor {
 namespace {
 
-// With one end mark per triangle, the size of the index list still fits into an int.
+// Limit of triangle corners, so that the index list, which has one end mark per triangle, still
+// fits into an int.
 constexpr int kMostCorners = std::numeric_limits<int>::max() / 4 * 3;
 
-// The fields that belong to the dendrogram, in the form that a Dendrogram views.
+// The fields that belong to the dendrogram, in the form that Dendrogram::Arrays views.
 struct Tree {
   std::vector<std::uint32_t> faces, parents, alive;
   std::vector<float> error;
 };
 
-// Negative numbers become very large ones, which Dendrogram::make() rejects.
+// Converts a field to unsigned numbers. Negative numbers become very large ones, which
+// Dendrogram::make() rejects.
 std::vector<std::uint32_t> unsignedOf(const SoMFInt32& field) {
   const std::int32_t* values = field.getValues(0);
   return {values, values + field.getNum()};
@@ -34,7 +36,7 @@ std::shared_ptr<const Tree> treeOf(const Surface::Fields& fields) {
   tree->parents = unsignedOf(fields.parents);
   tree->alive = unsignedOf(fields.aliveCounts);
   // Errors stay 0: drawing does not use them, and Coin rounds numbers in text files, so that they
-  // might fall, which Dendrogram::make() would reject.
+  // might decrease, which Dendrogram::make() would reject.
   tree->error.resize(tree->alive.size());
   return tree;
 }
@@ -45,7 +47,7 @@ std::span<const float> numbersOf(const SoMFVec3f& field) {
   return {field.getValues(0)->getValue(), 3 * count};
 }
 
-// Checks that the field has `wanted` values, one for each of `things`, or none.
+// Checks that the field has `wanted` values, one for each of `things`, or no values.
 Result<Ok> checkCount(const char* name, const SoMField& field, int wanted, const char* things) {
   if (field.getNum() == 0 || field.getNum() == wanted) return Ok{};
   return Error{Errc::kMalformed,
@@ -67,7 +69,7 @@ Result<Ok> checkCounts(const Surface::Fields& fields) {
                     "levels (aliveCounts)");
 }
 
-// A colour component as a byte; 0 for NaN, since casting NaN is undefined.
+// Returns a colour component as a byte; 0 for NaN, since casting NaN is undefined.
 std::uint32_t byteOf(float part) {
   if (!(part > 0)) return 0;
   return part < 1 ? static_cast<std::uint32_t>(std::lround(part * 255)) : 255;

@@ -1,4 +1,4 @@
-// Surface: the model that the fields of an SoMRFaceSet describe, checked, and two cuts of it.
+// Surface: the model that the fields of an SoMRFaceSet describe, after a check, and two cuts of it.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace merlin::render::inventor {
 
-// Keeps copies of the fields, so that cuts stay safe whatever happens to the fields. Thread-bound.
+// Keeps copies of the fields, so that cuts stay valid if the fields change. Thread-bound.
 class Surface {
  public:
   struct Fields {
@@ -33,24 +33,27 @@ class Surface {
     const SoMFFloat& levelErrors;
   };
 
-  // Two cuts are kept, so that a change between motion and rest is immediate ([GOURLEY98] 5.4).
+  // Names of the two cuts that are kept, one for rest and one for motion, so that a change between
+  // these is immediate ([GOURLEY98] 5.4).
   enum Copy { kStill, kMoving };
 
-  // Checks everything that a cut relies on, in O(fields). Errors: kMalformed.
+  // Makes a surface. Checks everything that a cut relies on, in O(fields). Errors: kMalformed.
   static Result<std::unique_ptr<Surface>> make(const Fields& fields);
   ~Surface();
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
 
-  // The face set of `copy` at the finest resolution with at most `budget` triangles, or at the
-  // coarsest if none has so few; cut again only if its level differs. Valid as long as this object.
+  // Returns the face set of `copy` at the finest resolution with at most `budget` triangles, or at
+  // the coarsest resolution if none has so few. Cuts again only if the level differs from that of
+  // the last call. Valid as long as this object.
   SoIndexedFaceSet& at(Copy copy, std::size_t budget);
 
-  // Number of triangles that at() would give, without cutting. O(log levels).
+  // Returns the number of triangles that at() would return, without cutting. O(log levels).
   std::size_t trianglesFor(std::size_t budget) const noexcept;
 
-  SoVertexProperty& attributes() const noexcept { return *attributes_; }  // of all nodes
-  const SbBox3f& box() const noexcept { return box_; }                    // of all nodes
+  SoVertexProperty& attributes() const noexcept { return *attributes_; }  // attributes of all nodes
+  // Bounding box of all nodes.
+  const SbBox3f& box() const noexcept { return box_; }
 
  private:
   struct Cut {

@@ -10,9 +10,9 @@ void findOneByOne(const CollapseForest& forest, std::uint32_t alive, const std::
   for (std::size_t i = 0; i < count; ++i) out[i] = forest.aliveAncestor(from[i], alive);
 }
 
-// The number of steps to an alive ancestor varies, so that branches of a loop over single corners
-// are mispredicted. Here eight corners go up together until all are alive. REQUIRES: node numbers
-// below 2^31.
+// Goes up from eight corners at a time, until all eight nodes are alive. This is faster than a loop
+// over single corners, whose branches are mispredicted because the number of steps to an alive
+// ancestor varies. REQUIRES: node numbers below 2^31.
 MERLIN_WIDE void findEightAtOnce(const CollapseForest& forest, std::uint32_t alive,
                                  const std::uint32_t* from, std::size_t count, std::uint32_t* out) {
   const simd::Ints last_alive = simd::all(alive - 1), last = simd::all(forest.nodes - 1);

@@ -1,5 +1,5 @@
-// Builds the Dendrogram of a reduction: gathers all rows in the order of their removal, last one
-// first.
+// Builds the Dendrogram of a reduction: gathers all rows in the order of their removal, the last
+// removed first.
 #include <algorithm>
 #include <cassert>
 #include <memory>

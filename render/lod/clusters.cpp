@@ -47,7 +47,8 @@ std::size_t Clusters::cut(std::span<const std::uint32_t> levels, std::span<std::
     const DetailStep& inner = steps_[stepFor(steps_, level)];
     at = replaceAt(level, &inner.corners[3 * std::size_t{inner.begins[2 * i]}],
                    3 * prefix(inner, 2 * i, alive_[level]), at);
-    // Corners may lie in clusters cut at finer levels: start from the step for the finest of them.
+    // Corners may lie in clusters that are cut at finer levels, so use the step for the finest of
+    // these levels.
     std::size_t finest = level;
     for (const std::uint16_t n : neighbours_[i]) finest = std::min<std::size_t>(finest, levels[n]);
     const DetailStep& mixed = steps_[stepFor(steps_, finest)];

@@ -1,4 +1,4 @@
-// Builds Clusters, once for each model; clusters.cpp cuts them.
+// Builds Clusters, once for each model; clusters.cpp makes cuts from them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,16 +19,16 @@ constexpr std::uint16_t kNoCluster = std::numeric_limits<std::uint16_t>::max();
 constexpr double kRungStep = 1.41421356, kLargeRungStep = 2;
 constexpr std::size_t kLargeRung = 300'000;
 constexpr unsigned kCurveBits = 10;
-// Cuts with fewer triangles per cluster than this do not use clusters.
+// If a cut has fewer triangles per cluster than this, clusters are not used.
 constexpr std::size_t kFewPerCluster = 64;
-// Automatic number of clusters: vertices per cluster, least and largest number.
+// For the automatic number of clusters: vertices per cluster, smallest and largest number.
 constexpr std::size_t kVerticesOfACluster = 700, kLeastUsual = 512, kMostUsual = 2048;
-// Number of pieces in which threads process all nodes or triangles; the result does not depend on
-// it.
+// Number of pieces into which all nodes or triangles are divided for threads; the result does not
+// depend on it.
 constexpr std::size_t kPieces = 16;
 
-// Triangles of the finest step such that all steps fit into `memory`: 12 bytes per triangle of each
-// step, plus 6 (rank and cluster) per triangle of the finest.
+// Returns the number of triangles of the finest step such that all steps fit into `memory`. A step
+// takes 12 bytes per triangle; the finest step takes 6 more per triangle (rank and cluster).
 std::size_t trianglesThatFit(std::size_t memory) {
   constexpr std::size_t kOfRungs = 12 * 3414 / 1000, kOfLargeRungs = 12 * 2, kOfFinest = 4 + 2;
   constexpr std::size_t kLeastLarge = (kOfRungs + kOfFinest) * kLargeRung;
@@ -105,15 +105,15 @@ void Clusters::Builder::chooseLevels(const ClusterSettings& settings) {
   finest = std::min(d.levelFor(trianglesThatFit(settings.memory - plain)), c.coarsest_);
 }
 
-// The nodes alive at L0 are the roots of clusters; every other node belongs to the cluster of its
-// parent. Clusters are numbered along a Morton curve. Roots at the same position are the two sides
-// of a seam: they share a cluster, so that both always have the same level and no gap opens between
-// them.
+// Assigns a cluster to each node. The nodes alive at L0 are the roots of clusters; every other node
+// belongs to the cluster of its parent. Clusters are numbered along a Morton curve. Roots at the
+// same position are the two sides of a seam; they share a cluster, so that both sides always have
+// the same level and no gap opens between them.
 void Clusters::Builder::numberClusters() {
   const auto alive = c.aliveBelow(c.coarsest_);
   c.cluster_of_.assign(c.aliveBelow(finest), kNoCluster);
   std::vector<std::uint32_t> roots;
-  std::vector<bool> made(alive, false);  // by a later collapse: does not exist yet at L0
+  std::vector<bool> made(alive, false);  // nodes made by a later collapse, which do not exist at L0
   for (std::size_t k = c.coarsest_; k < c.forest_.parents.size(); ++k)
     made[c.forest_.parents[k]] = true;
   for (std::uint32_t n = 0; n < alive; ++n) {
@@ -135,7 +135,7 @@ void Clusters::Builder::numberClusters() {
   };
   std::stable_sort(roots.begin(), roots.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
-  // If a mesh has more parts than there may be clusters, neighbouring roots share one.
+  // If a mesh has more parts than there may be clusters, neighbouring roots share a cluster.
   const std::size_t share = roots.size() / (kNoCluster - 1) + 1;
   std::size_t places = 0;
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -147,13 +147,13 @@ void Clusters::Builder::numberClusters() {
   c.bounds_.resize(roots.empty() ? 0 : places / share + 1);
 }
 
-// The group (DetailStep) of each triangle that is alive at the finest level.
+// Returns the group (see DetailStep) of each triangle that is alive at the finest level.
 std::vector<std::uint32_t> Clusters::Builder::groupTriangles(
     std::span<const std::uint32_t> corners) const {
   std::vector<std::uint32_t> group(corners.size() / 3, static_cast<std::uint32_t>(2 * c.size()));
   std::size_t level = d.levels() - 1;
   for (std::size_t rank = c.alive_[c.coarsest_]; rank < group.size(); ++rank) {
-    while (rank >= c.alive_[level]) --level;  // the last level at which it is alive
+    while (rank >= c.alive_[level]) --level;  // to the last level at which the triangle is alive
     const std::uint16_t dies_in = c.cluster_of_[c.aliveBelow(level) - 1];
     const std::uint32_t* corner = &corners[3 * rank];
     const bool inner = c.cluster_of_[corner[0]] == dies_in && c.cluster_of_[corner[1]] == dies_in &&
@@ -181,12 +181,13 @@ void Clusters::Builder::sortFinest() {
   c.steps_.push_back(std::move(step));
 }
 
-// Makes each coarser step from the one before.
+// Makes the coarser steps, each from the step before.
 void Clusters::Builder::addRungs() {
   auto triangles = static_cast<double>(d.trianglesAt(finest));
   for (;;) {
     triangles /= triangles > kLargeRung ? kLargeRungStep : kRungStep;
-    // Stop below one triangle: the coarsest level may have none, which division never reaches.
+    // Stops below one triangle: the coarsest level may have no triangle, a count that division
+    // never reaches.
     if (triangles < 1 || triangles <= static_cast<double>(d.trianglesAt(c.coarsest_))) return;
     const std::size_t level = d.levelFor(static_cast<std::size_t>(triangles));
     const DetailStep& finer = c.steps_.back();
@@ -203,7 +204,8 @@ void Clusters::Builder::addRungs() {
   }
 }
 
-// Makes steps for cuts of so few triangles that clusters would cost more than they save.
+// Makes steps without clusters, for cuts with so few triangles that clusters would cost more time
+// than they save.
 void Clusters::Builder::addPlainRungs() {
   auto triangles = static_cast<double>(std::min(kFewPerCluster * c.size(), d.trianglesAt(finest)));
   for (; triangles >= 1; triangles /= kRungStep) {
@@ -232,7 +234,7 @@ void Clusters::Builder::findNeighbours() {
   }
 }
 
-// Continues cluster_of_ down to the leaves, which are finer than the finest level.
+// Returns the cluster of each node, including nodes that are finer than the finest level.
 std::vector<std::uint16_t> Clusters::clusterOfEach() const {
   std::vector<std::uint16_t> of = cluster_of_;
   of.resize(forest_.nodes);
@@ -241,7 +243,7 @@ std::vector<std::uint16_t> Clusters::clusterOfEach() const {
   return of;
 }
 
-// Bounding boxes of each cluster's nodes and of its leaf triangles' corners.
+// Returns the bounding box of each cluster's nodes and of the corners of its leaf triangles.
 Boxes Clusters::Builder::boxesOfNodes() const {
   const auto positions = d.arrays().positions;
   const auto leaves = d.arrays().triangles;
@@ -266,8 +268,8 @@ Boxes Clusters::Builder::boxesOfNodes() const {
   return std::move(boxes[0]);
 }
 
-// Computes spheres around all nodes that a cluster's triangles can have at any level, and cones
-// around the normals at the finest level.
+// Computes for each cluster the sphere around all nodes that its triangles can have at any level,
+// and the cone around the normals of its triangles at the finest level.
 void Clusters::Builder::measure() {
   const auto positions = d.arrays().positions;
   Boxes boxes = boxesOfNodes();
@@ -334,12 +336,13 @@ Clusters::Clusters(const Dendrogram& dendrogram, const ClusterSettings& settings
   builder.measure();
 }
 
-// A parallel counting sort by cluster; stable, so the result is the same as with one thread.
+// This is a parallel counting sort by cluster. It is stable, so the result does not depend on the
+// number of threads.
 void Clusters::everything(std::vector<std::uint32_t>& corners,
                           std::vector<std::uint32_t>& ends) const {
   const auto leaves = dendrogram_.arrays().triangles;
   const std::vector<std::uint16_t> of = clusterOfEach();
-  // By piece and cluster: where the next triangle goes.
+  // For each piece and cluster: the index at which the next triangle is stored.
   std::vector<std::uint32_t> at(kPieces * size(), 0);
   forBlocks(threadsOr(0), kPieces, [&](std::size_t piece) {
     const Piece triangles = pieceOf(leaves.size() / 3, piece);

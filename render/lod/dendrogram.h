@@ -36,24 +36,28 @@ struct FeatureView {
   std::span<const float> values;  // nodes x dimension
 };
 
-// A read-only view; the memory (a file's mapping, or arrays) is kept alive by `owner`.
-// Reentrant: any number of threads may cut one dendrogram.
+// A read-only view of a dendrogram in memory; `owner` keeps the memory (a file's mapping, or
+// arrays) alive. Reentrant: any number of threads may cut one dendrogram.
 class Dendrogram {
  public:
   struct Arrays {
-    std::span<const float> positions;  // nodes x 3, model units
+    std::span<const float> positions;  // nodes x 3 [model units]
     std::vector<FeatureView> features;
-    std::span<const std::uint32_t> parents;    // collapses; [k]: the node that collapse k makes
+    // One per collapse; [k]: the node that collapse k makes.
+    std::span<const std::uint32_t> parents;
     std::span<const std::uint32_t> triangles;  // triangles x 3: leaf nodes, sorted as above
-    std::span<const std::uint32_t> alive;      // levels; [L]: triangles left at level L, 0..C
-    std::span<const float> error;              // levels; [L]: estimate, model units; never falls
+    // One per level; [L]: triangles left at level L, 0..C.
+    std::span<const std::uint32_t> alive;
+    // One per level: estimate [model units]; never decreases.
+    std::span<const float> error;
     std::string about;
-    std::span<const std::uint8_t> texture{};  // a PNG or JPEG file, not checked; or empty
+    std::span<const std::uint8_t> texture{};  // a PNG or JPEG file (not checked), or empty
   };
 
-  // Checks everything that a cut relies on, so that no file can make it read out of bounds or run
-  // for ever: sizes agree, corners are leaves, each inner node is made once, every path of parents
-  // ends, triangle counts never rise. O(file). Errors: kMalformed.
+  // Makes a dendrogram of `arrays`, which must lie in memory that `owner` keeps alive. Checks
+  // everything that a cut relies on, so that no file can make a cut read out of bounds or run
+  // forever: sizes agree, corners are leaves, each inner node is made once, every path of parents
+  // ends, triangle counts never increase. O(file). Errors: kMalformed.
   static Result<Dendrogram> make(Arrays arrays, std::shared_ptr<const void> owner);
 
   std::size_t nodeCount() const noexcept { return a_.positions.size() / 3; }
@@ -61,25 +65,28 @@ class Dendrogram {
   std::size_t vertexCount() const noexcept { return nodeCount() - a_.parents.size(); }
   std::size_t triangleCount() const noexcept { return a_.triangles.size() / 3; }
   const Arrays& arrays() const noexcept { return a_; }
-  const FeatureView* find(std::string_view name) const noexcept;  // nullptr if there is none
+  // Nullptr if there is no such feature.
+  const FeatureView* find(std::string_view name) const noexcept;
 
-  // For a node that is not a root: the collapse that merges it, and the node that this collapse
-  // makes.
+  // collapseOf() returns the collapse that merges a node, parentOf() the node that this collapse
+  // makes. REQUIRES: the node is not a root.
   std::size_t collapseOf(std::uint32_t node) const noexcept { return (nodeCount() - 1 - node) / 2; }
   std::uint32_t parentOf(std::uint32_t node) const noexcept { return a_.parents[collapseOf(node)]; }
 
   std::size_t trianglesAt(std::size_t level) const noexcept { return a_.alive[level]; }
   float errorAt(std::size_t level) const noexcept { return a_.error[level]; }
 
-  // The finest level with at most `budget` triangles; the coarsest level if none has so few. O(log
-  // levels).
+  // Returns the finest level with at most `budget` triangles; the coarsest level if none has so
+  // few. O(log levels).
   std::size_t levelFor(std::size_t budget) const noexcept;
 
-  // The coarsest level whose error estimate is at most `error`, model units. O(log levels).
+  // Returns the coarsest level whose error estimate is at most `error` [model units]; 0 if there is
+  // none. O(log levels).
   std::size_t levelForError(float error) const noexcept;
 
   // Writes the triangles of `level` to `out`, as 3 * trianglesAt(level) node numbers; returns the
-  // number of triangles. REQUIRES: level < levels(), `out` is large enough. Allocates nothing.
+  // number of triangles. REQUIRES: level < levels(); `out` has room for the numbers. Allocates
+  // nothing.
   std::size_t cut(std::size_t level, std::span<std::uint32_t> out) const noexcept;
 
  private:
@@ -91,11 +98,12 @@ class Dendrogram {
 };
 
 // Builds the dendrogram of a reduction; `mesh` is the mesh before the reduction. O(n log n) time,
-// about 2 x the memory of the result. Reentrant; same input, same bytes. REQUIRES: `log` belongs to
-// `mesh`, and no node is merged twice.
+// about twice the memory of the result. Reentrant; the same input gives the same bytes. REQUIRES:
+// `log` belongs to `mesh`, and no node is merged twice.
 Dendrogram buildDendrogram(const mesh::Mesh& mesh, const CollapseLog& log);
 
-// The surface at `level` as a mesh of its own, with the features of its nodes.
+// Returns the surface at `level` as an independent mesh, with the features of its nodes. REQUIRES:
+// level < levels().
 mesh::Mesh extract(const Dendrogram& dendrogram, std::size_t level);
 
 }  // namespace merlin::render::lod

@@ -5,7 +5,7 @@
 namespace merlin::render::lod {
 namespace {
 
-// The collapses whose nodes are displaced: [begin, end).
+// The range of collapses [begin, end) whose nodes are displaced.
 struct Window {
   std::size_t begin = 0, end = 0;
 
@@ -24,7 +24,7 @@ struct NodeRange {
   std::uint32_t begin, end;
 };
 
-// The nodes that the window's collapses merge.
+// Returns the range of the nodes that the window's collapses merge.
 NodeRange nodesOf(const Dendrogram& dendrogram, const Window& window) {
   const std::size_t nodes = dendrogram.nodeCount();
   return {static_cast<std::uint32_t>(nodes - 2 * window.end),

@@ -1,8 +1,8 @@
 // Geomorphs: vertices that merge soon move gradually towards the position of the merged vertex, so
 // that a change of level is not visible as a jump ("popping") ([GOURLEY98] 6.1).
 //
-// At level L the next collapses are L .. E-1, where E is the level with a given share of the
-// triangles less. A node that collapse k of these merges is drawn at
+// At level L the next collapses are L .. E-1, where E is the first level whose triangle count is
+// lower by a given share. A node that collapse k of these merges is drawn at
 //
 //   (k - L + 1) / (E - L + 1)
 //
@@ -24,17 +24,17 @@ namespace merlin::render::lod {
 
 struct Morph {
   std::uint32_t node = 0;
-  float own = 1;  // weight: 0 at its parent's position, 1 at its own
+  float own = 1;  // weight of its own position: 0 at its parent's position, 1 at its own
 };
 
-// Sets `morphs` to the nodes displaced at `level`, by ascending number: a parent comes before its
-// children, and children of a displaced parent move towards its displaced position. `share`:
-// fraction of the triangles, 0 to 1; 0: no node is displaced. REQUIRES: level < levels(). O(log
-// levels + size of the result).
+// Sets `morphs` to the nodes that are displaced at `level`, by ascending number; so a parent comes
+// before its children, which move towards the displaced position of a displaced parent. `share`:
+// fraction of the triangles whose removal is prepared, 0 to 1; 0: no node is displaced. REQUIRES:
+// level < levels(). O(log levels + size of the result).
 void morphsAt(const Dendrogram& dendrogram, std::size_t level, double share,
               std::vector<Morph>& morphs);
 
-// The same with one level for each cluster, as Clusters::cut() takes them. O(collapses from the
+// Does the same for cuts with one level per cluster, as for Clusters::cut(). O(collapses from the
 // finest of these levels to the last one that displaces a node).
 void morphsAt(const Dendrogram& dendrogram, const Clusters& clusters,
               std::span<const std::uint32_t> levels, double share, std::vector<Morph>& morphs);

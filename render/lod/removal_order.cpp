@@ -12,8 +12,9 @@ namespace {
 constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
 // The collapses in terms of places, which are vertices of the mesh: when two nodes merge, the new
-// node takes the place of the first, and the place of the second ends there. Places that are near
-// in space are near in memory; with the numbers of nodes, each step would go to a distant address.
+// node takes over the place of the first node, and the place of the second node ends. Places that
+// are near in space are near in memory, while the numbers of nodes would lead to a distant address
+// at each step.
 struct Places {
   struct End {
     std::uint32_t collapse = kNever, into = 0;
@@ -22,7 +23,8 @@ struct Places {
 
   Places(std::size_t vertices, const CollapseLog& log) : ends(vertices) {
     for (std::size_t v = 0; v < vertices; ++v) ends[v] = {};
-    HugeArray<std::uint32_t> place_of(log.children.size());  // [k]: place of collapse k's node
+    // [k]: place of the node that collapse k makes.
+    HugeArray<std::uint32_t> place_of(log.children.size());
     for (std::size_t k = 0; k < log.children.size(); ++k) {
       const auto place = [&](std::uint32_t n) { return n < vertices ? n : place_of[n - vertices]; };
       const std::uint32_t on = place(log.children[k][0]), over = place(log.children[k][1]);
@@ -32,8 +34,8 @@ struct Places {
     }
   }
 
-  // The first level at which the triangle is gone, because two of its corners share a place; never
-  // 0. kNever if no collapse removes the triangle.
+  // Returns the first level, at least 1, at which the triangle is gone because two of its corners
+  // share a place; kNever if no collapse removes the triangle.
   std::uint32_t removalOf(const std::uint32_t* corners) const {
     std::uint32_t c[] = {corners[0], corners[1], corners[2]};
     std::uint32_t at[] = {ends[c[0]].collapse, ends[c[1]].collapse, ends[c[2]].collapse};
@@ -85,14 +87,15 @@ void RemovalOrder::findRemovals(const mesh::Mesh& mesh, unsigned threads,
   const Places places(mesh.vertexCount(), log_);
   const auto levels = static_cast<std::uint32_t>(collapses() + 1);
   forEach(threads, count, [&](std::size_t t) {
-    removals[t] = std::min(levels, places.removalOf(&mesh.triangles[3 * t]));  // levels: never
+    // `levels` means never.
+    removals[t] = std::min(levels, places.removalOf(&mesh.triangles[3 * t]));
   });
 }
 
-// Counting sort by level of removal, last first; triangles with the same level keep the order of
-// the mesh. alive_[d] first is the number of triangles that are removed after level d, which is the
-// index where those of level d begin. After the sort it is the index where they end, which is the
-// number of triangles left one level before.
+// Sorts the triangles by the level of their removal (counting sort), last level first; triangles
+// with the same level keep the order of the mesh. alive_[d] first is the number of triangles that
+// are removed after level d, which is the index where the triangles of level d begin. After the
+// sort it is the index where they end, which is the number of triangles left at level d - 1.
 void RemovalOrder::sortTriangles(const HugeArray<std::uint32_t>& removals) {
   for (std::size_t t = 0; t < removals.size(); ++t) ++alive_[removals[t]];
   std::uint32_t later = 0;

@@ -10,24 +10,26 @@ namespace merlin::render::lod {
 namespace {
 
 constexpr double kStepsAnOctave = 64;
-// All clusters get the same level if the finest wanted detail is at most this times the coarsest,
-// since levels of their own would then gain nothing.
+// All clusters get the same level if the finest wanted detail is at most this multiple of the
+// coarsest, since different levels would then gain nothing.
 constexpr float kMuchTheSame = 1.15F;
-// Lower limit of the cosine g: a surface seen edge-on still shows its silhouette.
+// Lower limit of the cosine g, because the silhouette of a surface that is seen edge-on is still
+// visible.
 constexpr float kLeastFacing = 0.1F;
 constexpr int kBisections = 12;
 constexpr float kLeastOfNeighbour = 0.4F;
 constexpr int kGradings = 3;
 // Clusters get levels of their own only for budgets above this multiple of the coarsest level's
-// triangles: with less, a cluster is a handful of triangles, most of them at its border.
+// triangles: with a smaller budget, a cluster has only a few triangles, most of them at its border.
 constexpr std::size_t kTimesTheCoarsest = 4;
 
-// Planes, eye and scale of the view of a tile.
+// Frustum planes, eye and scale of the view of one tile.
 struct Viewer {
   bool parallel;                      // the eye is infinitely far away
-  Eigen::Matrix<float, 5, 4> planes;  // left, right, bottom, top, near; unit normals inwards
-  Eigen::Vector4f depth;              // the row of the matrix that gives w
-  Eigen::Vector3f eye;            // model units; in a parallel projection, the direction of view
+  Eigen::Matrix<float, 5, 4> planes;  // left, right, bottom, top, near; unit normals point inwards
+  Eigen::Vector4f depth;              // the row of the matrix that computes w
+  // Position [model units]; in a parallel projection, view direction.
+  Eigen::Vector3f eye;
   float near_w, pixels_per_unit;  // w at the near plane; pixels per model unit at w = 1
   float depth_per_unit;
 
@@ -51,7 +53,7 @@ struct Viewer {
     axes << m.row(0).head<3>(), m.row(1).head<3>(), m.row(3).head<3>();
     eye = axes.inverse() * -Eigen::Vector3f(m(0, 3), m(1, 3), m(3, 3));
     depth_per_unit = depth.head<3>().norm();
-    // z = a w + b, so z = -w at the near plane.
+    // Clip coordinates satisfy z = a w + b, and z = -w at the near plane.
     const float a = m.row(2).head<3>().dot(m.row(3).head<3>()) / (depth_per_unit * depth_per_unit);
     near_w = std::max((a * m(3, 3) - m(2, 3)) / (1 + a), 1e-6F);
   }
@@ -60,8 +62,8 @@ struct Viewer {
     return ((planes * centre.homogeneous()).array() >= -radius).all();
   }
 
-  // Upper limit of the cosine at which a triangle of the cluster is seen; 0 if all of them face
-  // away.
+  // Returns an upper limit of the cosine at which a triangle of the cluster is seen; 0 if all of
+  // its triangles face away.
   float facing(const ClusterBounds& b, const Eigen::Vector3f& centre) const {
     if (b.cone_cos <= 0) return 1;
     const Eigen::Vector3f to = parallel ? eye : Eigen::Vector3f(centre - eye);
@@ -75,8 +77,9 @@ struct Viewer {
     return angle >= static_cast<float>(M_PI_2) ? 0 : std::max(std::cos(angle), kLeastFacing);
   }
 
-  // Pixels per model unit at half the radius in front of the cluster's centre, but no nearer to the
-  // eye than a quarter of the radius; in a parallel projection, the same everywhere.
+  // Returns the pixels per model unit at the point half a radius in front of the cluster's centre,
+  // but no nearer to the eye than a quarter of the radius. In a parallel projection the value is
+  // the same everywhere.
   float pixelsAUnit(const Eigen::Vector3f& centre, float radius) const {
     const float r = radius * depth_per_unit;
     const float w = std::max(depth.dot(centre.homogeneous()) - r / 2, r / 4);
@@ -118,8 +121,9 @@ void ViewCut::look(std::span<const TileView> tiles) {
   }
 }
 
-// Raises wanted_ of the neighbours of visible clusters. Makes few passes, so that clusters far from
-// everything visible stay as coarse as possible.
+// Raises wanted_ of the neighbours of visible clusters, so that it differs little between
+// neighbours. Makes few passes, so that clusters far from everything visible stay as coarse as
+// possible.
 void ViewCut::grade() {
   for (int pass = 0; pass < kGradings; ++pass) {
     for (std::size_t c = 0; c < clusters_.size(); ++c) {
@@ -154,8 +158,8 @@ bool ViewCut::choose(std::span<const TileView> tiles, std::size_t budget) {
   const auto [least, most] = std::minmax_element(wanted_.begin(), wanted_.end());
   if (*most <= 0 || *most <= kMuchTheSame * *least) return false;
   grade();
-  // The largest useful kappa gives all visible clusters full detail; it is taken if the budget
-  // allows.
+  // The largest useful kappa gives all visible clusters full detail; it is used if the budget
+  // allows it.
   double high = 2 * static_cast<double>(dendrogram_.triangleCount()) / *most;
   for (const float w : wanted_) {
     if (w > 0) high = std::max(high, 2 * static_cast<double>(dendrogram_.triangleCount()) / w);

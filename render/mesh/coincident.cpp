@@ -37,7 +37,7 @@ std::size_t bytesForCoincident(std::size_t vertices) {
   return sizeof(std::uint32_t) * (vertices + tableSize(vertices));
 }
 
-// Uses a hash table with open addressing; its entries are positions, each with the last vertex
+// Uses a hash table with open addressing. Its entries are positions; each holds the last vertex
 // found there so far, whose next vertex is the first one.
 std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions) {
   constexpr std::uint32_t kEmpty = ~std::uint32_t{0};
@@ -45,14 +45,14 @@ std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions) 
   std::vector<std::uint32_t> next(n), last(tableSize(n), kEmpty);
   std::iota(next.begin(), next.end(), 0U);
   const auto at = [&](std::uint32_t v) { return positions.data() + 3 * std::size_t{v}; };
-  // More probes than this mean positions that were crafted to collide.
+  // If more probes than this are needed, the positions were crafted to collide.
   std::size_t steps_left = 16 * n + 1024;
   for (std::uint32_t v = 0; v < n; ++v) {
     std::size_t k = hashOfPlace(at(v)) & (last.size() - 1);
     while (last[k] != kEmpty && !std::equal(at(v), at(v) + 3, at(last[k]))) {
       k = (k + 1) & (last.size() - 1);
       if (--steps_left > 0) continue;
-      next = std::vector<std::uint32_t>();  // makes room for what sorting takes
+      next = std::vector<std::uint32_t>();  // frees memory for sorting
       last = std::vector<std::uint32_t>();
       return coincidentVerticesBySorting(positions);
     }

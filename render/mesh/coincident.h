@@ -1,5 +1,5 @@
-// Finds coincident vertices: the two sides of a texture seam, the copies that splitNonManifold()
-// makes, and triangle soups whose triangles share no vertices.
+// Finds coincident vertices, i.e. vertices at the same position: the two sides of a texture seam,
+// the copies that splitNonManifold() makes, and triangle soups whose triangles share no vertices.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,8 @@
 
 namespace merlin::render::mesh {
 
-// Hash of the bits of a position. Coordinates that compare equal count as equal: -0 + 0 is 0.
+// Returns a hash of the bits of a position (3 floats). Coordinates that compare equal have the same
+// hash; -0 is converted to 0 by adding 0.
 inline std::uint64_t hashOfPlace(const float* position) noexcept {
   std::uint64_t h = 0;
   for (int k = 0; k < 3; ++k) {
@@ -27,11 +28,11 @@ inline std::uint64_t hashOfPlace(const float* position) noexcept {
 // Expected O(n), with a hash table; O(n log n) if positions were crafted to collide. Reentrant.
 std::vector<std::uint32_t> coincidentVertices(std::span<const float> positions);
 
-// Memory that coincidentVertices() takes at most, with its result [bytes]: 12 to 20 for each
-// vertex.
+// Returns the maximum memory that coincidentVertices() takes, including its result [bytes]: 12 to
+// 20 bytes per vertex.
 std::size_t bytesForCoincident(std::size_t vertices);
 
-// Same result as coincidentVertices(), always in O(n log n).
+// Returns the same as coincidentVertices(), always in O(n log n).
 std::vector<std::uint32_t> coincidentVerticesBySorting(std::span<const float> positions);
 
 }  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-// Disjoint sets of numbers. Reentrant.
+// DisjointSets: a union-find structure that divides numbers into disjoint sets. Reentrant.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace merlin::render::mesh {
 
-// At first, each number below `size` is a set. The root of a set is its smallest number.
+// Initially, each number below `size` is a set of its own. The root of a set is its smallest
+// number.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t size) : parent_(size) {
@@ -20,9 +21,9 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  // Returns a member of the set that has both.
+  // Merges the sets of a and b; returns a member of the merged set.
   std::uint32_t unite(std::uint32_t a, std::uint32_t b) {
-    if (parent_[a] == parent_[b]) return parent_[a];  // mostly so for neighbours: much faster
+    if (parent_[a] == parent_[b]) return parent_[a];  // common for neighbours, and much faster
     a = rootOf(a);
     b = rootOf(b);
     return parent_[std::max(a, b)] = std::min(a, b);

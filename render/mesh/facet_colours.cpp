@@ -12,8 +12,7 @@
 namespace merlin::render::mesh {
 namespace {
 
-// A corner of a triangle. Colours are compared by their bits, so that no number is left without an
-// order.
+// A corner of a triangle. Colours are compared by their bits, because NaN has no order.
 struct Corner {
   std::uint32_t vertex;
   std::array<std::uint32_t, 3> colour;

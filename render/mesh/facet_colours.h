@@ -1,4 +1,4 @@
-// Converts the colours of facets, which STL, OFF and PLY files may have, to colours of vertices.
+// Converts colours of facets, which STL, OFF and PLY files may have, to colours of vertices.
 #pragma once
 
 #include <span>

@@ -18,8 +18,8 @@ using Index = std::uint32_t;
 
 constexpr double kUnitTolerance = 1e-3;
 
-// Numbers sorted by a key below `keys`, in order of the numbers: those of key k are at
-// [begin[k], begin[k + 1]).
+// The numbers 0 .. count - 1 grouped by a key below `keys`, ascending within a group. The numbers
+// with key k are items[begin[k]] .. items[begin[k + 1] - 1].
 struct Buckets {
   std::vector<Index> begin, items;
 
@@ -46,7 +46,7 @@ class Inspector {
     keepTriangles();
     dropDuplicates();
     DisjointSets corners(
-        corners_.size());  // of triangles that are connected by edges around a vertex
+        corners_.size());  // sets of corners at one vertex whose triangles are joined by edges
     lookAtEdges(corners);
     countFans(corners);
     joinBorders(corners);
@@ -56,7 +56,7 @@ class Inspector {
 
  private:
   const float* at(Index vertex) const { return &mesh_.positions[3 * std::size_t{vertex}]; }
-  // The corner behind this one in its triangle.
+  // Returns the next corner of the same triangle.
   static Index behind(Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
   std::size_t triangles() const { return corners_.size() / 3; }
 
@@ -74,8 +74,8 @@ class Inspector {
   const Mesh& mesh_;
   Inspection result_;
   std::vector<Index> place_;    // by vertex: the first vertex at its position
-  std::vector<Index> corners_;  // by corner of the triangles that count: its place
-  std::vector<Index> borders_;  // corners at which an edge begins that no other triangle has
+  std::vector<Index> corners_;  // corners of the triangles that count, as indices of places
+  std::vector<Index> borders_;  // corners at which a border edge begins
 };
 
 void Inspector::lookAtVertices() {
@@ -109,7 +109,7 @@ void Inspector::joinPlaces() {
   if (result_.not_finite > 0) return;
   const std::vector<Index> next = coincidentVertices(mesh_.positions);
   for (Index v = 0; v < place_.size(); ++v) {
-    if (place_[v] != v) continue;  // it belongs to an earlier ring
+    if (place_[v] != v) continue;  // v belongs to a ring that was found before
     for (Index other = next[v]; other != v; other = next[other]) place_[other] = v;
   }
 }
@@ -158,8 +158,9 @@ void Inspector::dropDuplicates() {
   corners_.resize(3 * kept);
 }
 
-// An edge is named by the corner at which it begins; edges between two places are neighbours once
-// they are sorted by the smaller place and then by the other.
+// Examines all edges. An edge is identified by the corner at which it begins. Edges are sorted by
+// the smaller and then by the larger of their two places, so that edges between the same places are
+// adjacent.
 void Inspector::lookAtEdges(DisjointSets& corners) {
   const auto other = [&](Index c) { return std::max(corners_[c], corners_[behind(c)]); };
   Buckets edges(place_.size(), corners_.size(),
@@ -178,7 +179,8 @@ void Inspector::lookAtEdges(DisjointSets& corners) {
   }
 }
 
-// Examines one edge. begin, end: the corners at which its triangles begin it.
+// Examines one edge between two places. [begin, end): for each of its triangles, the corner at
+// which the edge begins.
 void Inspector::lookAtEdge(const Index* begin, const Index* end, DisjointSets& corners) {
   const auto count = end - begin;
   if (count == 1) borders_.push_back(*begin);
@@ -202,11 +204,12 @@ void Inspector::countFans(DisjointSets& corners) {
       std::count_if(fans.begin(), fans.end(), [](std::uint8_t f) { return f > 1; }));
 }
 
-// Joins border edges to holes: where a fan of triangles ends, its two border edges follow each
+// Joins border edges to holes: the two border edges at the end of a fan of triangles follow each
 // other.
 void Inspector::joinBorders(DisjointSets& corners) {
   for (const Index c : borders_) corners.unite(c, behind(c));
-  std::vector<Index> hole_of(corners_.size());  // 0: none yet, else its place + 1
+  // 0: no hole yet; else its index in result_.holes + 1.
+  std::vector<Index> hole_of(corners_.size());
   for (const Index c : borders_) {
     Index& hole = hole_of[corners.rootOf(c)];
     if (hole == 0) {

@@ -29,14 +29,15 @@ std::size_t dropDegenerate(Mesh& mesh) {
   return dropped;
 }
 
-// The corners of the triangle, rotated so that the smallest index is first; same orientation.
+// Returns the corners of the triangle, rotated so that the smallest index is first; the orientation
+// stays.
 std::array<std::uint32_t, 3> turned(const std::uint32_t* t) {
   const auto k = static_cast<std::size_t>(std::min_element(t, t + 3) - t);
   return {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
 }
 
-// Makes duplicates degenerate, so that they are dropped. `same`: triangles with the same smallest
-// vertex.
+// Makes duplicate triangles degenerate, so that they will be dropped. `same`: triangles with the
+// same smallest vertex.
 void markDuplicates(Mesh& mesh, std::span<std::uint32_t> same, TidyReport& report) {
   const auto key = [&](std::uint32_t t) {
     const auto [a, b, c] = turned(&mesh.triangles[3 * std::size_t{t}]);

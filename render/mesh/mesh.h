@@ -1,8 +1,8 @@
 // Mesh: a triangulated surface with any number of named features per vertex, in flat arrays.
 //
-// An indexed triangle set without stored adjacency: non-manifold edges, borders and several
-// components are all legal; an algorithm that cannot handle one of them says so in its contract.
-// All functions are reentrant.
+// A mesh is an indexed triangle set without stored adjacency. Non-manifold edges, borders and
+// several components are all legal; an algorithm that cannot handle one of them states that in its
+// contract. All functions are reentrant.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@
 namespace merlin::render::mesh {
 
 // One vertex attribute (a modality): `dimension` floats per vertex. Names with a meaning in MERLIN:
-// "normal" (3, unit), "colour" (3, each 0..1, as stored in the file), "texcoord" (2). All others
-// are plain data.
+// "normal" (3, unit), "colour" (3, each 0..1, as stored in the file), "texcoord" (2). All other
+// names are plain data.
 struct Feature {
   std::string name;
   std::size_t dimension = 1;
@@ -40,7 +40,8 @@ struct Mesh {
   std::size_t vertexCount() const noexcept { return positions.size() / 3; }
   std::size_t triangleCount() const noexcept { return triangles.size() / 3; }
 
-  const Feature* find(std::string_view name) const noexcept;  // nullptr if there is none
+  // Nullptr if the mesh has no such feature.
+  const Feature* find(std::string_view name) const noexcept;
   Feature* find(std::string_view name) noexcept;
 };
 
@@ -48,8 +49,9 @@ struct Mesh {
 struct TidyReport {
   std::size_t degenerate = 0;  // triangles with the same vertex twice
   std::size_t duplicate = 0;   // triangles with the same three vertices as an earlier one
-  std::size_t opposite = 0;    // like `duplicate`, but facing the other way
-  std::size_t unused = 0;      // vertices that no triangle uses
+  // Triangles with the same vertices as an earlier one, facing the other way.
+  std::size_t opposite = 0;
+  std::size_t unused = 0;  // vertices that no triangle uses
 };
 
 // Checks external data: every index in range, every number finite, coordinates within +-1e18, every
@@ -58,40 +60,42 @@ struct TidyReport {
 Result<Ok> validate(const Mesh& mesh);
 
 // Drops triangles that have the same vertex twice, triangles with the same three vertices as an
-// earlier one, then vertices that no triangle uses. Order is kept. O(n log n). REQUIRES:
-// validate(mesh).ok().
+// earlier triangle, and then vertices that no triangle uses. The order of the others is kept. O(n
+// log n). REQUIRES: validate(mesh).ok().
 TidyReport tidy(Mesh& mesh);
 
-// Removes the vertices that are not kept; order is kept. Returns how many were removed. REQUIRES:
-// an entry for each vertex, and every vertex of a triangle is kept.
+// Removes the vertices whose entry in `kept` is false; the order of the others is kept. Returns the
+// number of removed vertices. REQUIRES: `kept` has one entry per vertex, true for each vertex of a
+// triangle.
 std::size_t keepVertices(Mesh& mesh, const std::vector<bool>& kept);
 
-// Adds a copy of `vertex`, with its position and features; returns the index of the copy.
+// Appends a copy of `vertex`, with its position and features; returns the index of the copy.
 std::uint32_t addCopy(std::uint32_t vertex, Mesh& mesh);
 
-// Bounding box of all vertices; all zero if there are none.
+// Returns the bounding box of all vertices; all zero if there are none.
 Box boundingBox(std::span<const float> positions) noexcept;
 
-// Dot product of two vectors of three.
+// Returns the dot product of two vectors of three floats.
 inline float dot(const float* a, const float* b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Unit normal of the triangle with these corners; zero if its area is zero.
+// Returns the unit normal of the triangle with these corners (3 floats each); zero if its area is
+// zero.
 std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) noexcept;
 
-// Vertex normals: the mean of the unit normals of the faces at a vertex ([GOURLEY98] equation 4.1),
-// scaled to unit length; zero if they cancel. Returns vertices x 3.
+// Returns the vertex normals (vertices x 3): the mean of the unit normals of the faces at a vertex
+// ([GOURLEY98] equation 4.1), scaled to unit length; zero if the face normals cancel.
 std::vector<float> vertexNormals(const Mesh& mesh);
 
-// True if two coincident vertices belong to one surface, i.e. their normals, of any length, form an
-// angle below 90 degrees.
+// Returns true if two coincident vertices belong to one smooth surface, i.e. their normals (of any
+// length) form an angle below 90 degrees.
 bool areOneSurface(const float* normal, const float* other) noexcept;
 
-// Adds "normal" by vertexNormals(), unless the mesh has one of the right size and unit length. In a
-// mesh with texture coordinates, coincident vertices of one surface (the sides of a seam) get the
-// same normal, so that shading does not show the seam; more than eight coincident vertices each
-// keep their own.
+// Adds the feature "normal", computed by vertexNormals(), unless the mesh has normals of dimension
+// 3 and unit length. In a mesh with texture coordinates, coincident vertices of one surface (the
+// sides of a seam) get the same normal, so that shading does not show the seam; at a position with
+// more than eight coincident vertices, each keeps its own normal.
 void ensureNormals(Mesh& mesh);
 
 }  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-// MeshSize: the counts that determine the memory of a mesh, which need not be loaded yet.
+// MeshSize: the counts that determine the memory of a mesh; the mesh need not be loaded.
 #pragma once
 
 #include <cstddef>

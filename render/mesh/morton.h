@@ -1,5 +1,5 @@
-// Morton (Z-order) key of a point in a box: points with nearby keys are close in space. G. M.
-// Morton, "A computer oriented geodetic data base ...", IBM, 1966.
+// Computes the Morton (Z-order) key of a point in a box; points with nearby keys are close in
+// space. Source: G. M. Morton, "A computer oriented geodetic data base ...", IBM, 1966.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace merlin::render::mesh {
 
-// Spreads the low 21 bits of `v`, with two zero bits between neighbouring bits.
+// Spreads the low 21 bits of `v`: inserts two zero bits between neighbouring bits.
 inline std::uint64_t spreadBits(std::uint64_t v) {
   v = (v | v << 32) & 0x001F00000000FFFF;
   v = (v | v << 16) & 0x001F0000FF0000FF;
@@ -18,8 +18,9 @@ inline std::uint64_t spreadBits(std::uint64_t v) {
   return (v | v << 2) & 0x1249249249249249;
 }
 
-// Returns the key, which has 3 x `bits` bits: each axis of the box [low, low + extent] has 2^bits
-// steps. Points outside are clamped to the box. REQUIRES: extent > 0 on each axis, bits <= 21.
+// Returns the Morton key of a point (3 floats). It has 3 x `bits` bits: each axis of the box [low,
+// low + extent] is divided into 2^bits steps. Points outside are clamped to the box. REQUIRES:
+// extent > 0 on each axis, bits <= 21.
 inline std::uint64_t mortonKey(const float* point, const std::array<float, 3>& low,
                                const std::array<float, 3>& extent, unsigned bits) {
   const auto steps = static_cast<float>((1U << bits) - 1);

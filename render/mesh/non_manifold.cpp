@@ -11,8 +11,9 @@ namespace merlin::render::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kMostPairs = 64;  // compared at one edge; more are paired in mesh order
-constexpr int kMostRounds = 3;          // then all non-manifold edges are cut
+// Maximum compared at an edge; with more, pairs follow mesh order.
+constexpr std::size_t kMostPairs = 64;
+constexpr int kMostRounds = 3;  // after so many rounds, all non-manifold edges are cut
 
 // Half-edge h = 3 t + k runs from corner k of triangle t to the next one.
 std::uint32_t nextOf(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -46,8 +47,8 @@ class Splitter {
   std::uint32_t from(std::uint32_t h) const { return mesh_.triangles[h]; }
   std::uint32_t to(std::uint32_t h) const { return mesh_.triangles[nextOf(h)]; }
 
-  // Sorts half-edges by their smaller vertex index, then by the larger one, so that those of one
-  // edge are adjacent; then pairs those of each edge.
+  // Sorts half-edges by their smaller vertex index, then by the larger one, so that the half-edges
+  // of one edge are adjacent; then pairs the half-edges of each edge.
   void pairAll() {
     const std::size_t n = mesh_.vertexCount();
     std::vector<std::uint32_t> begin(n + 1, 0);
@@ -117,13 +118,14 @@ class Splitter {
   }
 
   // Gives all corners of a fan (triangles connected around a vertex) the same vertex index: the
-  // vertex' own for its first fan, a new one for each other fan. Corner h is where half-edge h
-  // starts.
+  // index of the vertex for its first fan, a new index for each other fan. Corner h is where
+  // half-edge h starts.
   void numberFans() {
     std::fill(fans_.begin(), fans_.end(), kNone);
     sources_.clear();
     split_ = 0;
-    std::vector<std::uint8_t> fans_of(mesh_.vertexCount(), 0);  // found so far: 0, 1, 2 (or more)
+    // Fans found so far; 2 means two or more.
+    std::vector<std::uint8_t> fans_of(mesh_.vertexCount(), 0);
     for (std::uint32_t corner = 0; corner < fans_.size(); ++corner) {
       if (fans_[corner] != kNone) continue;
       const std::uint32_t v = from(corner);
@@ -155,9 +157,9 @@ class Splitter {
     }
   }
 
-  // A fan may contain the same non-manifold edge twice. Such edges are cut completely (if `every`,
-  // all non-manifold edges): then a fan meets the edge only with its two ends, which have opposite
-  // directions. Returns false if every edge is manifold.
+  // Cuts edges that are still not manifold, since a fan may contain such an edge twice. Cutting
+  // them completely (if `every`, all non-manifold edges) means that a fan meets the edge only with
+  // its two ends, which have opposite directions. Returns false if every edge is manifold.
   bool cutWhatIsLeft(bool every) {
     bool again = false;
     for (Edge& edge : singular_) {
@@ -178,7 +180,8 @@ class Splitter {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
     for (const std::uint32_t h : edge.half_edges) ends.emplace_back(fans_[h], fans_[nextOf(h)]);
     std::sort(ends.begin(), ends.end());
-    return std::adjacent_find(ends.begin(), ends.end()) == ends.end();  // each direction once
+    // Each direction occurs once.
+    return std::adjacent_find(ends.begin(), ends.end()) == ends.end();
   }
 
   void apply() {
@@ -195,10 +198,10 @@ class Splitter {
   }
 
   Mesh& mesh_;
-  std::vector<std::uint32_t> twins_;    // by half-edge: the one across, kNone at borders
-  std::vector<std::uint32_t> fans_;     // by corner
+  std::vector<std::uint32_t> twins_;    // by half-edge: the half-edge across; kNone at borders
+  std::vector<std::uint32_t> fans_;     // by corner: vertex index of its fan
   std::vector<Edge> singular_;          // edges that are not manifold
-  std::vector<std::uint32_t> sources_;  // of each new vertex: where it comes from
+  std::vector<std::uint32_t> sources_;  // by new vertex: the vertex of which it is a copy
   std::size_t split_ = 0;
 };
 

@@ -1,4 +1,5 @@
-// Replaces feature values that are not numbers, with which some programs mark missing measurements.
+// Replaces feature values that are not numbers, which some programs use to mark missing
+// measurements.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Normals of faces and vertices, declared in mesh.h.
+// Computes normals of faces and vertices; declared in mesh.h.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -23,7 +23,7 @@ bool areUnit(const std::vector<float>& normals) {
   return true;
 }
 
-// For each vertex the sum of its faces' unit normals.
+// Returns for each vertex the sum of its faces' unit normals.
 std::vector<float> normalSums(const Mesh& mesh) {
   std::vector<float> normals(mesh.positions.size(), 0.0F);
   const float* p = mesh.positions.data();
@@ -59,8 +59,8 @@ void joinSides(const std::vector<std::uint32_t>& sides, std::vector<float>& sums
   };
   for (std::size_t i = 0; i < sides.size(); ++i) {
     addThose(i, [&](std::size_t o) { return group[o] == group[i]; });
-    // Blades around an axis form a group too, but their normals cancel: then only those sides are
-    // added that form one surface with side i directly.
+    // Blades around an axis form a group too, but their normals cancel. In this case, only those
+    // sides are added that form one surface with side i directly.
     if (dot(joined[i].data(), of(i)) < 0.5F * dot(of(i), of(i)))
       addThose(i, [&](std::size_t o) { return o == i || areOneSurface(of(i), of(o)); });
   }
@@ -85,7 +85,7 @@ void normaliseAll(std::vector<float>& normals) {
   for (std::size_t i = 0; i < normals.size(); i += 3) normalise(&normals[i]);
 }
 
-// As vertexNormals(), but as if the two sides of a seam were one vertex.
+// Does what vertexNormals() does, but treats the two sides of a seam as one vertex.
 std::vector<float> normalsAcrossSeams(const Mesh& mesh) {
   std::vector<float> normals = normalSums(mesh);
   joinSeams(mesh, normals);
@@ -96,7 +96,8 @@ std::vector<float> normalsAcrossSeams(const Mesh& mesh) {
 }  // namespace
 
 std::array<float, 3> faceNormal(const float* a, const float* b, const float* c) noexcept {
-  // In double: in float, the cross product of a sliver triangle is mostly rounding error.
+  // Computed in double, because in float the cross product of a sliver triangle is mostly rounding
+  // error.
   const double u[] = {double{b[0]} - a[0], double{b[1]} - a[1], double{b[2]} - a[2]};
   const double v[] = {double{c[0]} - a[0], double{c[1]} - a[1], double{c[2]} - a[2]};
   const double n[] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],

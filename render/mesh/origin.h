@@ -1,12 +1,12 @@
-// The origin that readers subtract from a file's coordinates while these are still doubles:
-// positions are floats, which keep seven digits, but map coordinates have nine. Pure.
+// Chooses the origin that readers subtract from a file's coordinates while these are still doubles.
+// Positions in MERLIN are floats with seven digits, but map coordinates have nine. Pure.
 #pragma once
 
 #include <array>
 
 namespace merlin::render::mesh {
 
-// Where the mesh's (0, 0, 0) lies in the coordinates of its file [the file's unit]; 0 0 0 if
+// The position of the mesh's (0, 0, 0) in the coordinates of its file [the file's unit]; 0 0 0 if
 // nothing was subtracted.
 using Origin = std::array<double, 3>;
 

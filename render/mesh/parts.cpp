@@ -12,9 +12,10 @@
 namespace merlin::render::mesh {
 namespace {
 
-constexpr double kThinnest = 1e-7;        // of a closed part, in diagonals of its box
-constexpr double kSameVolume = 1 + 1e-6;  // of the two sides of a surface, by rounding
-constexpr std::size_t kMostComparisons = 1'000'000'000;  // of boxes: a few seconds
+// Minimum thickness of a closed part, in diagonals of its box.
+constexpr double kThinnest = 1e-7;
+constexpr double kSameVolume = 1 + 1e-6;  // tolerated ratio of the volumes of a surface's two sides
+constexpr std::size_t kMostComparisons = 1'000'000'000;  // limit of box comparisons: a few seconds
 
 using Vector = std::array<double, 3>;
 
@@ -24,7 +25,7 @@ Vector difference(const float* to, const float* from) {
 
 double product(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Normal of the triangle with these corners, twice as long as its area.
+// Returns the normal of the triangle with these corners; its length is twice the triangle's area.
 Vector areaNormal(const float* a, const float* b, const float* c) {
   const Vector u = difference(b, a), v = difference(c, a);
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
@@ -39,18 +40,20 @@ bool holds(const Box& outer, const Box& inner) {
 
 class PartFinder {
  public:
-  // Takes kByVertex bytes for each vertex.
+  // Allocates kByVertex bytes for each vertex.
   PartFinder(const Mesh& mesh, std::size_t most_bytes)
       : mesh_(mesh),
         most_bytes_(most_bytes),
         sets_(mesh.vertexCount()),
         ends_(mesh.vertexCount()) {}
 
-  static constexpr std::size_t kByVertex = 12;  // sets_, ends_ and the hashes, later part_of
-  // parts, first_, the area, boxes_, and the order and the list of the search for inner walls
+  // Bytes per vertex: sets_, ends_, and hashes or part_of.
+  static constexpr std::size_t kByVertex = 12;
+  // Bytes per part: parts, first_, the area, boxes_, and the order and the list of the search for
+  // inner walls.
   static constexpr std::size_t kByPart = sizeof(Part) + 4 + 8 + sizeof(Box) + 8 + 8;
 
-  // Nothing if it would take more memory than is allowed.
+  // Finds the parts; returns nothing if that would take more memory than allowed.
   std::optional<Parts> run() {
     connect();
     if (!joinEnds() || !numberParts()) return std::nullopt;
@@ -79,14 +82,15 @@ class PartFinder {
   void findInwards();
 
   const Mesh& mesh_;
-  std::size_t most_bytes_;  // of memory
+  std::size_t most_bytes_;  // limit of memory [bytes]
   Parts result_;
-  DisjointSets sets_;  // vertices that are connected
-  // By vertex: the sum of the hashes of the vertices to which edges lead from it, less those of the
-  // vertices from which edges lead to it. It is 0 where the triangles around a vertex close up.
+  DisjointSets sets_;  // sets of connected vertices
+  // By vertex: the sum of the hashes of the vertices to which edges lead from it, minus the hashes
+  // of the vertices from which edges lead to it. The value is 0 where the triangles around a vertex
+  // close up.
   std::vector<std::uint32_t> ends_;
-  std::vector<std::uint32_t> first_;  // by part: a vertex
-  std::vector<Box> boxes_;            // by part; filled in for closed ones
+  std::vector<std::uint32_t> first_;  // by part: one of its vertices
+  std::vector<Box> boxes_;            // by part: bounding box of a closed part
 };
 
 bool PartFinder::hasCornersAtOnePlace(const std::uint32_t* triangle) const {
@@ -112,14 +116,14 @@ void PartFinder::connect() {
   }
 }
 
-// Connects coincident vertices where the surface ends, and adds their sums up at the last of them.
-// False if that takes too much memory.
+// Connects coincident vertices where the surface ends, and accumulates the sums in ends_ at the
+// last of them. Returns false if that takes too much memory.
 bool PartFinder::joinEnds() {
   std::vector<std::uint32_t> vertices;
   std::vector<float> positions;
   const std::size_t ends =
       ends_.size() - static_cast<std::size_t>(std::count(ends_.begin(), ends_.end(), 0U));
-  constexpr std::size_t kByEnd = 4 + 12;  // in `vertices` and `positions`
+  constexpr std::size_t kByEnd = 4 + 12;  // bytes per entry of `vertices` and `positions`
   if (8 * ends_.size() + kByEnd * ends + bytesForCoincident(ends) > most_bytes_) return false;
   vertices.reserve(ends);
   positions.reserve(3 * ends);
@@ -139,14 +143,14 @@ bool PartFinder::joinEnds() {
   return true;
 }
 
-// False if there are so many parts that they take too much memory.
+// Numbers the parts. Returns false if there are so many that they take too much memory.
 bool PartFinder::numberParts() {
   std::vector<std::uint32_t>& part_of = result_.part_of;
   part_of.assign(mesh_.vertexCount(), Parts::kNone);
   std::uint32_t parts = 0;
   for (std::uint32_t v = 0; v < part_of.size(); ++v) {
     const std::uint32_t root = sets_.rootOf(v);
-    if (root == v) continue;  // its number comes with the next vertex of its set
+    if (root == v) continue;  // the next vertex of its set gives it a number
     if (part_of[root] == Parts::kNone) part_of[root] = parts++;
     part_of[v] = part_of[root];
   }
@@ -166,8 +170,9 @@ void PartFinder::findClosed() {
   }
 }
 
-// Neighbours in the list are mostly of one part, so that sums are added to it only where it ends.
-// The area is up to 1.7 times too large, since a sum of coordinates is cheaper than a length.
+// Computes the volume and the area of each closed part. Consecutive triangles mostly belong to the
+// same part, so a part's totals are updated only once per such run. The area is up to 1.7 times too
+// large, since a sum of coordinates is cheaper than a length.
 void PartFinder::measure() {
   std::vector<double> area(result_.parts.size());
   const std::vector<std::uint32_t>& t = mesh_.triangles;
@@ -205,7 +210,7 @@ void PartFinder::findBoxes() {
   }
 }
 
-// Parts that have no thickness are not closed.
+// Marks closed parts without thickness as not closed.
 void PartFinder::dropThin(const std::vector<double>& area) {
   for (std::size_t p = 0; p < result_.parts.size(); ++p) {
     Part& part = result_.parts[p];
@@ -215,9 +220,7 @@ void PartFinder::dropThin(const std::vector<double>& area) {
   }
 }
 
-// Goes through the closed parts along x, and keeps those that face outwards as long as their boxes
-// may hold what follows.
-// The axis along which the boxes of the closed parts overlap least.
+// Returns the axis along which the boxes of the closed parts overlap least.
 std::size_t PartFinder::sweepAxis(const std::vector<std::size_t>& closed) const {
   std::array<double, 3> overlap{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -233,6 +236,8 @@ std::size_t PartFinder::sweepAxis(const std::vector<std::size_t>& closed) const 
                                   overlap.begin());
 }
 
+// Sweeps over the closed parts along one axis. The list `outer` holds the parts that face outwards
+// and whose boxes may still contain later parts.
 void PartFinder::findInwards() {
   std::vector<Part>& parts = result_.parts;
   std::vector<std::size_t> order, outer;
@@ -253,7 +258,7 @@ void PartFinder::findInwards() {
       outer.push_back(p);
       continue;
     }
-    if (outer.size() > left) return;  // the others count as inner walls
+    if (outer.size() > left) return;  // the remaining parts count as inner walls
     left -= outer.size();
     std::erase_if(outer, [&](std::size_t o) { return boxes_[o].high[axis] < boxes_[p].low[axis]; });
     parts[p].inwards = std::none_of(outer.begin(), outer.end(), [&](std::size_t o) {
@@ -267,7 +272,8 @@ bool facesInwards(const Parts& parts, std::uint32_t vertex) {
   return part != Parts::kNone && parts.parts[part].inwards;
 }
 
-// Negates the normals of the parts that face inwards and whose normals do, too.
+// For each part that faces inwards, negates the "normal" values if most of them point to the side
+// to which its triangles face.
 void turnNormals(const Parts& parts, const std::vector<float>& positions,
                  const std::vector<std::uint32_t>& triangles, std::vector<float>& normals) {
   std::vector<double> agree(parts.parts.size());

@@ -17,7 +17,7 @@ double innerProduct(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Twice the area of the triangle; positive if it is counter-clockwise.
+// Returns twice the area of the triangle; positive if it is counter-clockwise.
 double area(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -36,10 +36,11 @@ class Face {
     return {double{p[0]} - first[0], double{p[1]} - first[1], double{p[2]} - first[2]};
   }
 
-  // The fan's triangle at corners 0, k and k + 1: its normal, as long as twice its area.
+  // Returns the normal of the fan's triangle at corners 0, k and k + 1; its length is twice the
+  // area.
   Vector normalAt(std::size_t k) const { return cross(at(k), at(k + 1)); }
 
-  // The normals of the fan's triangles add up to Newell's normal.
+  // Returns Newell's normal, which is the sum of the normals of the fan's triangles.
   Vector normal() const {
     Vector sum{};
     for (std::size_t k = 1; k + 1 < corners_; ++k) {
@@ -49,7 +50,8 @@ class Face {
     return sum;
   }
 
-  // Whether no triangle of the fan faces the other way, apart from rounding errors of floats.
+  // Returns whether no triangle of the fan faces the other way, apart from rounding errors of
+  // floats.
   bool isFan(const Vector& normal) const {
     constexpr double kRounding = 1e-7;
     const double least = -kRounding * innerProduct(normal, normal);
@@ -64,8 +66,8 @@ class Face {
   const PositionOf& position_of_;
 };
 
-// Returns the axes of the plane's coordinates: the axis of the normal's largest component is left
-// out.
+// Returns the two axes of the plane's coordinates: all but the axis of the normal's largest
+// component, in the order that keeps the polygon counter-clockwise.
 std::array<std::size_t, 2> axesAcross(const Vector& normal) {
   std::size_t longest = 0;
   for (std::size_t k = 1; k < 3; ++k) {
@@ -75,8 +77,9 @@ std::array<std::size_t, 2> axesAcross(const Vector& normal) {
   return normal[longest] > 0 ? std::array{u, v} : std::array{v, u};
 }
 
-// Cuts off one ear after the other: a corner whose triangle with its two neighbours lies within the
-// polygon. A cut changes two other corners only, so each takes O(corners).
+// Triangulates a polygon by cutting off one ear after the other. An ear is a corner whose triangle
+// with its two neighbours lies within the polygon. A cut changes only two other corners, so each
+// cut takes O(corners).
 class EarCutter {
  public:
   explicit EarCutter(std::vector<PlanePoint> points)
@@ -92,7 +95,7 @@ class EarCutter {
     for (std::size_t i = 0; i < n; ++i) ear_[i] = isEar(i);
   }
 
-  // Three corners for each triangle; empty if there is a polygon left without an ear.
+  // Returns three corners for each triangle; an empty vector if a polygon without an ear is left.
   std::vector<std::uint32_t> cut() {
     std::size_t at = 0;
     for (std::size_t left = points_.size(); left > 3; --left) {
@@ -124,8 +127,8 @@ class EarCutter {
     return true;
   }
 
-  // Whether corner k lies in the triangle at corner i or on its edge. Ignores convex corners: one
-  // of them never lies there without one that is not convex.
+  // Returns whether corner k lies in the triangle at corner i or on its edge. Ignores convex
+  // corners: a convex corner never lies there without another one that is not convex.
   bool isInTheWay(std::size_t k, std::size_t i) const {
     const PlanePoint &a = points_[before_[i]], &b = points_[i], &c = points_[next_[i]],
                      &p = points_[k];
@@ -133,8 +136,8 @@ class EarCutter {
     return areaAt(k) <= 0 && p != a && p != b && p != c;
   }
 
-  // Finds the next ear from `at` on. If there is none, takes a flat corner, which is no real
-  // corner. Returns false if there is neither.
+  // Advances `at` to the next ear. If there is none, advances it to a flat corner, where the
+  // outline does not turn. Returns false if there is neither.
   bool findEar(std::size_t left, std::size_t& at) const {
     const std::size_t from = at;
     for (std::size_t n = 0; n < left; ++n, at = next_[at]) {
@@ -175,7 +178,7 @@ std::vector<std::uint32_t> cutFace(std::size_t corners, const PositionOf& positi
   return EarCutter(std::move(points)).cut();
 }
 
-// The positions of a fan's corners.
+// Function object that returns the position of each corner of a fan.
 class CornersOf {
  public:
   CornersOf(const Mesh& mesh, const Fan& fan)

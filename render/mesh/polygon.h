@@ -11,42 +11,46 @@
 
 namespace merlin::render::mesh {
 
-// A face with more corners than this stays a fan around its first corner, since any other
+// A face with more corners than this remains a fan around its first corner, since any other
 // triangulation takes O(corners^2).
 inline constexpr std::size_t kMostCutCorners = 4096;
 
-// A face as a fan around its first corner: corners - 2 consecutive triangles of the mesh.
+// A face that is stored as a fan around its first corner: corners - 2 consecutive triangles of the
+// mesh.
 struct Fan {
-  std::size_t triangle = 0;  // index of the first one
+  std::size_t triangle = 0;  // index of the fan's first triangle
   std::size_t corners = 0;
 };
 
-// Triangulates the polygon with these corners (x, y, z each) in the plane of Newell's normal.
-// Returns three corner indices for each of its corners - 2 triangles, which all face the same way.
-// Returns an empty vector if the fan around the first corner is right, i.e. none of its triangles
-// faces the other way (as in every convex polygon); and if no other triangulation is found: the
-// polygon has no area, crosses itself, has a coordinate that is not finite or more than
-// kMostCutCorners corners. O(corners^2).
+// Triangulates a polygon in the plane of its Newell normal. positions: x, y, z of each corner.
+// Returns three corner indices for each of the corners - 2 triangles, which all face the same way.
+// Returns an empty vector in two cases: the fan around the first corner is correct, i.e. none of
+// its triangles faces the other way (as in every convex polygon); or no triangulation is found,
+// because the polygon has no area, crosses itself, has a coordinate that is not finite, or has more
+// than kMostCutCorners corners. O(corners^2).
 std::vector<std::uint32_t> cutPolygon(std::span<const float> positions);
 
 // Collects the faces of a file for which a fan is wrong, or may be wrong because their vertices
 // have not been read yet.
 class Fans {
  public:
-  // Takes the last corners - 2 triangles of `mesh` as the fan of a face. REQUIRES: corners >= 3.
+  // Registers the last corners - 2 triangles of `mesh` as the fan of a face with this many corners.
+  // REQUIRES: corners >= 3.
   void take(const Mesh& mesh, std::size_t corners);
 
-  // Called for each face that is not triangulated as a fan. `order`: what cutPolygon() returned.
+  // Type of a function that is called for each face that is not triangulated as a fan. `order`: the
+  // result of cutPolygon().
   using OnCut = std::function<void(const Fan& fan, std::span<const std::uint32_t> order)>;
-  // To be called when all vertices have been read. Triangulates anew the collected faces for which
-  // a fan is wrong, and calls `on_cut` for each of them.
+  // Triangulates the registered faces for which a fan is wrong in a different way, and calls
+  // `on_cut` for each of them. Call it once all vertices have been read.
   void cut(Mesh& mesh, const OnCut& on_cut = {});
 
  private:
   std::vector<Fan> fans_;
 };
 
-// Reorders the values at the corners of a fan's triangles to match the new triangulation `order`.
+// Reorders per-corner values of a fan's triangles to match the new triangulation `order`.
+// at_corners: 3 values for each triangle of the mesh.
 template <typename T>
 void reorder(const Fan& fan, std::span<const std::uint32_t> order, std::vector<T>& at_corners) {
   T* const at = &at_corners[3 * fan.triangle];

@@ -20,7 +20,8 @@ bool areTwins(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
                      [&](const Feature& f) { return haveSameRow(f.values, f.dimension, a, b); });
 }
 
-// Sets of vertices, each named by its first. Takes memory only once two are joined.
+// Disjoint sets of vertices; a set is identified by its first vertex. Memory is allocated only when
+// two sets are joined.
 class TwinSets {
  public:
   explicit TwinSets(std::size_t vertices) : vertices_(vertices) {}
@@ -32,7 +33,7 @@ class TwinSets {
     return v;
   }
 
-  // Joins the sets of a and b. Returns whether these were two sets.
+  // Joins the sets of a and b. Returns whether they were different sets.
   bool join(std::uint32_t a, std::uint32_t b) {
     if (parents_.empty()) {
       parents_.resize(vertices_);

@@ -13,16 +13,17 @@
 namespace merlin::render::mesh {
 namespace {
 
-// At most so many vertices become one: this bounds the work on meshes that are crafted to be slow.
+// Limit of the vertices that are welded into one; it bounds the work on meshes that are crafted to
+// be slow.
 constexpr std::size_t kMostInOne = 64;
 constexpr float kCosineOfCrease = 0.5F;  // 60 degrees
 
-// An edge of one triangle, as the triangle runs along it.
+// An edge of one triangle, in the direction of the triangle.
 struct Edge {
   std::uint32_t triangle = 0, from = 0, to = 0;
 };
 
-// For each vertex, the first vertex at its place.
+// Returns for each vertex the first vertex at its position.
 std::vector<std::uint32_t> placesOf(const Mesh& mesh) {
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   const auto next = coincidentVertices(mesh.positions);
@@ -33,7 +34,7 @@ std::vector<std::uint32_t> placesOf(const Mesh& mesh) {
   return place;
 }
 
-// Returns the edges that have one triangle, sorted by the numbers of their vertices.
+// Returns the edges that belong to only one triangle, sorted by the indices of their vertices.
 std::vector<Edge> borderEdges(const Mesh& mesh) {
   std::vector<Edge> edges;
   for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
@@ -70,7 +71,7 @@ class Welder {
     return report_;
   }
 
-  // Returns for each vertex the one that it became.
+  // Returns for each vertex the vertex that it became.
   const std::vector<std::uint32_t>& roots() const noexcept { return root_; }
 
  private:
@@ -84,7 +85,8 @@ class Welder {
       list_[next[mesh_.triangles[i]]++] = static_cast<std::uint32_t>(i / 3);
   }
 
-  // Returns pairs of border edges at the same place, of different parts and in opposite directions.
+  // Returns pairs of border edges that may be welded: they are at the same place, belong to
+  // different parts, have opposite directions, equal features and smooth normals.
   std::vector<std::pair<Edge, Edge>> pairs() const {
     std::vector<Edge> border = borderEdges(mesh_);
     const auto ends = [&](const Edge& e) { return std::minmax(place_[e.from], place_[e.to]); };
@@ -128,8 +130,9 @@ class Welder {
     return dot(normal(s).data(), normal(t).data()) > kCosineOfCrease;
   }
 
-  // Joins the four vertices of two border edges to two, unless too many vertices would become one,
-  // or a triangle would have no corner with its part's label. Returns whether they were joined.
+  // Joins the four vertices of two border edges to two. Does nothing if too many vertices would
+  // become one, or if a triangle would have no corner with its part's label. Returns whether the
+  // vertices were joined.
   bool weld(const Edge& a, const Edge& b) {
     const std::array<std::array<std::uint32_t, 2>, 2> ends = {
         {{root_[a.from], root_[b.to]}, {root_[a.to], root_[b.from]}}};
@@ -153,7 +156,8 @@ class Welder {
     return true;
   }
 
-  // Whether each triangle at the vertex keeps a corner of its own part.
+  // Returns whether each triangle at the vertex would keep a corner with the label of its part.
+  // `labelThen` returns the label that a corner would have after the weld.
   template <typename LabelThen>
   bool staysKnown(std::uint32_t root, const LabelThen& labelThen) const {
     std::uint32_t v = root;
@@ -183,12 +187,13 @@ class Welder {
   }
 
   Mesh& mesh_;
-  const std::vector<float>& label_;  // of a root: the lowest of its members
+  const std::vector<float>& label_;  // by vertex; a root has the lowest label of its members
   std::vector<std::uint32_t> place_, root_;
-  std::vector<std::uint32_t> next_;          // of a root's members, which form a ring
-  std::vector<std::size_t> size_;            // members of a root
-  std::vector<float> part_;                  // of each triangle
-  std::vector<std::uint32_t> first_, list_;  // triangles at each vertex
+  std::vector<std::uint32_t> next_;  // by vertex: next member of the same root, in a ring
+  std::vector<std::size_t> size_;    // by root: number of its members
+  std::vector<float> part_;          // by triangle: label of its part
+  // Triangles at each vertex v: list_[first_[v]] .. list_[first_[v + 1] - 1].
+  std::vector<std::uint32_t> first_, list_;
   WeldReport report_;
 };
 

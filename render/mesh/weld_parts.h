@@ -1,4 +1,4 @@
-// Welds the parts of a mesh where they are one surface: where one part ends at an edge and another
+// Welds the parts of a mesh where they form one surface: if one part ends at an edge and another
 // begins there, both parts get the same two vertices. Pure.
 #pragma once
 
@@ -13,7 +13,8 @@ struct WeldReport {
   std::size_t vertices = 0;  // vertices that were removed because they were merged into others
 };
 
-// The mesh's feature "label" (1) says which part a vertex belongs to; without it nothing is done.
+// Welds the parts of a mesh. The mesh's feature "label" (1) gives the part of each vertex; without
+// this feature nothing is done.
 // Two parts are welded along an edge if
 // - it is a border of both and of no other part, and their triangles use it in opposite directions;
 // - its ends have bit-identical positions (but 0 equals -0) in both parts, and the same values of

@@ -47,16 +47,16 @@ class Orientation {
     return step;
   }
 
-  // Returns the cosine between the normal at b and the normal at a after this was turned to b as
-  // along an arc of a circle, that is, reflected at the plane between a and b. So it is also right
-  // at an edge sharper than a right angle.
+  // Turns the normal at a towards b as along an arc of a circle (i.e. reflects it at the plane
+  // halfway between a and b), and returns the cosine between the result and the normal at b. This
+  // is also correct at an edge sharper than a right angle.
   double agreement(std::uint32_t a, std::uint32_t b) const {
     const Vector na = normalOf(a), nb = normalOf(b), d = directionTo(a, b);
     return dotOf(na, nb) - 2 * dotOf(na, d) * dotOf(nb, d);
   }
 
-  // Makes edges that leave the surface, as through a thin part, expensive, so that they are taken
-  // last.
+  // Returns the cost of an edge. Edges that leave the surface, e.g. through a thin part, are
+  // expensive, so that they are used last.
   float costOf(std::uint32_t a, std::uint32_t b) const {
     const Vector d = directionTo(a, b);
     const double out = std::max(std::abs(dotOf(normalOf(a), d)), std::abs(dotOf(normalOf(b), d)));
@@ -71,7 +71,7 @@ class Orientation {
       const auto a = static_cast<std::uint32_t>(i / k), b = neighbours[i];
       if (a != b) edges.push_back({costOf(a, b), std::min(a, b), std::max(a, b)});
     }
-    // The indices decide between equal costs, so that the result depends on nothing else.
+    // Edges of equal cost are sorted by their indices, so that the result is unique.
     std::ranges::sort(edges, {}, [](const NeighbourEdge& e) { return std::tie(e.cost, e.a, e.b); });
     return edges;
   }
@@ -81,7 +81,7 @@ class Orientation {
     return p;
   }
 
-  // Kruskal's algorithm; returns the edges of the forest.
+  // Computes the minimum spanning forest by Kruskal's algorithm; returns its edges.
   std::vector<NeighbourEdge> forestOf(std::vector<NeighbourEdge> edges) {
     std::erase_if(edges, [this](const NeighbourEdge& e) {
       const std::uint32_t a = treeOf(e.a), b = treeOf(e.b);
@@ -134,7 +134,7 @@ class Orientation {
 
   std::span<const float> positions_;
   std::span<double> normals_;
-  std::vector<std::uint32_t> tree_;  // union-find: a point nearer to the tree's root
+  std::vector<std::uint32_t> tree_;  // union-find: parent of each point in its tree
 };
 
 }  // namespace

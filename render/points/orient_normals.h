@@ -7,9 +7,9 @@
 
 namespace merlin::render::points {
 
-// Reverses some of the normals such that those of neighbours agree. Goes from point to point along
-// the minimum spanning forest of the graph of neighbours ([HOPPE92] section 3.3; README.md says
-// what is compared and which edges are cheap). In each tree the normal of the highest point (z)
+// Reverses some normals so that the normals of neighbours agree. Goes from point to point along
+// the minimum spanning forest of the graph of neighbours ([HOPPE92] section 3.3; README.md
+// defines the comparison and the cost of edges). In each tree the normal of the highest point (z)
 // faces upwards.
 //
 // positions   points x 3

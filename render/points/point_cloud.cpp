@@ -17,7 +17,7 @@ bool isPoint(const float* p) {
   return std::all_of(p, p + 3, [](float x) { return std::abs(x) <= kFarthestPoint; });
 }
 
-// Moves the rows of `kept` points to the front, in order.
+// Moves the rows of the points with kept[p] to the front, in order, and removes all others.
 void keepRows(const std::vector<bool>& kept, std::size_t dimension, std::vector<float>& values) {
   std::size_t to = 0;
   for (std::size_t p = 0; p < kept.size(); ++p) {

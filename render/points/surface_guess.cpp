@@ -14,7 +14,7 @@ double medianSpacing(std::vector<double> distances) {
 }
 
 double cellOf(int depth, double extent) {
-  constexpr double kMargin = 1.1;  // of the reconstruction's cube, in sides of the points' box
+  constexpr double kMargin = 1.1;  // side of the reconstruction's cube / side of the points' box
   return kMargin * extent / std::exp2(depth);
 }
 

@@ -1,5 +1,5 @@
-// The cells of a range image: which triangles each has, and how they meet at a pixel. Private to
-// render/range.
+// Describes the cells of a range image: the triangles of each cell, and how they meet at a pixel.
+// Private to render/range.
 #pragma once
 
 #include <array>
@@ -8,25 +8,26 @@
 
 namespace merlin::render::range {
 
-// A cell's corners: a at the top left, b at the top right, c at the bottom right, d at the bottom
-// left. Its triangles, counter-clockwise as the scanner sees them: across ac: a d c and a c b;
-// across bd: a d b and b d c.
+// The corners of a cell: a at the top left, b at the top right, c at the bottom right, d at the
+// bottom left. A cell has up to two triangles, counter-clockwise as the scanner sees them. If its
+// diagonal is ac, they are a d c and a c b; if it is bd, they are a d b and b d c.
 enum Corner : std::uint8_t { kA, kB, kC, kD };
 
-// A cell's triangles as bits.
+// The triangles of a cell as bits: kAcrossBd (the diagonal is bd), kFirst and kSecond (which
+// triangles exist).
 using Cell = std::uint8_t;
 inline constexpr Cell kAcrossBd = 1, kFirst = 2, kSecond = 4;
 
 inline constexpr Corner kTriangles[2][2][3] = {{{kA, kD, kC}, {kA, kC, kB}},
                                                {{kA, kD, kB}, {kB, kD, kC}}};
 
-// How the triangles of the four cells around a pixel are connected there. The cells are numbered
-// clockwise from the top right: the pixel is corner d of cell 0, a of cell 1, b of cell 2 and c of
-// cell 3. Two successive cells share an edge of the grid. `sides` has two bits per cell: a triangle
-// of the cell at the pixel uses the edge before the cell (1), or the edge after it (2). The
-// triangles of one cell at one pixel are always connected.
+// Describes how the triangles of the four cells around a pixel are connected at the pixel. The
+// cells are numbered clockwise from the top right: the pixel is corner d of cell 0, a of cell 1, b
+// of cell 2 and c of cell 3. Two successive cells share an edge of the grid. `sides` has two bits
+// per cell: 1 if a triangle of the cell at the pixel uses the edge before the cell, 2 if it uses
+// the edge after the cell. The triangles of one cell at one pixel are always connected.
 struct Fans {
-  std::uint8_t count = 0;    // fans of triangles at the pixel, 0 to 4
+  std::uint8_t count = 0;    // number of fans of triangles at the pixel, 0 to 4
   std::uint8_t of_cell = 0;  // two bits per cell: the index of its fan
 };
 inline constexpr std::uint8_t kClosed = 0xFF;  // `sides` of a pixel inside the surface
@@ -47,7 +48,7 @@ constexpr Fans fansOf(std::uint8_t sides) {
   if (sides == kClosed) return {1, 0};
   const auto of = [&](unsigned cell) { return unsigned{sides} >> 2 * (cell & 3U) & 3U; };
   const auto joins = [&](unsigned cell) { return (of(cell) & 2U) && (of(cell + 1) & 1U); };
-  unsigned start = 0;  // a cell that its predecessor does not join
+  unsigned start = 0;  // first cell that is not joined to the cell before it
   while (joins(start + 3)) ++start;
   for (unsigned i = 0; i < 4; ++i) {
     const unsigned cell = (start + i) & 3U;

@@ -17,7 +17,7 @@ constexpr std::array<Rgb, 5> kTerrainStops = {{{0.20F, 0.42F, 0.25F},
                                                {0.58F, 0.44F, 0.32F},
                                                {0.96F, 0.96F, 0.96F}}};
 
-// `share`: 0..1.
+// Returns the colour at `share` (0..1) of the scale, interpolated between its stops.
 Rgb mixed(const std::array<Rgb, 5>& stops, float share) {
   const float at = 4 * share;
   const std::size_t from = std::min(static_cast<std::size_t>(at), std::size_t{3});

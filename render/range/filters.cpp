@@ -16,9 +16,9 @@ void order(float& a, float& b) {
   a = low;
 }
 
-// Returns the median of nine by an odd-even sort that does only what this needs: it sorts the
-// columns, then finds the largest low one, the median of the middle ones, and the smallest high
-// one.
+// Returns the median of nine values by a partial odd-even sort: it sorts each column, then finds
+// the largest of the low values, the median of the middle ones, and the smallest of the high ones;
+// the result is the median of these three.
 float medianOfNine(std::array<float, 9> v) {
   for (std::size_t i = 0; i < 9; i += 3) {
     order(v[i + 1], v[i + 2]);
@@ -41,7 +41,8 @@ std::vector<float> copyOf(const std::vector<float>& ranges) {
   return copy;
 }
 
-// The pixels around a pixel; in a full turn, the first and the last column are neighbours.
+// Access to the pixels around a pixel. In a full turn, the first and the last column are
+// neighbours.
 class Neighbourhood {
  public:
   Neighbourhood(const RangeImage& image, const std::vector<float>& ranges)
@@ -50,11 +51,11 @@ class Neighbourhood {
         wraps_(image.wraps()),
         ranges_(ranges.data()) {}
 
-  // Whether all pixels up to `reach` away are in the image.
+  // Returns whether all pixels up to `reach` away are in the image.
   bool isInside(std::ptrdiff_t row, std::ptrdiff_t column, std::ptrdiff_t reach) const {
     return row >= reach && column >= reach && row + reach < height_ && column + reach < width_;
   }
-  // Returns NaN outside the image.
+  // Returns the range at a pixel; kNoReturn (NaN) outside the image.
   float at(std::ptrdiff_t row, std::ptrdiff_t column) const {
     if (row < 0 || row >= height_) return kNoReturn;
     if (wraps_) column = (column + width_) % width_;
@@ -97,7 +98,8 @@ bool nineAt(const Neighbourhood& around, std::ptrdiff_t row, std::ptrdiff_t colu
   return isReturn(sum);
 }
 
-// Counts the neighbours that agree with a pixel, up to two.
+// Returns the number of neighbours whose range differs from that of the pixel by at most the limit;
+// stops counting at two.
 int agreeing(const Neighbourhood& around, std::ptrdiff_t row, std::ptrdiff_t column,
              const Threshold& limit) {
   const float range = *around.pixel(row, column);

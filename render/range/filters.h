@@ -1,5 +1,5 @@
-// Filters of range images against noise, spikes and outliers. They change ranges only: no pixel
-// without a return gets one.
+// Filters range images to reduce noise, spikes and outliers. The filters never add a return to a
+// pixel that has none.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 namespace merlin::render::range {
 
 // Replaces each range by the median of the returns in the window x window pixels around it. If
-// their number is even, the lower one of the two middle ranges is taken, so that each result is a
-// measured range. Steps between surfaces stay where they are. [GOURLEY98] 5.2.2. O(pixels x
+// their number is even, the result is the lower one of the two middle ranges, so that each result
+// is a measured range. Steps between surfaces keep their position. [GOURLEY98] 5.2.2. O(pixels x
 // window^2). REQUIRES: window is odd, 3 to 15.
 void medianFilter(RangeImage& image, std::size_t window, const Work& work);
 
@@ -22,7 +22,7 @@ void medianFilter(RangeImage& image, std::size_t window, const Work& work);
 // that lost their return. O(pixels).
 std::size_t removeSpikes(RangeImage& image, const Threshold& limit, const Work& work);
 
-// Removes returns outside [nearest, farthest]. Returns their number. O(pixels).
+// Removes returns whose range is outside [nearest, farthest]; returns their number. O(pixels).
 std::size_t removeOutside(RangeImage& image, float nearest, float farthest);
 
 }  // namespace merlin::render::range

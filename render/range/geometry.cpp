@@ -23,7 +23,7 @@ struct SinCos {
 };
 
 // The rays of all pixels, computed from tables of the columns and of the rows. A pixel's point is
-// its ray times its range, in the scanner's coordinates.
+// its ray multiplied by its range, in the scanner's coordinates.
 class RayTable {
  public:
   explicit RayTable(const RangeImage& image) : image_(image) {
@@ -39,7 +39,7 @@ class RayTable {
 
   Vector at(std::size_t row, std::size_t column) const {
     switch (image_.geometry.scanner) {
-      case Scanner::kOrthogonal: {  // [GOURLEY98] A.15 to A.17, `sin` being the tangent
+      case Scanner::kOrthogonal: {  // [GOURLEY98] A.15 to A.17; `sin` holds the tangent
         const double x = columns_[column].sin, y = rows_[row].sin;
         const double d = 1 / std::sqrt(1 + x * x + y * y);
         return {x * d, y * d, -d};
@@ -60,7 +60,8 @@ class RayTable {
  private:
   static SinCos ofAngle(double angle_rad) { return {std::sin(angle_rad), std::cos(angle_rad)}; }
 
-  // Returns the entry of pixel `i` of `n` along an axis. Rows count downwards, angles upwards.
+  // Returns the table entry of pixel `i` of `n` along an axis. Rows count downwards, angles
+  // upwards.
   SinCos entry(std::size_t i, std::size_t n, bool horizontal) const {
     const Geometry& g = image_.geometry;
     const double angle = horizontal ? g.horizontal_rad : g.vertical_rad;
@@ -81,7 +82,7 @@ double angleBetween(const Vector& a, const Vector& b) {
   return std::atan2(cross, a.x * b.x + a.y * b.y + a.z * b.z);
 }
 
-// The median; 0 if there are no values.
+// Returns the median of the values; 0 if there are none.
 double medianOf(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -152,7 +153,7 @@ std::string poseFault(const Pose& pose) {
   return off < 1e-3 ? "" : "the camera transform is not a rotation and a translation";
 }
 
-// Transforms a point to world coordinates.
+// Transforms a point to world coordinates and stores it in `out` (3 floats).
 void place(const Pose& pose, const Vector& p, float* out) {
   for (std::size_t k = 0; k < 3; ++k) {
     const double* row = &pose[4 * k];

@@ -9,13 +9,14 @@
 namespace merlin::render::range {
 namespace {
 
-// Whether a key of WKT, in lower case, is the unit of a projection's own coordinates: units that
-// lie deeper are those of its parameters and of what it is based on.
+// Returns whether a key of WKT, in lower case, is the unit of a projection's own coordinates. Units
+// at a greater depth belong to its parameters and to its base system.
 bool isOwnUnit(std::string_view key, int depth) {
   return (key == "unit" && depth == 2) || (key == "lengthunit" && depth <= 3);
 }
 
-// The number behind a name in quotes: 0.3048 of "\"foot\",0.3048]"; 0 if there is none.
+// Returns the number after a name in quotes, e.g. 0.3048 for "\"foot\",0.3048]"; 0 if there is
+// none.
 double numberBehindName(std::string_view text) {
   const std::size_t name = text.find('"');
   const std::size_t end = name == std::string_view::npos ? name : text.find('"', name + 1);
@@ -26,8 +27,8 @@ double numberBehindName(std::string_view text) {
   return readNumber(trimmed(text.substr(0, text.find_first_of(",]"))), number) ? number : 0;
 }
 
-// Returns the metres in the unit of projected coordinates in WKT, in lower case; 0 if it is not
-// given.
+// Returns the length in metres of the unit of projected coordinates in WKT (in lower case); 0 if
+// the text does not give it.
 double metresInWkt(std::string_view text) {
   int depth = 0;
   bool quoted = false;
@@ -43,7 +44,8 @@ double metresInWkt(std::string_view text) {
   return 0;
 }
 
-// Whether words such as "projection utm zone 33 units meters", in lower case, name metres.
+// Returns whether words such as "projection utm zone 33 units meters", in lower case, name metres
+// as the unit.
 bool saysMetres(std::string_view words) {
   for (std::string_view word = takeWord(words); !word.empty(); word = takeWord(words)) {
     if (word != "units") continue;
@@ -57,7 +59,7 @@ bool saysMetres(std::string_view words) {
 
 bool isInMetres(std::string_view projection) {
   const std::string text = lowerCase(projection);
-  const std::size_t wkt = text.find("projc");  // also within that of a map with heights
+  const std::size_t wkt = text.find("projc");  // also if it is nested in a system with heights
   return wkt == std::string::npos ? saysMetres(text)
                                   : metresInWkt(std::string_view(text).substr(wkt)) == 1;
 }

@@ -34,15 +34,15 @@ class Triangulation {
   RangeMesh take() { return std::move(result_); }
 
  private:
-  // Cells are stored with a border of empty ones, or, on the left of a full turn, with the last one
-  // of the row, so that each pixel has four.
+  // Cells are stored with a border of empty cells, so that each pixel has four cells around it. In
+  // a full turn, the left border holds the last cell of the row.
   std::size_t stride() const { return image_.width + 1; }
   Cell& cell(std::size_t row, std::size_t column) {
     return cells_[(row + 1) * stride() + column + 1];
   }
   std::size_t cellsInRow() const { return image_.wraps() ? image_.width : image_.width - 1; }
   std::size_t right(std::size_t column) const { return column + 1 < image_.width ? column + 1 : 0; }
-  // The pixels a, b, c, d of a cell.
+  // Returns the pixels at the corners a, b, c, d of a cell.
   std::array<std::size_t, 4> corners(std::size_t row, std::size_t column) const {
     const std::size_t top = row * image_.width, bottom = top + image_.width;
     return {top + column, top + right(column), bottom + right(column), bottom + column};
@@ -51,7 +51,7 @@ class Triangulation {
   bool isAllowed(std::size_t p, std::size_t q, float squared) const {
     return squared <= std::min(squared_limits_[p], squared_limits_[q]);  // false for NaN
   }
-  // Returns the edges of triangles at the pixel, as bits: see cells.h.
+  // Returns the edges that triangles at the pixel use, as bits: Fans in cells.h describes `sides`.
   std::uint8_t sidesOf(std::size_t row, std::size_t column) const;
   std::uint32_t vertex(std::size_t pixel, Corner corner) const {
     const unsigned in_ring = corner == kD ? 0U : corner + 1U;
@@ -63,10 +63,10 @@ class Triangulation {
   const std::vector<float>& points_;
   bool mirrored_;
   std::vector<Cell> cells_;
-  std::vector<float> squared_limits_{};        // of edges, by pixel
-  std::vector<std::uint8_t> sides_{};          // by pixel
-  std::vector<std::uint32_t> first_{};         // by pixel: its first vertex
-  std::vector<std::size_t> triangle_start_{};  // by row of cells, with the end
+  std::vector<float> squared_limits_{};        // by pixel: squared limit of edge lengths
+  std::vector<std::uint8_t> sides_{};          // by pixel: see sidesOf()
+  std::vector<std::uint32_t> first_{};         // by pixel: index of its first vertex
+  std::vector<std::size_t> triangle_start_{};  // by row of cells: index of its first triangle
   RangeMesh result_{};
 };
 
@@ -77,7 +77,7 @@ Cell Triangulation::cellOf(const std::array<std::size_t, 4>& corners) const {
   };
   const auto allows = [&](std::size_t p, std::size_t q) { return isAllowed(p, q, squared(p, q)); };
   const float ac = squared(a, c), bd = squared(b, d);
-  if (bd < ac || !(ac == ac)) {  // ac has an end without a return
+  if (bd < ac || !(ac == ac)) {  // an end of ac has no return
     if (!isAllowed(b, d, bd)) return 0;
     const bool first = allows(a, d) && allows(a, b), second = allows(d, c) && allows(b, c);
     return static_cast<Cell>(kAcrossBd | (first ? kFirst : 0) | (second ? kSecond : 0));
@@ -127,7 +127,7 @@ void Triangulation::countVertices(const Work& work) {
       sides_[pixel] = sidesOf(row, column);
       const std::size_t fans = kFans[sides_[pixel]].count;
       const bool returned = isReturn(image_.range[pixel]);
-      first_[pixel] = static_cast<std::uint32_t>(counts.vertices);  // in the row, so far
+      first_[pixel] = static_cast<std::uint32_t>(counts.vertices);  // so far only within the row
       counts.vertices += fans;
       counts.split += fans > 1 ? fans - 1 : 0;
       counts.returns += returned;
@@ -210,8 +210,9 @@ void Triangulation::fillTriangles(const Work& work) {
   forRows(work, image_.height - 1, [&](std::size_t row) { fillRow(row); });
 }
 
-// Adds even rows of cells first, then odd ones: two rows of the same kind share no vertex, so that
-// each vertex sums its normals in the same order with any number of threads.
+// Adds the feature "normal". Processes even rows of cells first, then odd ones: two rows of the
+// same kind share no vertex, so that each vertex sums its normals in the same order with any number
+// of threads.
 void Triangulation::fillNormals(const Work& work) {
   mesh::Mesh& mesh = result_.mesh;
   std::vector<float> normals;

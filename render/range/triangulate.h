@@ -1,4 +1,5 @@
-// Triangulates a range image: its pixels become vertices, its 2 x 2 cells zero to two triangles.
+// Triangulates a range image: each pixel in a triangle becomes a vertex, each cell of 2 x 2 pixels
+// becomes zero to two triangles.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +14,26 @@
 namespace merlin::render::range {
 
 struct RangeMesh {
-  mesh::Mesh mesh;                    // with "normal" and the planes as features, in their order
-  std::vector<std::uint32_t> pixels;  // by vertex: its pixel, row x width + column
+  mesh::Mesh mesh;                        // features: "normal", then the planes in their order
+  std::vector<std::uint32_t> pixels;      // by vertex: its pixel, row x width + column
   std::vector<std::uint8_t> on_boundary;  // by vertex: 1 if it is on a border of the surface
-  std::size_t returns = 0;                // pixels with a return
-  std::size_t unused = 0;                 // pixels with a return, but in no triangle
-  std::size_t split = 0;                  // vertices added where surfaces touch in one point only
-  std::size_t not_numbers = 0;            // values of planes that were not finite and became 0
+  std::size_t returns = 0;                // number of pixels with a return
+  std::size_t unused = 0;                 // number of pixels with a return, but in no triangle
+  // Number of vertices added where surfaces touch in only one point.
+  std::size_t split = 0;
+  // Number of plane values that were not finite and became 0.
+  std::size_t not_numbers = 0;
 };
 
-// In each cell the shorter one of the diagonals that have a return at both ends is taken. This
-// diagonal and the cell's sides form up to two triangles; a triangle is kept if each of its edges
-// is at most as long as `max_edge` allows at the smaller range of the edge's ends ([GOURLEY98] A.6
-// and [TURK94]). Triangles are counter-clockwise as the scanner sees them; their order is that of
-// the cells, row by row.
+// Triangulates the image. Each cell is divided by the shorter one of its diagonals that have a
+// return at both ends. This diagonal and the cell's sides form up to two triangles; a triangle is
+// kept if each of its edges is at most as long as `max_edge` allows at the smaller range of the
+// edge's ends ([GOURLEY98] A.6 and [TURK94]). Triangles are counter-clockwise as the scanner sees
+// them; their order is that of the cells, row by row.
 //
-// A pixel whose triangles form several fans becomes one vertex per fan, so that the mesh is as
-// splitNonManifold() would leave it; validate() and tidy() find nothing to report or remove.
-// Normals: the mean of the unit face normals ([GOURLEY98] 4.1), as in mesh::vertexNormals().
+// A pixel whose triangles form several fans becomes one vertex per fan, so that the mesh is
+// manifold; validate() and tidy() find nothing to report or remove. Normals: the mean of the unit
+// face normals ([GOURLEY98] 4.1), as in mesh::vertexNormals().
 //
 // points  pointsOf(image)
 // cost    O(pixels), about 100 bytes a pixel with the mesh

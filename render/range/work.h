@@ -11,12 +11,13 @@ namespace merlin::render::range {
 
 struct Work {
   unsigned threads = 1;
-  // Called on the caller's thread with the share of the step that is done, 0..1; may be empty.
+  // Progress callback, called on the caller's thread with the share of the step that is done, 0..1;
+  // may be empty.
   std::function<void(double)> progress{};
 };
 
-// Returns the work for a part of a step; its progress runs from the share `from` to the share `to`
-// of the step.
+// Returns the work for a part of a step: the part's progress 0..1 is reported as the shares `from`
+// to `to` of the step.
 inline Work partOf(const Work& work, double from, double to) {
   if (!work.progress) return work;
   return {work.threads, [progress = work.progress, from, to](double share) {

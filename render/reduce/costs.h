@@ -1,22 +1,24 @@
-// The cost functions of reduce(), one folder each. Private to render/reduce.
+// Declares the cost functions of reduce(); each is implemented in a folder of its own. Private to
+// render/reduce.
 #pragma once
 
 #include "render/reduce/reduce.h"
 
 namespace merlin::render::reduce {
 
-// The cost `pattern`, the method of [GOURLEY98]: the length of the edge in pattern space. Defined
-// in pattern/pattern.cpp.
+// Reduces a mesh with the cost `pattern` ([GOURLEY98]): the cost of an edge is its length in
+// pattern space. Errors, REQUIRES: as reduce(). Defined in pattern/pattern.cpp.
 Result<Reduction> reduceByPattern(const mesh::Mesh& mesh, const ReduceSettings& settings,
                                   const Progress& progress);
 
-// The cost `quadric`: quadrics over position and all weighted features. Defined in
-// quadric/quadric.cpp.
+// Reduces a mesh with the cost `quadric`: the cost of an edge is a quadric error over position and
+// all weighted features. Errors, REQUIRES: as reduce(). Defined in quadric/quadric.cpp.
 Result<Reduction> reduceByQuadric(const mesh::Mesh& mesh, const ReduceSettings& settings,
                                   const Progress& progress);
 Weights quadricWeights(const mesh::Mesh& mesh);
 
-// Returns the weights of the settings, or the cost's default weights if those are empty.
+// Returns settings.weights, or the default weights of settings.cost if those are empty. REQUIRES:
+// findCost(settings.cost).
 Weights weightsFor(const mesh::Mesh& mesh, const ReduceSettings& settings);
 
 // Returns "key=value" lines that describe the reduction, for CollapseLog::about.

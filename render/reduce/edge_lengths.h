@@ -1,4 +1,5 @@
-// Lengths of a mesh's edges in pattern space, by which the cost `pattern` orders its collapses.
+// Computes the lengths of a mesh's edges in pattern space; the cost `pattern` orders its collapses
+// by these lengths.
 #pragma once
 
 #include <vector>
@@ -9,10 +10,11 @@
 
 namespace merlin::render::reduce {
 
-// Returns for each corner of each triangle, in the order of mesh.triangles, the length of the edge
-// from this corner to the triangle's next one: the distance of the weighted pattern vectors of its
-// ends before the first collapse, [GOURLEY98] equation 4.3 and section 5.1. O(triangles).
-// Reentrant. Errors: those of PatternSpace::make(). REQUIRES: as reduce().
+// Returns the length of each triangle's three edges in pattern space: entry 3 t + k is the edge
+// from corner k of triangle t to its next corner. The length is the distance between the weighted
+// pattern vectors of the edge's ends before the first collapse, [GOURLEY98] equation 4.3 and
+// section 5.1. O(triangles). Reentrant. Errors: those of PatternSpace::make(). REQUIRES: as
+// reduce().
 Result<std::vector<float>> edgeLengths(const mesh::Mesh& mesh, const Weights& weights);
 
 }  // namespace merlin::render::reduce

@@ -7,17 +7,17 @@
 namespace merlin::render::reduce {
 namespace {
 
-// Bytes per triangle for the records and stars of the quadric cost, without channels: 64 per vertex
-// for its record, about as much for its star, and the unused room that growing stars leave.
+// Bytes per triangle for the records and stars of the cost `quadric`, without channels: 64 bytes
+// per vertex for its record, about as much for its star, and unused room that growing stars leave.
 constexpr double kQuadrics = 84;
-constexpr double kPattern = 165;  // bytes per triangle, pattern cost
+constexpr double kPattern = 165;  // bytes per triangle for the cost `pattern`
 // Safety factor: the blocks may keep up to 25 % more triangles than requested.
 constexpr double kOver = 1.25;
 constexpr std::size_t kMostBlocks = 64;
 
 double asDouble(std::size_t n) { return static_cast<double>(n); }
 
-// Bytes per triangle of a mesh with its features.
+// Returns the size of a mesh with its features, in bytes per triangle.
 double meshBytes(const mesh::MeshSize& size) {
   return asDouble(size.bytes()) / asDouble(std::max<std::size_t>(size.triangles, 1));
 }
@@ -25,8 +25,8 @@ double meshBytes(const mesh::MeshSize& size) {
 double quadricBytes(const mesh::MeshSize& size) {
   const double vertices =
       asDouble(size.vertices) / asDouble(std::max<std::size_t>(size.triangles, 1));
-  // Every feature value except the normal's three may become a channel, which takes four floats per
-  // vertex; a vertex with channels takes one more.
+  // Every feature value except the normal's three may become a channel. A channel takes four floats
+  // per vertex; a vertex with channels takes one more float.
   const double channels = size.values > 3 ? 4 * (1 + 4 * asDouble(size.values - 3)) : 0;
   return kQuadrics + vertices * channels;
 }
@@ -35,7 +35,8 @@ double logBytes(const mesh::MeshSize& size) {
   return asDouble(size.vertices) * (24 + 4 * asDouble(size.values));
 }
 
-// Upper bound of the share of the triangles that the blocks leave for the final reduction.
+// Returns an upper bound of the share of the triangles (0..1) that the blocks leave for the final
+// reduction.
 double shareLeft(const mesh::MeshSize& size, const ReduceSettings& settings) {
   const double target = std::max(
       asDouble(settings.min_triangles) / asDouble(std::max<std::size_t>(size.triangles, 1)),
@@ -56,9 +57,10 @@ std::size_t needInBlocks(const mesh::MeshSize& size, const ReduceSettings& setti
   return static_cast<std::size_t>(std::max({20 * v, block, joined, whole}));
 }
 
-// Peak memory, in bytes, of all steps of a job except the reduction. These are: reading (the file,
-// and the mesh without normals), splitting non-manifold edges and vertices (half-edges and fans of
-// triangles), and writing (the collapse log and the order of its rows).
+// Returns the peak memory, in bytes, of all steps of a job except the reduction. The steps are
+// reading (takes the file, and the mesh without normals), splitting non-manifold edges and vertices
+// (takes half-edges and fans of triangles), and writing (takes the collapse log and the order of
+// its rows).
 std::size_t needOfOtherSteps(const mesh::MeshSize& m, std::size_t file_size) {
   const std::size_t read = m.bytes() - 12 * m.vertices;
   const std::size_t split = read + 36 * m.triangles + 5 * m.vertices;

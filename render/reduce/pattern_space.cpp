@@ -31,8 +31,8 @@ std::string namesOf(const mesh::Mesh& mesh) {
   return names;
 }
 
-// Returns the dimension of a feature and its normalisation as `scale`; dimension 0 if the mesh does
-// not have it.
+// Returns the dimension of a feature and, as `scale`, its normalisation factor. The dimension is 0
+// if the mesh does not have the feature.
 PatternFeature measure(const mesh::Mesh& mesh, const std::string& name) {
   if (name == "geometry") {
     const float diagonal = mesh::boundingBox(mesh.positions).diagonal();

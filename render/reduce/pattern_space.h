@@ -1,6 +1,6 @@
-// Pattern space: each vertex is a vector of its weighted features (modalities), position included,
-// so that the length of an edge is the Euclidean distance between the vectors of its ends.
-// [GOURLEY98] 4.2.1, equations 4.1 to 4.3.
+// PatternSpace: the vector space in which the cost `pattern` measures edges. Each vertex is a
+// vector of its weighted features (modalities), including its position; the length of an edge is
+// the Euclidean distance between the vectors of its ends. [GOURLEY98] 4.2.1, equations 4.1 to 4.3.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +14,35 @@
 
 namespace merlin::render::reduce {
 
-// One weight per feature, by name. Every mesh has "geometry", "normal", "curvature" and "boundary";
-// all other names are those of the mesh's features ("colour", "confidence", ...). A feature without
-// a weight does not influence the cost; its values are carried along.
+// One weight per feature, by the feature's name. Every mesh has "geometry", "normal", "curvature"
+// and "boundary"; other names are those of mesh.features ("colour", "confidence", ...). A feature
+// without a weight does not influence the cost, but its values are still computed for new vertices.
 using Weights = std::map<std::string, float, std::less<>>;
 
-inline constexpr float kMostWeight = 1e6F;  // above it, rounding loses the geometry
+// upper limit of a weight; with more, rounding errors swamp the geometry
+inline constexpr float kMostWeight = 1e6F;
 
-// Weights from [GOURLEY98] chapter 5, for the cost pattern. The typical weights (figure 5.2)
-// include none for colour; we give colour the weight of geometry. For the segmented data and for
-// Coleman's data we infer that the third weight belongs to the label and to the confidence,
-// respectively.
+// A named set of weights for the cost `pattern`, from [GOURLEY98] chapter 5. The typical weights
+// (figure 5.2) include none for colour; we give colour the weight of geometry. For the segmented
+// data and for Coleman's data the source does not name the third weight; we assume that it belongs
+// to the label and to the confidence, respectively.
 struct Preset {
   const char* name;
   float geometry, normal;
-  const char* feature;  // a further feature, weighted if the mesh has it; may be empty
+  // name of one more weighted feature, ignored if the mesh lacks it; may be empty
+  const char* feature;
   float of_feature, boundary, curvature;
 };
 const std::vector<Preset>& presets();
 Weights presetWeights(const Preset& preset, const mesh::Mesh& mesh);
 
-// Default weights of the cost pattern. Compared with those of 1998, the normal's weight is a tenth
-// and the curvature's is 0: on scans the RMS error is lowest for a normal's weight of 0.03 to 0.1
-// (pattern/README.md).
+// Returns the default weights of the cost `pattern`. Compared with the typical weights of 1998, the
+// normal's weight is a tenth and the curvature's is 0: on scans the RMS error is lowest for a
+// normal's weight of 0.03 to 0.1 (pattern/README.md).
 Weights defaultWeights(const mesh::Mesh& mesh);
 
-// The range of components that one feature has in a pattern vector; `offset` is the index of the
-// first one.
+// The components of a pattern vector that one feature takes: from index `offset` to `offset +
+// dimension` (exclusive).
 struct PatternFeature {
   std::string name;
   std::size_t dimension = 0, offset = 0;
@@ -49,10 +51,11 @@ struct PatternFeature {
 
 class PatternSpace {
  public:
-  // Normalisation (4.2.1): geometry is divided by the diagonal of the mesh's bounding box; normals,
-  // curvature, boundary and colour are used as they are; any other feature is divided by its
-  // largest extent over the mesh. Errors: kInvalidArgument (a weight is negative, not finite or
-  // above kMostWeight; the mesh does not have the feature; no weight is more than 0).
+  // Makes the space of all features whose weight is more than 0. Normalisation (4.2.1): geometry is
+  // divided by the diagonal of the mesh's bounding box; normals, curvature, boundary and colour are
+  // used as they are; any other feature is divided by its largest extent over the mesh. Errors:
+  // kInvalidArgument if a weight is negative, not finite or above kMostWeight, if the mesh lacks a
+  // weighted feature, or if no weight is more than 0.
   static Result<PatternSpace> make(const mesh::Mesh& mesh, const Weights& weights);
 
   std::size_t dimension() const noexcept { return dimension_; }
@@ -64,8 +67,9 @@ class PatternSpace {
   std::size_t dimension_ = 0;
 };
 
-// Equation 4.2: C = sqrt(sum |F_j - N|^2 / n) for a vertex with the normal N and n faces with the
-// unit normals F_j (`face_normals`, n x 3 floats); 0 if it has no face.
+// Returns the curvature at a vertex by equation 4.2: C = sqrt(sum |F_j - N|^2 / n), where N is the
+// vertex normal (`normal`, 3 floats) and F_j are the unit normals of its n faces (`face_normals`, n
+// x 3 floats). Returns 0 if there are no faces.
 float curvature(std::span<const float> face_normals, const float* normal) noexcept;
 
 }  // namespace merlin::render::reduce

@@ -12,19 +12,21 @@
 
 namespace merlin::render::scan {
 
-// The point of the surface that a pixel shows.
+// The point of the surface that a pixel of the range image shows.
 struct Place {
   std::uint32_t triangle = 0;
-  std::array<double, 3> barycentric{};  // of its corners
-  double cosine = 0;                    // of the angle of incidence
+  std::array<double, 3> barycentric{};  // weights of the triangle's corners
+  double cosine = 0;                    // cosine of the angle of incidence, 0..1
 };
 
 class Modalities {
  public:
-  // Adds the planes to the image, with all values 0. Keeps references to both arguments.
+  // Adds the planes to the image, with all values 0. Keeps references to both arguments, which must
+  // outlive it.
   Modalities(const Scene& scene, range::RangeImage& image);
 
-  // Sets a pixel of each plane. Several threads may call it at once, for different pixels.
+  // Sets the values of one pixel in each plane. Several threads may call it at the same time for
+  // different pixels.
   void set(std::size_t pixel, const Place& place);
 
   const std::vector<std::string>& leftOut() const noexcept { return left_out_; }
@@ -38,7 +40,7 @@ class Modalities {
 
   void add(const mesh::Feature& feature);
   void addPlane(const std::string& name, std::size_t dimension, float high, const Source& source);
-  // Component `k` of the feature at the place.
+  // Returns component `k` of the feature, interpolated at the place.
   double at(const mesh::Feature& feature, const Place& place, std::size_t k) const;
 
   const Scene& scene_;

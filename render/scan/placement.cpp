@@ -35,7 +35,7 @@ range::Pose lookAt(const Point& from, const Point& at) {
 
 range::Pose around(const mesh::Box& box, double yaw_rad, double pitch_rad,
                    const range::Geometry& geometry) {
-  constexpr double kMost = 1.5;  // a wider view does not let the scanner come nearer [rad]
+  constexpr double kMost = 1.5;  // limit [rad]: the distance does not shrink for wider views
   const double half = std::min({geometry.horizontal_rad / 2, geometry.vertical_rad / 2, kMost});
   const double distance = double{box.diagonal()} / 2 / std::sin(half);
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY()) *

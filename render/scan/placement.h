@@ -10,9 +10,9 @@ namespace merlin::render::scan {
 
 using Point = std::array<double, 3>;  // world coordinates [units]
 
-// Returns the pose of a scanner at `from` that looks towards `at`. The world's y axis points
-// upwards in the image; if the scanner looks along the y axis, the negative z axis does. REQUIRES:
-// from != at, finite.
+// Returns the pose of a scanner at `from` that looks towards `at`. The image's upward direction is
+// the world's y axis; if the scanner looks along the y axis, it is the negative z axis. REQUIRES:
+// from != at; both are finite.
 range::Pose lookAt(const Point& from, const Point& at);
 
 // Returns the pose from which the sphere around the box just fits into the smaller one of the

@@ -17,12 +17,12 @@ namespace {
 using compare::TriangleTree;
 using compare::Vector;
 
-// What became of the rays of a row.
+// Counts of the rays of one row: met the mesh; too oblique; return lost.
 struct Counts {
   std::size_t met = 0, oblique = 0, lost = 0;
 };
 
-// |cos| of the angle between a ray and the triangle's normal.
+// Returns the absolute cosine of the angle between a ray and the triangle's normal.
 double cosineOfIncidence(const std::array<Vector, 3>& corners, const Vector& direction) {
   const Vector normal = compare::cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double lengths = std::sqrt(compare::squared(normal) * compare::squared(direction));
@@ -87,7 +87,7 @@ class Scanner {
   Scan& scan_;
   TriangleTree tree_;
   Modalities modalities_;
-  std::vector<float> rays_;  // pixels x 3: the points of range 1, in the scanner's coordinates
+  std::vector<float> rays_;  // pixels x 3: points at range 1, in scanner coordinates
   std::uint64_t first_random_ = 0;
   double least_cosine_ = std::cos(settings_.most_incidence_rad) - 1e-12;
 };

@@ -29,7 +29,7 @@ Error broken(const std::string& path, const std::string& what) {
   return {Errc::kMalformed, path + ": " + what};
 }
 
-// Name of a section kind; nullptr if the kind is not known.
+// Returns the name of a section kind; nullptr if the kind is unknown.
 const char* nameOf(std::uint32_t kind) {
   switch (static_cast<Kind>(kind)) {
     case Kind::kPositions: return "positions";
@@ -50,7 +50,8 @@ class MrmReader {
   MrmReader(std::string path, std::span<const std::byte> bytes, std::shared_ptr<const void> owner)
       : path_(std::move(path)), bytes_(bytes), owner_(std::move(owner)) {}
 
-  // Checks the header of a file that is `file_size` bytes long; nothing else of the file is needed.
+  // Checks the header of a file of `file_size` bytes; `bytes` need not contain more than the
+  // header.
   Result<Ok> checkHeader(std::uint64_t file_size) { return readHeader(file_size); }
 
   Result<Dendrogram> read() {
@@ -103,7 +104,7 @@ class MrmReader {
   }
 
   Result<Ok> readSection(const SectionEntry& e) {
-    if (nameOf(e.kind) == nullptr) {  // it cannot be read, since the size of its values is unknown
+    if (nameOf(e.kind) == nullptr) {  // cannot be checked, as the size of its values is unknown
       if (e.kind >= kFirstOptional) return Ok{};
       return Error{Errc::kUnsupported,
                    fmt::format("{}: section kind {} is not known", path_, e.kind)};
@@ -159,7 +160,7 @@ class MrmReader {
 
   std::string path_;
   std::span<const std::byte> bytes_;
-  std::shared_ptr<const void> owner_;  // shared with the dendrogram
+  std::shared_ptr<const void> owner_;  // is passed on to the dendrogram
   FileHeader header_{};
   Dendrogram::Arrays arrays_;
 };
@@ -175,8 +176,9 @@ Result<Dendrogram> readFrom(const std::string& path, Result<File> file) {
   return MrmReader(path, kept->bytes(), kept).read();
 }
 
-// Checks the header alone first, so that a large file of another format is not read completely. The
-// check of the whole copy afterwards is the one that counts. `read`: reads the first bytes.
+// Reads a copy of a file. Checks the header alone first, so that a large file of another format is
+// not read completely; read() then checks the whole copy, as the file may have changed in between.
+// `read`: returns the first `most` bytes of the file.
 template <typename Read>
 Result<Dendrogram> readCopy(const std::string& path, FileStamp* stamp, const Read& read) {
   const Result<FileCopy> head = read(sizeof(FileHeader));

@@ -1,4 +1,5 @@
-// Writes .mrm files: section by section, each in pieces, so that no section has to be in memory.
+// Writes .mrm files section by section, and each section in pieces, so that no section has to be in
+// memory as a whole.
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -23,9 +24,10 @@ namespace {
 
 using namespace mrm;
 
-constexpr std::size_t kPiece = 1 << 16;  // rows that a thread gathers at a time
+constexpr std::size_t kPiece = 1 << 16;  // number of rows that a thread gathers at a time
 
-// Writes the rows [first, end) of a section to memory that begins at `to`. Reentrant.
+// Function type: writes the rows [first, end) of a section to memory that begins at `to`.
+// Reentrant.
 using Rows = std::function<void(std::size_t first, std::size_t end, std::byte* to)>;
 
 struct Section {
@@ -36,13 +38,13 @@ struct Section {
   std::size_t bytes() const { return entry.rows * rowBytes(); }
 };
 
-// The longest prefix of whole characters that fits into the name field.
+// Returns the longest prefix of whole UTF-8 characters that fits into the name field.
 std::string_view shortName(std::string_view name) {
   constexpr std::size_t kRoom = sizeof SectionEntry::name - 1;
   return name.size() > kRoom ? wholeCharacters(name.substr(0, kRoom)) : name;
 }
 
-// The sections of a model file, whatever data they come from.
+// The sections of a model file, independent of the data structure that they come from.
 struct Model {
   std::size_t nodes = 0, collapses = 0, triangles = 0;
   std::vector<Section> sections;
@@ -84,7 +86,7 @@ Model modelOf(const Dendrogram& d) {
   return model;
 }
 
-// Returns a function that writes rows of one value each, value_of(row).
+// Returns a function that writes rows of one value each; value_of(row) returns the value.
 template <typename T, typename ValueOf>
 Rows each(ValueOf value_of) {
   return [value_of](std::size_t first, std::size_t end, std::byte* to) {
@@ -95,7 +97,8 @@ Rows each(ValueOf value_of) {
   };
 }
 
-// Returns a function that writes the nodes' values in the order of the dendrogram.
+// Returns a function that writes one value row (position or feature) per node, in the dendrogram's
+// order of nodes.
 Rows gathered(const std::vector<float>& leaves, const std::vector<float>& inner,
               std::size_t dimension, const RemovalOrder& order) {
   return [&leaves, &inner, dimension, &order](std::size_t first, std::size_t end, std::byte* to) {
@@ -107,7 +110,7 @@ Rows gathered(const std::vector<float>& leaves, const std::vector<float>& inner,
   };
 }
 
-// Returns a function that writes the triangles' corners in the order of the dendrogram.
+// Returns a function that writes the corners of triangles, in the dendrogram's order of triangles.
 Rows corners(const mesh::Mesh& mesh, const RemovalOrder& order) {
   return [&](std::size_t first, std::size_t end, std::byte* to) {
     for (std::size_t i = first; i < end; ++i, to += 3 * sizeof(std::uint32_t)) {
@@ -119,7 +122,7 @@ Rows corners(const mesh::Mesh& mesh, const RemovalOrder& order) {
   };
 }
 
-// The arguments must outlive the returned model.
+// Returns the sections for a mesh and its log. The arguments must outlive the returned model.
 Model modelOf(const mesh::Mesh& mesh, const CollapseLog& log, const RemovalOrder& order,
               const std::vector<float>& error) {
   const std::size_t vertices = mesh.vertexCount();
@@ -209,7 +212,7 @@ class MrmWriter {
     }
   }
 
-  // Header and section table, built after all sections are written.
+  // Returns the header and the section table; called after all sections have been written.
   std::span<const std::byte> head() {
     FileHeader h{};
     std::memcpy(h.magic, kMagic, sizeof kMagic);
@@ -236,7 +239,7 @@ class MrmWriter {
   Model model_;
   unsigned threads_;
   std::vector<std::byte> head_;
-  std::uint64_t size_ = 0;  // of the file
+  std::uint64_t size_ = 0;  // size of the file [bytes]
   std::array<float, 3> low_{}, high_{};
 };
 

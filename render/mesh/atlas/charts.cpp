@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kTogether = 4;  // periods that connected triangles may span
 constexpr std::size_t kMostColours = 1024;
-constexpr float kFarthest = 1e6F;          // of a texture coordinate
-constexpr double kTolerance = 1.0 / 1024;  // of a coordinate that should be a whole number
+constexpr float kFarthest = 1e6F;          // limit of the magnitude of a texture coordinate
+constexpr double kTolerance = 1.0 / 1024;  // for coordinates that should be whole numbers
 
-// The range of texture coordinates, of each axis.
+// The range of texture coordinates on each axis.
 struct Range {
   std::array<float, 2> low{kFarthest, kFarthest}, high{-kFarthest, -kFarthest};
 
@@ -27,7 +27,7 @@ struct Range {
   }
 };
 
-// Length after which the picture is the same again; 0: it does not repeat.
+// Returns the period of an image along an axis, in sides of the image; 0 if it does not repeat.
 int periodOf(image::Wrap wrap) {
   return wrap == image::Wrap::kClamp ? 0 : wrap == image::Wrap::kMirror ? 2 : 1;
 }
@@ -43,7 +43,7 @@ std::array<std::int32_t, 2> shiftOf(const Range& range, const SurfaceTexture& te
   return shift;
 }
 
-// Whether the coordinates, moved back by `shift`, lie between -most and most, in sides of the
+// Returns whether the coordinates minus `shift` lie between -most and most, in sides of the
 // picture.
 bool spans(const Range& range, const std::array<std::int32_t, 2>& shift, int most) {
   for (std::size_t k = 0; k < 2; ++k) {
@@ -96,7 +96,7 @@ class ChartFinder {
     });
   }
 
-  // Equal textures are one chart.
+  // Maps textures to charts; equal textures share one chart.
   void numberTextures() {
     for (const SurfaceTexture& t : textures_.textures) {
       const auto same = [&](const Chart& c) { return c.texture == t; };
@@ -107,7 +107,8 @@ class ChartFinder {
     regions_.resize(charts_.charts.size());
   }
 
-  // A vertex also connects the triangles of two textures that share it.
+  // Finds sets of connected triangles and their ranges of texture coordinates. A shared vertex
+  // connects triangles even if their textures differ.
   void joinTriangles() {
     connected_ = DisjointSets(mesh_.vertexCount());
     for (std::size_t t = 0; t < mesh_.triangleCount(); ++t) {
@@ -202,8 +203,8 @@ class ChartFinder {
     return found->second;
   }
 
-  // Gives each colour a number. If there are too many colours, rounds them until they are few
-  // enough.
+  // Numbers the colours. If there are more than kMostColours, rounds them more and more coarsely
+  // until they are few enough.
   void numberColours() {
     for (int bits = 8;; --bits) {
       charts_.colours.clear();
@@ -237,11 +238,12 @@ class ChartFinder {
   const Feature* texcoord_;
   const Feature* colour_;
   Charts charts_;
-  std::vector<std::uint32_t> chart_of_;         // of each texture
-  std::vector<std::optional<Region>> regions_;  // of each chart
-  DisjointSets connected_{0};                   // vertices that triangles connect
-  std::vector<Range> ranges_;             // of connected triangles, at the root of their vertices
-  std::vector<Colour> triangle_colours_;  // of triangles without a chart
+  std::vector<std::uint32_t> chart_of_;  // by texture: index of its chart
+  // By chart: the part of its image that is used; nothing if unused.
+  std::vector<std::optional<Region>> regions_;
+  DisjointSets connected_{0};             // sets of vertices that triangles connect
+  std::vector<Range> ranges_;             // by root vertex: range of a set of connected triangles
+  std::vector<Colour> triangle_colours_;  // by triangle; only for triangles without a chart
   std::map<std::uint32_t, Colour> means_;
 };
 

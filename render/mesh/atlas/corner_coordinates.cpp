@@ -9,7 +9,7 @@
 namespace merlin::render::mesh {
 namespace {
 
-using Bits = std::array<std::uint32_t, 3>;  // a vertex, and two coordinates
+using Bits = std::array<std::uint32_t, 3>;  // a vertex, and the bits of u and v
 
 void appendCopy(std::vector<float>& values, std::size_t dimension, std::size_t row) {
   for (std::size_t k = 0; k < dimension; ++k) values.push_back(values[row * dimension + k]);
@@ -25,7 +25,8 @@ void setCornerCoordinates(Mesh& mesh, const std::vector<std::array<float, 2>>& c
   std::map<Bits, std::uint32_t> twins;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     std::uint32_t& v = mesh.triangles[i];
-    const std::array<float, 2> uv = {corners[i][0] + 0.0F, corners[i][1] + 0.0F};  // -0 is 0
+    // Turns -0 into 0.
+    const std::array<float, 2> uv = {corners[i][0] + 0.0F, corners[i][1] + 0.0F};
     if (!set[v]) coordinates[v] = uv;
     set[v] = true;
     if (coordinates[v] == uv) continue;

@@ -25,7 +25,7 @@ bool hasTexture(const SurfaceTextures& textures) {
   return std::ranges::any_of(textures.of_triangle, [](auto t) { return t != kNoTexture; });
 }
 
-// The picture that all triangles have, if it repeats and its file is known; else nullptr.
+// Returns the picture that all triangles use, if it repeats and its file is known; else nullptr.
 const image::ImageFile* onlyPicture(const SurfaceTextures& textures) {
   if (textures.of_triangle.empty() || textures.of_triangle[0] == kNoTexture) return nullptr;
   const SurfaceTexture& first = textures.textures[textures.of_triangle[0]];
@@ -35,7 +35,7 @@ const image::ImageFile* onlyPicture(const SurfaceTextures& textures) {
   return only && repeats(first) && !first.picture->file.empty() ? first.picture : nullptr;
 }
 
-// Counts the pictures that no triangle has.
+// Returns the number of pictures that no triangle uses.
 std::size_t unusedPictures(const SurfaceTextures& textures) {
   std::set<const image::ImageFile*> unused;
   for (const SurfaceTexture& t : textures.textures) {
@@ -51,13 +51,13 @@ std::size_t unusedPictures(const SurfaceTextures& textures) {
   return unused.size();
 }
 
-// Splits vertices so that each triangle has corners with its own place in the atlas.
+// Splits vertices so that all triangles at a vertex have the same place in the atlas.
 class Splitter {
  public:
   Splitter(Mesh& mesh, const Charts& charts) : mesh_(mesh), charts_(charts) {}
 
-  // Returns for each vertex one of its triangles, which tells where in the atlas the vertex is;
-  // kNoTexture if it has no triangle.
+  // Splits the vertices. Returns for each vertex one of its triangles, from which the vertex's
+  // place in the atlas follows; kNoTexture if it has no triangle.
   std::vector<std::uint32_t> split() {
     triangle_of_.assign(mesh_.vertexCount(), kNoTexture);
     for (std::uint32_t t = 0; t < charts_.places.size(); ++t) {
@@ -114,8 +114,8 @@ void setCoordinates(const Charts& charts, const Layout& layout,
   }
 }
 
-// Returns the mean colour of an atlas, with each chart weighted by its area. The space between the
-// charts gets it, so that little changes where mipmaps mix them.
+// Returns the mean colour of an atlas, in which each chart is weighted by its area. The space
+// between the charts gets this colour, so that mipmaps that mix it with charts change little.
 Colour meanOfAll(const Charts& charts, const Layout& layout) {
   std::array<double, 3> sum{};
   double all = 0;

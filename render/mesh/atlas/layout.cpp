@@ -9,8 +9,8 @@ namespace merlin::render::mesh {
 namespace {
 
 constexpr std::size_t kColoursInRow = 32;
-constexpr double kSmaller = 0.9;  // by which all charts are scaled at each try
-constexpr int kMostTries = 88;    // down to 1e-4
+constexpr double kSmaller = 0.9;  // factor by which all charts are scaled down at each try
+constexpr int kMostTries = 88;    // limit of tries; the smallest scale is about 1e-4
 
 int roundedUp(int n) { return (n + kGutter - 1) / kGutter * kGutter; }
 
@@ -18,8 +18,8 @@ int scaled(int size, double scale) {
   return std::max(1, static_cast<int>(std::floor(size * scale + 0.5)));
 }
 
-// Returns the scale of a single chart: one with many repeats is reduced, so that it does not make
-// the others small.
+// Returns the additional scale of a single chart: a chart with many repeats is reduced, so that all
+// others can stay larger.
 double ownScale(const Chart& chart, const AtlasLimits& limits) {
   const image::ImageFile& picture = *chart.texture.picture;
   const int most = std::max({limits.most_chart_side, picture.width, picture.height});
@@ -46,7 +46,8 @@ RectangleSize sizeOfColours(std::size_t colours) {
   return {kGutter * static_cast<int>(columns), kGutter * static_cast<int>(rows)};
 }
 
-// Packs in units of kGutter, so that all cells begin at a multiple of it.
+// Lays the charts out at this scale; returns nothing if they do not fit. Packs in units of kGutter,
+// so that all cells begin at multiples of it.
 std::optional<Layout> tryToLayOut(const Charts& charts, double scale, const AtlasLimits& limits) {
   Layout layout;
   layout.cells = cellsOf(charts, scale, limits);

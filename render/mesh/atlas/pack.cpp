@@ -10,13 +10,13 @@
 namespace merlin::render::mesh {
 namespace {
 
-// The upper edge of what is placed so far, as steps from left to right.
+// The free edge of the rectangles placed so far, as steps from left to right.
 class Skyline {
  public:
   explicit Skyline(int width) : width_(width), steps_{{0, width, 0}} {}
 
-  // Places a rectangle where its far edge comes lowest, then leftmost. REQUIRES: it is not wider
-  // than the skyline.
+  // Places a rectangle where its far edge has the lowest y, and among equal ones leftmost.
+  // REQUIRES: the rectangle is not wider than the skyline.
   Packing::Place place(RectangleSize size) {
     std::size_t best = 0;
     int best_y = std::numeric_limits<int>::max();
@@ -37,7 +37,8 @@ class Skyline {
     int x, width, y;
   };
 
-  // How far down a rectangle of this width falls at step `first`.
+  // Returns the y at which a rectangle of this width comes to rest if its left edge is at step
+  // `first`.
   int heightAt(std::size_t first, int width) const {
     int y = 0;
     for (std::size_t i = first; width > 0; ++i) {
@@ -49,7 +50,7 @@ class Skyline {
 
   void raise(std::size_t first, RectangleSize size, int y) {
     const int x = steps_[first].x, end = x + size.width;
-    std::size_t last = first;  // behind the steps that are covered
+    std::size_t last = first;  // index after the last step that is covered completely
     while (last < steps_.size() && steps_[last].x + steps_[last].width <= end) ++last;
     if (last < steps_.size()) {
       Step& cut = steps_[last];
@@ -79,8 +80,8 @@ Packing packInto(int width, std::span<const RectangleSize> sizes,
   return packing;
 }
 
-// Whether a is better than b: its longer side is shorter, or, if these are equal, its area is
-// smaller.
+// Returns whether a is better than b: its longer side is shorter, or, if these are equal, its area
+// is smaller.
 bool isBetter(RectangleSize a, RectangleSize b) {
   const int longer = std::max(a.width, a.height), other = std::max(b.width, b.height);
   return longer != other ? longer < other

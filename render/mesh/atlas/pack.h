@@ -20,10 +20,10 @@ struct Packing {
 };
 
 // Packs the rectangles without overlap into a rectangle whose width and height are at most `most`;
-// returns nothing if they do not fit. Tries several widths and takes the result whose longer side
-// is shortest. Ties are broken by the order of the rectangles. O(n * most / smallest width).
-// REQUIRES: every side is at least 1.
-// Source: J. Jylänki, "A Thousand Ways to Pack the Bin", 2010, the bottom-left skyline.
+// returns nothing if they do not fit. Tries several widths and returns the result whose longer side
+// is shortest. Rectangles of equal size are packed in the given order. O(n * most / smallest
+// width). REQUIRES: every side is at least 1. Source: J. Jylänki, "A Thousand Ways to Pack the
+// Bin", 2010, the bottom-left skyline.
 std::optional<Packing> pack(std::span<const RectangleSize> sizes, int most);
 
 }  // namespace merlin::render::mesh

@@ -9,13 +9,13 @@
 namespace merlin::render::mesh {
 namespace {
 
-// A pixel of a picture's row or column, and the share that it has in a texel of the atlas.
+// A pixel in a row or column of a picture, and its share (0..1) in a texel of the atlas.
 struct Tap {
   std::size_t pixel;
   float share;
 };
 
-// The columns or the rows of a cell, and the chart's pixels that they show.
+// One axis of a cell (its columns or rows) and of the chart's pixels shown along it.
 struct Axis {
   std::int64_t first;  // the chart's first pixel
   int size, inner, cell;
@@ -25,7 +25,7 @@ struct Axis {
 
 std::vector<std::vector<Tap>> tapsOf(const Axis& axis) {
   std::vector<std::vector<Tap>> taps(static_cast<std::size_t>(axis.cell));
-  const double pixels = static_cast<double>(axis.size) / axis.inner;  // that a texel covers
+  const double pixels = static_cast<double>(axis.size) / axis.inner;  // pixels that a texel covers
   for (int i = 0; i < axis.cell; ++i) {
     const double low = pixels * (i - kGutter), high = pixels * (i - kGutter + 1);
     const auto last = static_cast<std::int64_t>(std::ceil(high));

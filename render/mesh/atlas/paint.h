@@ -15,15 +15,16 @@ struct AtlasPixels {
   std::vector<std::uint8_t> pixels{};
 };
 
-// A rectangle of the atlas with a chart inside; in the margin around the chart the image continues.
+// A rectangle of the atlas with a chart inside; the margin around the chart continues the image.
 struct ChartCell {
-  int x = 0, y = 0, width = 0, height = 0;  // the rectangle [texels]
-  int inner_width = 0, inner_height = 0;    // of the chart, which begins kGutter texels inside
+  int x = 0, y = 0, width = 0, height = 0;  // the rectangle with its margin [texels]
+  // Size of the chart, which begins kGutter texels inside the rectangle.
+  int inner_width = 0, inner_height = 0;
 };
 
-// Fills the cell. Each texel is the area-weighted mean of the image's pixels that it covers; if the
-// chart is not scaled, its pixels are copied. O(texels + pixels). REQUIRES: the cell lies in the
-// atlas.
+// Draws the chart and its margin into the cell of the atlas. Each texel is the area-weighted mean
+// of the image pixels that it covers; if the chart is not scaled, its pixels are copied. O(texels +
+// pixels). REQUIRES: the cell lies in the atlas.
 void paintChart(const Chart& chart, const ChartCell& cell, AtlasPixels& atlas);
 
 void paintColour(const Colour& colour, int x, int y, int width, int height, AtlasPixels& atlas);

@@ -1,5 +1,5 @@
-// Converts colours of files whose format does not say whether they are fractions or bytes. Private
-// to render/mesh/io.
+// Converts colours from file formats that do not specify whether colours are fractions or bytes.
+// Private to render/mesh/io.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 namespace merlin::render::mesh {
 
-// Converts all colours of a file to fractions if they are bytes, 0 to 255. They count as bytes if
-// any is above 2: fractions hardly exceed 1, even where something is brighter than white, and a
-// file whose bytes are all at most 2 would be practically black.
+// Converts the colours of a file to fractions if they are bytes (0 to 255). They count as bytes if
+// any value is above 2: fractions hardly exceed 1, even where something is brighter than white, and
+// a file whose bytes are all at most 2 would be practically black.
 inline void makeFractions(std::vector<float>& colours) {
   constexpr float kMostFraction = 2, kMostByte = 255;
   float most = 0;
@@ -21,12 +21,13 @@ inline void makeFractions(std::vector<float>& colours) {
   for (float& c : colours) c /= kMostByte;
 }
 
-// Marks a triangle to which the file gives no colour.
+// Marks a triangle to which the file assigns no colour.
 inline constexpr float kNoColour = std::numeric_limits<float>::quiet_NaN();
 
-// Completes the colours of a file's facets: converts them to fractions and sets facets without a
-// colour to white, including those after the last coloured one, for which `colours` has no entries.
-// Empty `colours` stay empty.
+// Completes the colours of a file's facets: converts them to fractions, appends entries for facets
+// after the last coloured one, and sets all facets without a colour to white. Does nothing if
+// `colours` is empty. colours: 3 values per facet, kNoColour where a facet has none; triangles:
+// number of facets.
 inline void completeFacetColours(std::size_t triangles, std::vector<float>& colours) {
   if (colours.empty()) return;
   makeFractions(colours);

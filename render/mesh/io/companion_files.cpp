@@ -16,14 +16,15 @@
 namespace merlin::render::mesh {
 namespace {
 
-constexpr std::size_t kMostNames = 65536;  // that are looked at in a folder
+constexpr std::size_t kMostNames = 65536;  // limit of names read from one folder
 
 bool exists(const std::string& path) {
   std::error_code error;
   return std::filesystem::exists(path, error);
 }
 
-// Of names that differ only in case, the first one by its bytes is kept.
+// Adds a name to `names`, under its lower-case form. If names differ only in case, the first one by
+// its bytes is kept.
 void addName(const std::string& name, std::map<std::string, std::string>& names) {
   const auto [found, fresh] = names.try_emplace(lowerCase(name), name);
   if (!fresh) found->second = std::min(found->second, name);
@@ -91,7 +92,7 @@ const CompanionFinder::Names& CompanionFinder::namesIn(const std::string& folder
   return found->second;
 }
 
-// The same path if there is nothing like it.
+// Returns an existing path that differs from `path` only in case; `path` itself if there is none.
 std::string CompanionFinder::inAnyCase(const std::string& path) {
   std::string found = folder_;
   for (std::size_t at = folder_.size(), end = 0; end != std::string::npos; at = end + 1) {

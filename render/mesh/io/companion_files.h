@@ -1,5 +1,5 @@
-// Companion files: files that a mesh file refers to and that lie in its folder or below (materials,
-// texture images). Their paths and names, and how they are written.
+// Finds, names and writes companion files: files that a mesh file refers to and that lie in its
+// folder or below (materials, texture images).
 #pragma once
 
 #include <functional>
@@ -16,62 +16,67 @@
 
 namespace merlin::render::mesh {
 
-// The folder part of `path`, with its trailing slash; empty if `path` has no slash.
+// Returns the folder part of `path`, with its trailing slash; empty if `path` has no slash.
 std::string folderOf(const std::string& path);
 
-// Path of the companion file that a mesh file in `folder` calls `name`. Names may come from another
-// machine or be hostile: if `name` is absolute or could leave the folder ("..", ":"), only its last
-// component is used.
+// Returns the path of the companion file that a mesh file in `folder` calls `name`. Names may come
+// from another machine or be hostile: if `name` is absolute or could leave the folder ("..", ":"),
+// only its last component is used.
 std::string pathBeside(const std::string& folder, std::string_view name);
 
-// Finds the companion files that a mesh file in `folder` names, also those whose names differ in
-// upper and lower case (of ASCII letters), as names from DOS and Windows may. Thread-bound.
+// Finds the companion files that a mesh file in `folder` refers to, even if a name differs from the
+// file's in upper and lower case (of ASCII letters), as names from DOS and Windows may.
+// Thread-bound.
 class CompanionFinder {
  public:
-  // Lists folders when that is needed, each once.
+  // Makes a finder that lists folders on demand, each once.
   explicit CompanionFinder(std::string folder) : folder_(std::move(folder)), lists_(true) {}
-  // Takes names from `files` instead, for a process that may not list folders. Paths that do not
-  // begin with `folder` are ignored.
+  // Makes a finder that uses the paths in `files` instead of listing folders, for a process that
+  // may not list them. Paths that do not begin with `folder` are ignored.
   CompanionFinder(std::string folder, const std::vector<std::string>& files);
 
-  // Returns pathBeside() if something is there, else the first path (by its bytes) that differs
-  // from it only in case; if there is none, pathBeside() again.
+  // Returns pathBeside(folder, name) if that path exists. Otherwise returns the first path (by its
+  // bytes) that differs from it only in case, or pathBeside() again if there is no such path.
   std::string find(std::string_view name);
 
-  // Says which file was found in place of another name, and how many more; empty if none was.
+  // Returns a note for the user that names one file found under a different spelling and the number
+  // of other such files; empty if there were none.
   std::string note() const;
 
  private:
-  using Names = std::map<std::string, std::string>;  // by the name in lower case
+  // Key: the name in lower case; value: the name itself.
+  using Names = std::map<std::string, std::string>;
   const Names& namesIn(const std::string& folder);
   std::string inAnyCase(const std::string& path);
 
   std::string folder_;
   bool lists_;
-  std::map<std::string, Names> folders_;      // by path, with a trailing slash
-  std::map<std::string, std::string> other_;  // path found, by the path that was named
+  // Names in each folder; key: path with a trailing slash.
+  std::map<std::string, Names> folders_;
+  std::map<std::string, std::string> other_;  // key: path as named in the file; value: path found
 };
 
-// Name prefix of the companion files of `path`: its file name, in which each byte that could end a
-// name in the file that refers to it (a blank, a quote, ...) becomes "=" and two hexadecimal
+// Returns the name prefix of the companion files of `path`: its file name, in which each byte that
+// could end a name in a mesh file (a blank, a quote, ...) is replaced by "=" and two hexadecimal
 // digits, e.g. "=20". Different names stay different.
 std::string plainName(const std::string& path);
 
 struct CompanionFile {
-  std::string name;  // by which the mesh file refers to it
+  std::string name;  // the name by which the mesh file refers to it
   std::string path, content;
 };
 
-// The texture image of a mesh that is written to `path`, if it has one and texture coordinates.
+// Returns the companion file with the texture image of a mesh that is written to `path`; nothing if
+// the mesh lacks a texture image or texture coordinates.
 std::optional<CompanionFile> pictureBeside(const Mesh& mesh, const std::string& path);
 
-// Whether the companion file exists already, with the same content. Its name was not given by the
-// user, so a file with different content is not overwritten. Errors: kInvalidArgument (different
-// content).
+// Returns whether the companion file exists already with the same content. Errors: kInvalidArgument
+// if a file with different content exists: the user did not choose this name, so the file must not
+// be overwritten.
 Result<bool> isThere(const CompanionFile& file);
 
-// Writes the files that are not there yet, then calls `write`; if anything fails, the files that
-// were written are removed again. Errors: those of isThere(), writeFile() and `write`.
+// Writes those of `files` that do not exist yet, then calls `write`. If anything fails, the files
+// that were written are removed again. Errors: those of isThere(), writeFile() and `write`.
 Result<Ok> writeBeside(std::span<const CompanionFile> files,
                        const std::function<Result<Ok>()>& write);
 

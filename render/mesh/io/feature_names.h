@@ -5,8 +5,9 @@
 
 namespace merlin::render::mesh {
 
-// Returns why a feature cannot have this name, which comes from outside, as the end of a message;
-// empty if it can: the name is one word, and no word with another meaning to readers of PLY.
+// Returns why a feature cannot have this name, as the end of an error message; empty if it can. A
+// valid name is one word that has no other meaning to readers of PLY. `name` may come from an
+// untrusted source.
 std::string featureNameFault(const std::string& name);
 
 }  // namespace merlin::render::mesh

@@ -10,9 +10,10 @@
 namespace merlin::render::mesh {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;  // [bytes] that are unpacked at once
+constexpr std::size_t kBlock = std::size_t{1} << 16;  // number of bytes unpacked at a time
 
-// Unpacks block by block. A file may be several packed ones, one after another.
+// Unpacks a gzip file block by block. The file may consist of several packed members, one after
+// another.
 class Gunzip {
  public:
   explicit Gunzip(std::string_view bytes) : size_(bytes.size()), left_(bytes) {
@@ -23,7 +24,8 @@ class Gunzip {
   Gunzip(const Gunzip&) = delete;
   Gunzip& operator=(const Gunzip&) = delete;
 
-  // Appends up to a block. Returns why that failed; an empty text if it did not.
+  // Unpacks up to kBlock bytes and appends them to `text`. Returns an error message, or an empty
+  // text on success.
   std::string appendTo(std::string& text) {
     feed();
     const std::size_t before = text.size();
@@ -43,7 +45,7 @@ class Gunzip {
   bool ended() const noexcept { return ended_; }
 
  private:
-  // Gives zlib more bytes, in portions, since zlib counts in 32 bits.
+  // Passes more input to zlib if it has none left; in portions, since zlib counts in 32 bits.
   void feed() {
     if (stream_.avail_in > 0) return;
     const std::size_t n = std::min<std::size_t>(left_.size(), std::numeric_limits<uInt>::max());
@@ -61,8 +63,8 @@ class Gunzip {
   }
 
   z_stream stream_{};
-  std::size_t size_;       // of all that is packed [bytes]
-  std::string_view left_;  // not given to zlib yet
+  std::size_t size_;       // size of the packed input [bytes]
+  std::string_view left_;  // input that was not passed to zlib yet
   bool ended_ = false;
 };
 

@@ -11,17 +11,19 @@ namespace merlin::render::mesh {
 
 bool isGzip(std::string_view bytes) noexcept;
 
-// Returns at most the first `most` bytes of the unpacked content; empty if it is empty or damaged.
+// Returns at most the first `most` bytes of the unpacked content; fewer, down to none, if the
+// content is shorter or damaged.
 std::string gunzipBeginning(std::string_view bytes, std::size_t most);
 
-// Returns the whole unpacked content. Memory grows with what is unpacked; the size that the file
-// states is not trusted. Errors, without the file's name: kMalformed (damaged or truncated),
+// Returns the whole unpacked content. Memory grows with the unpacked data; the size that the file
+// declares is not trusted. Errors, without the file's name: kMalformed (damaged or truncated),
 // kUnsupported (more than `most` bytes).
 Result<std::string> gunzip(std::string_view bytes, std::size_t most);
 
-// Returns the error with which a reader that does not unpack files refuses a packed one, without
-// the file's name: kMalformed (damaged, with the position, or truncated), else kUnsupported, which
-// says what to do instead. Unpacks up to 1 GiB, but keeps nothing. REQUIRES: isGzip(bytes).
+// Returns the error with which a reader that does not support packed files refuses one, without the
+// file's name. The code is kMalformed if the file is damaged or truncated; otherwise it is
+// kUnsupported, with advice on how to unpack the file. Unpacks up to 1 GiB for this check, but
+// keeps nothing. REQUIRES: isGzip(bytes).
 Error packedFileError(std::string_view bytes);
 
 }  // namespace merlin::render::mesh

@@ -21,7 +21,7 @@
 namespace merlin::render::mesh {
 namespace {
 
-// The ending in lower case, "ply" for "a/b.PLY"; empty if the name has none.
+// Returns the ending of a path in lower case, e.g. "ply" for "a/b.PLY"; empty if it has none.
 std::string ending(const std::string& path) {
   const auto dot = path.find_last_of("./");
   if (dot == std::string::npos || path[dot] != '.') return {};
@@ -42,8 +42,8 @@ std::string noteOf(const Origin& origin) {
       origin[0], origin[1], origin[2]);
 }
 
-// Returns a note if floats, so far from 0, are too coarse for a mesh of this size; empty if they
-// resolve at least 16,384 steps along its diagonal.
+// Returns a note for the user if the mesh lies so far from 0 that floats are too coarse for its
+// size; an empty text if they resolve at least 16,384 steps along its diagonal.
 std::string noteOfSteps(const Mesh& mesh) {
   constexpr double kFewSteps = 16384;
   const Box box = boundingBox(mesh.positions);
@@ -102,7 +102,8 @@ std::string endingsOf(const Rows& rows) {
   return list;
 }
 
-// The companion files that the mesh file refers to: the texture image and the material file.
+// Returns the companion files that the mesh file will refer to: the texture image and the material
+// file.
 std::vector<CompanionFile> companionsOf(const MeshWriter& writer, const Mesh& mesh,
                                         const std::string& path) {
   if (writer.picture != PicturePlace::kCompanionFile) return {};
@@ -153,7 +154,7 @@ std::optional<MeshFileSize> meshFileSize(const std::string& path) {
   if (!file) return std::nullopt;
   auto size = reader->size(file->text(), folderOf(path));
   const std::size_t bytes = file->text().size();
-  // Colours of faces may need a vertex for each corner of its triangles.
+  // Allows three vertices per byte, as colours of faces may need a vertex for each corner.
   if (!size || size->mesh.vertices > 3 * bytes || size->mesh.triangles > bytes) return std::nullopt;
   return size;
 }
@@ -180,7 +181,7 @@ Result<LoadedMesh> readMeshAs(const MeshReader& reader, const std::string& path)
   if (isGzip(file->text())) return inFile(path, packedFileError(file->text()));
   auto loaded = reader.read(file->text(), folderOf(path));
   if (!loaded) return inFile(path, loaded.error());
-  *file = MappedFile();  // unmap it: it is as large as the mesh
+  *file = MappedFile();  // unmaps the file, which is as large as the mesh
   replaceNonNumbers(*loaded);
   if (const auto valid = validate(loaded->mesh); !valid) return inFile(path, valid.error());
   if (!loaded->facet_colours.empty()) {

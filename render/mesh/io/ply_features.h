@@ -1,5 +1,5 @@
-// Names of the PLY vertex properties that form the features "normal", "colour" and "texcoord".
-// Private to render/mesh/io and render/range/io.
+// Lists the names of the PLY vertex properties that form the features "normal", "colour" and
+// "texcoord". Private to render/mesh/io and render/range/io.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 namespace merlin::render::mesh::ply {
 
 // Maps a property to component `offset` of a feature. Several properties may map to the same
-// component; the writer uses the first of them.
+// component; the writer uses the first property of a component.
 struct PropertyMapping {
   const char* property;
   const char* feature;

@@ -1,4 +1,4 @@
-// Lines of text-based mesh formats, in which "#" begins a comment. Private to render/mesh/io.
+// Reads lines of text-based mesh formats, in which "#" begins a comment. Private to render/mesh/io.
 #pragma once
 
 #include "daemon/base/words.h"

@@ -34,7 +34,7 @@ class TextSink {
     }
   }
 
-  // Writes what is left; returns whether every write succeeded.
+  // Writes the remaining text; returns whether all writes succeeded.
   bool finish() {
     flush();
     return taken_;

@@ -1,4 +1,4 @@
-// Reads point clouds; a file's content decides what it is, not its ending.
+// Reads point clouds; a file's content, not its ending, determines the format.
 //
 //   LAS    1.2 to 1.4, point formats 0 to 10; LAZ is refused, with the command that converts it
 //   PCD    points without rows and columns; ascii, binary, binary_compressed
@@ -19,23 +19,24 @@
 
 namespace merlin::render::points {
 
-// Returns the format of a point cloud whose file begins with `bytes`: "LAS", "PCD", ...; also
-// "E57", although parseCloud() refuses it with an error that says how to convert the file. Nothing
-// for any other file.
+// Returns the format of a point cloud whose file begins with `bytes`: "LAS", "PCD", ... . Also
+// returns "E57", although parseCloud() rejects it with an error that explains how to convert the
+// file. Returns nothing for any other file.
 std::optional<std::string> cloudFormatOf(std::string_view bytes);
 
 // Returns "XYZ" if `bytes` look like a text file of points, else nothing. Such a file has no
 // identifying mark, so readers of other formats should be asked first.
 std::optional<std::string> textCloudFormatOf(std::string_view bytes);
 
-// The formats, for messages and help.
+// Returns the list of supported formats, for messages and help.
 std::string readableClouds();
 
-// `bytes` is a whole file. At least one point is returned, and all are finite. Errors, with the
-// place: kMalformed, kUnsupported.
+// Parses a point cloud; `bytes` is the whole file. The result has at least one point, and all
+// points are finite. Errors, with the place: kMalformed, kUnsupported.
 Result<PointCloud> parseCloud(std::string_view bytes);
 
-// As parseCloud(). Errors: with the file's name; kNotFound, kIo, kNoMemory (the file is too large).
+// Reads and parses a point cloud file. Errors, with the file's name: those of parseCloud(),
+// kNotFound, kIo, kNoMemory (the file is too large).
 Result<PointCloud> readCloud(const std::string& path);
 
 }  // namespace merlin::render::points

@@ -15,9 +15,9 @@ namespace merlin::render::points {
 namespace {
 
 struct PointFormat {
-  std::size_t bytes = 0;   // least length of a record
-  std::size_t colour = 0;  // where red, green and blue are; 0: none
-  std::size_t time = 0;    // where the GPS time is; 0: none
+  std::size_t bytes = 0;   // minimum length of a record
+  std::size_t colour = 0;  // offset of red, green and blue in a record; 0: none
+  std::size_t time = 0;    // offset of the GPS time in a record; 0: none
   bool infrared = false, waveforms = false;
 };
 constexpr PointFormat kFormats[] = {{20, 0, 0},
@@ -31,8 +31,9 @@ constexpr PointFormat kFormats[] = {{20, 0, 0},
                                     {38, 30, 22, true},
                                     {59, 0, 22, false, true},
                                     {67, 30, 22, true, true}};
-constexpr std::size_t kFirstLongFormat = 6;              // with a byte for the class
-constexpr std::size_t kLeastHeader[] = {227, 235, 375};  // of versions 1.2, 1.3, 1.4
+// From this format on, the class has a whole byte.
+constexpr std::size_t kFirstLongFormat = 6;
+constexpr std::size_t kLeastHeader[] = {227, 235, 375};  // bytes, for versions 1.2, 1.3, 1.4
 constexpr std::uint8_t kLowNoise = 7, kHighNoise = 18;
 constexpr const char* kConvert = "convert it with: pdal translate IN OUT.las";
 
@@ -88,7 +89,8 @@ Result<Ok> checkScale(const LasHeader& h) {
   return Ok{};
 }
 
-// Reads the number of points and the offset of the first, and checks them against the file's size.
+// Reads the number of points and the offset of the first point, and checks both against the file's
+// size.
 Result<Ok> checkRoom(const LasBytes& b, std::size_t size, LasHeader& h) {
   h.start = b.u32(96);
   h.points = h.minor >= 4 ? b.u64(247) : b.u32(107);
@@ -180,7 +182,7 @@ class LasPoints {
       colour_.values.push_back(b_.u16(at + colour_at_ + 2 * k));
   }
 
-  // Notes what the point has that becomes no feature.
+  // Records which data of the point are present but become no feature.
   void look(std::size_t at, bool is_long) {
     const int returns = is_long ? b_.u8(at + 14) >> 4 : b_.u8(at + 14) >> 3 & 7;
     timed_ = timed_ || (form_.time > 0 && b_.u64(at + form_.time) != 0);
@@ -190,7 +192,8 @@ class LasPoints {
     angles_ = angles_ || (is_long ? b_.u16(at + 18) != 0 : b_.u8(at + 16) != 0);
   }
 
-  // The names of what look() found, and of what the point format has.
+  // Returns the names of the data that look() found and of further data in the point format; all of
+  // these are left out.
   std::string leftOut() const {
     std::string names;
     const auto add = [&](bool there, const std::string& name) {
@@ -208,7 +211,8 @@ class LasPoints {
     return names;
   }
 
-  // A feature that is 0 at every point was not recorded.
+  // Adds a feature to the cloud, unless it is 0 at every point, which means that it was not
+  // recorded.
   void keep(mesh::Feature feature) {
     const bool recorded = std::ranges::any_of(feature.values, [](float v) { return v != 0; });
     if (recorded) cloud_.features.push_back(std::move(feature));

@@ -11,8 +11,8 @@
 namespace merlin::render::points {
 namespace {
 
-constexpr std::size_t kMostText = 4096;         // [bytes]
-constexpr std::uint64_t kMostRecords = 10'000;  // that are looked at
+constexpr std::size_t kMostText = 4096;         // limit of the text [bytes]
+constexpr std::uint64_t kMostRecords = 10'000;  // limit of records searched
 
 std::uint64_t number(std::string_view bytes, std::size_t at, std::size_t size) {
   std::uint64_t value = 0;
@@ -21,13 +21,14 @@ std::uint64_t number(std::string_view bytes, std::size_t at, std::size_t size) {
   return value;
 }
 
-// The records that are about the projection; empty where there is none.
+// The contents of the records that describe the projection; empty if a record is missing.
 struct Records {
   std::string_view wkt, keys, names;
 };
 
-// Searches `count` records from `at` on. `head`: length of each record's header [bytes], in which
-// the field of the record's length has `length_bytes` bytes.
+// Searches `count` records from byte `at` on, and stores those about the projection in `found`.
+// head: length of a record's header [bytes]; length_bytes: size of the field in it that holds the
+// record's length.
 void findIn(std::string_view bytes, std::uint64_t at, std::uint64_t count, std::size_t head,
             std::size_t length_bytes, Records& found) {
   constexpr std::size_t kUser = 2, kRecord = 18, kLength = 20;
@@ -46,17 +47,18 @@ void findIn(std::string_view bytes, std::uint64_t at, std::uint64_t count, std::
   }
 }
 
-// The keys of GeoTIFF: rows of four 16-bit numbers. The first row counts the others.
+// The keys of GeoTIFF: rows of four 16-bit numbers. The first row holds the number of the other
+// rows.
 class GeoKeys {
  public:
   GeoKeys(std::string_view keys, std::string_view names) : keys_(keys), names_(names) {}
 
-  // The number that stands in the key's row itself; 0 if there is none.
+  // Returns the number that is stored in the key's row itself; 0 if there is none.
   std::uint64_t code(std::uint64_t key) const {
     const std::size_t at = rowOf(key);
     return at > 0 && number(keys_, at + 2, 2) == 0 ? number(keys_, at + 6, 2) : 0;
   }
-  // The text among the names; empty if there is none.
+  // Returns the key's text from the record of names; empty if there is none.
   std::string_view name(std::uint64_t key) const {
     const std::size_t at = rowOf(key);
     if (at == 0 || number(keys_, at + 2, 2) != 34737) return {};
@@ -69,7 +71,7 @@ class GeoKeys {
  private:
   static constexpr std::size_t kRow = 8;
 
-  // Where the key's row begins; 0 if there is none.
+  // Returns the offset of the key's row; 0 if there is none.
   std::size_t rowOf(std::uint64_t key) const {
     for (std::size_t at = kRow; at + kRow <= keys_.size(); at += kRow)
       if (number(keys_, at, 2) == key) return at;

@@ -9,12 +9,13 @@
 namespace merlin::render::points {
 
 struct LasProjection {
-  std::string text;  // WKT; or by the keys: EPSG:N, EPSG:N+M (with heights), or a plain name
-  std::string note;  // for the user, if there is a record but `text` is empty; else empty
+  // WKT, or from GeoTIFF keys: EPSG:N, EPSG:N+M (with heights), or a plain name; empty: unknown.
+  std::string text;
+  std::string note;  // note for the user if there is a record but no usable text; else empty
 };
 
-// `bytes` is a whole file with a header of at least 227 bytes (375 in version 1.4); truncated
-// records are ignored.
+// Returns the projection of a LAS file. `bytes` is a whole file with a header of at least 227 bytes
+// (375 in version 1.4); truncated records are ignored.
 LasProjection lasProjection(std::string_view bytes);
 
 }  // namespace merlin::render::points

@@ -19,7 +19,7 @@ using range::PcdValues;
 constexpr std::string_view kAxisFields[] = {"x", "y", "z"};
 constexpr std::string_view kNormalFields[] = {"normal_x", "normal_y", "normal_z"};
 
-// The numbers of three fields of one number each; fewer if one is missing.
+// Returns the values of the three named fields; fewer entries if a field is missing.
 std::vector<const PcdValues*> three(const PcdHeader& header, const std::vector<PcdValues>& values,
                                     const std::string_view (&names)[3]) {
   std::vector<const PcdValues*> found;
@@ -61,7 +61,7 @@ void addFeatures(const PcdHeader& header, const std::vector<PcdValues>& values, 
   }
 }
 
-// PCL writes 0 0 0 where it knows no viewpoint.
+// Sets the viewpoint of the cloud, unless it is 0 0 0, which PCL writes if it knows no viewpoint.
 void addViewpoint(const PcdHeader& header, PointCloud& cloud) {
   const auto& v = header.viewpoint;
   if (v[0] == 0 && v[1] == 0 && v[2] == 0) return;

@@ -1,4 +1,4 @@
-// Converts PCD files whose points are not in rows and columns to point clouds;
+// Converts PCD files whose points are not in rows and columns to point clouds.
 // render/range/io/pcd_body reads the header and the numbers.
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace merlin::render::points {
 
-// Whether the bytes are the beginning of a PCD file of HEIGHT 1.
+// Returns whether the bytes are the beginning of a PCD file of HEIGHT 1.
 bool isPcdCloud(std::string_view bytes);
 
-// rgb or rgba becomes the feature "colour"; normal_x, normal_y and normal_z become "normal"; any
-// other field except "_" becomes a feature with the field's name. The viewpoint is used unless it
-// is the format's default, 0 0 0. Errors: those of parsePcdHeader() and readPcdBody(); kMalformed
-// (no x, y or z).
+// Parses a PCD file; `bytes` is the whole file. The field rgb or rgba becomes the feature "colour";
+// normal_x, normal_y and normal_z become "normal"; any other field except "_" becomes a feature
+// with the field's name. The viewpoint is used unless it is the format's default, 0 0 0. Errors:
+// those of parsePcdHeader() and readPcdBody(); kMalformed (no x, y or z).
 Result<PointCloud> parsePcdCloud(std::string_view bytes);
 
 }  // namespace merlin::render::points

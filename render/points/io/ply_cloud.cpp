@@ -18,7 +18,8 @@ using mesh::ply::Body;
 using mesh::ply::Element;
 using mesh::ply::Property;
 
-// Reads a property's number, or the last one of a list. False at the file's end.
+// Reads the number of a property, or the last number of a list. Returns false at the end of the
+// file.
 bool nextOf(const Property& p, Body& body, double& value) {
   double count = 1;
   if (p.list && !body.next(p.count_type, count)) return false;
@@ -28,7 +29,7 @@ bool nextOf(const Property& p, Body& body, double& value) {
   return true;
 }
 
-// The first property of each axis.
+// Returns the first scalar property named x, y and z; nullptr if one is missing.
 std::array<const Property*, 3> axesOf(const Element& vertices) {
   std::array<const Property*, 3> axes{};
   for (const Property& p : vertices.properties) {
@@ -38,7 +39,8 @@ std::array<const Property*, 3> axesOf(const Element& vertices) {
   return axes;
 }
 
-// Reads an element; `point` receives the coordinates that it has. False at the file's end.
+// Reads one row of an element; `point` receives the coordinates that the row has. Returns false at
+// the end of the file.
 bool nextRow(const Element& e, const std::array<const Property*, 3>& axes, Body& body,
              std::array<double, 3>& point) {
   for (const Property& p : e.properties) {
@@ -50,9 +52,9 @@ bool nextRow(const Element& e, const std::array<const Property*, 3>& axes, Body&
   return true;
 }
 
-// Reads the coordinates again, as doubles, relative to the origin near the first point: the parser
-// of meshes keeps floats, which are too coarse for coordinates of a map. REQUIRES: the parser has
-// read the file.
+// Reads the coordinates again, as doubles, relative to the origin near the first point: the mesh
+// parser stores floats, which are too coarse for map coordinates. REQUIRES: the parser has read the
+// file.
 void readExactly(std::string_view bytes, PointCloud& cloud) {
   const auto header = mesh::ply::parseHeader(bytes);
   if (!header) return;
@@ -73,7 +75,8 @@ void readExactly(std::string_view bytes, PointCloud& cloud) {
   }
 }
 
-// Errors: kUnsupported (more points than are read). Faults of the header are found by the parser.
+// Checks the number of points. Errors: kUnsupported (more than kMostPoints points). Faults of the
+// header are not reported here, since the parser finds them.
 Result<Ok> checkCount(std::string_view bytes) {
   const auto header = mesh::ply::parseHeader(bytes);
   if (!header) return Ok{};
@@ -106,7 +109,7 @@ bool isPlyCloud(std::string_view bytes) {
 Result<PointCloud> parsePlyCloud(std::string_view bytes) {
   if (const auto few = checkCount(bytes); !few) return few.error();
   auto loaded = mesh::ply::parse(bytes);
-  // It quotes the file.
+  // The message quotes the file, so it is reduced to one line.
   if (!loaded) return Error{loaded.error().code, oneLine(loaded.error().what)};
   PointCloud cloud;
   cloud.format = "PLY without faces";

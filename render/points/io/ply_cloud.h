@@ -8,12 +8,13 @@
 
 namespace merlin::render::points {
 
-// Whether the bytes are the beginning of a PLY file with vertices, but without faces, strips and
-// range_grid.
+// Returns whether the bytes are the beginning of a PLY file with vertices, but without faces,
+// strips and range_grid.
 bool isPlyCloud(std::string_view bytes);
 
-// Each scalar vertex property becomes a feature, as in a mesh. Coordinates are read as doubles and
-// kept relative to mesh::originNear() of the first point. Errors: those of ply::parse().
+// Parses a PLY file; `bytes` is the whole file. Each scalar vertex property becomes a feature, as
+// in a mesh. Coordinates are read as doubles and kept relative to mesh::originNear() of the first
+// point. Errors: those of mesh::ply::parse(); kUnsupported (more than kMostPoints points).
 Result<PointCloud> parsePlyCloud(std::string_view bytes);
 
 }  // namespace merlin::render::points

@@ -18,8 +18,8 @@ constexpr std::size_t kMostColumns = 7, kLookedAt = 4096, kLeastLines = 3;
 
 struct Row {
   std::array<double, kMostColumns> numbers{};
-  std::size_t count = 0;     // 0: a blank line or a comment
-  std::string_view fault{};  // the word that is no number, or is one too many
+  std::size_t count = 0;     // number of numbers; 0: a blank line or a comment
+  std::string_view fault{};  // the first word that is not a number or is one too many
 };
 
 Row rowOf(std::string_view line) {
@@ -40,7 +40,7 @@ Row rowOf(std::string_view line) {
 
 bool isColumnCount(std::size_t n) { return n == 3 || n == 4 || n == 6 || n == 7; }
 
-// Whether the line is the number of points, which PTS files begin with.
+// Returns whether the line is a number of points, with which PTS files begin.
 bool isPointCount(const Row& row) {
   return row.count == 1 && row.numbers[0] >= 0 && row.numbers[0] == std::floor(row.numbers[0]);
 }
@@ -83,7 +83,8 @@ class XyzReader {
     return Ok{};
   }
 
-  // Returns a feature of `width` columns, counted from `first` after x, y and z.
+  // Returns a feature made of `width` columns; `first`: index of its first column, counted after x,
+  // y and z.
   mesh::Feature columnsOf(const char* name, std::size_t first, std::size_t width) const {
     mesh::Feature feature{name, width, {}};
     feature.values.reserve(cloud_.size() * width);
@@ -128,7 +129,8 @@ class XyzReader {
 
 bool isXyz(std::string_view bytes) {
   std::string_view text = bytes.substr(0, kLookedAt);
-  if (bytes.size() > kLookedAt) text = text.substr(0, text.rfind('\n') + 1);  // whole lines
+  // Keeps whole lines only.
+  if (bytes.size() > kLookedAt) text = text.substr(0, text.rfind('\n') + 1);
   std::size_t columns = 0, points = 0;
   while (!text.empty()) {
     const Row row = rowOf(takeLine(text));

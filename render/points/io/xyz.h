@@ -11,12 +11,13 @@
 
 namespace merlin::render::points {
 
-// Whether the first 4096 bytes are at least three lines of points, all with 3, 4, 6 or 7 numbers,
-// and otherwise only comments.
+// Returns whether the first 4096 bytes contain at least three lines of points, all with 3, 4, 6 or
+// 7 numbers, and otherwise only comments.
 bool isXyz(std::string_view bytes);
 
-// Errors, with the line: kMalformed (another number of columns, a word that is not a number, six
-// columns whose last three are neither a colour nor a normal).
+// Parses a text file of points; `bytes` is the whole file. Errors, with the line: kMalformed
+// (another number of columns, a word that is not a number, six columns whose last three are neither
+// a colour nor a normal); kUnsupported (more than kMostPoints points).
 Result<PointCloud> parseXyz(std::string_view bytes);
 
 }  // namespace merlin::render::points

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kMostRows = 65536;
 
-// Reads "columns: 1024 over 360 deg". Returns false if the comment has the key but not this form.
+// Reads a comment "columns: 1024 over 360 deg", if it is one. Returns false if the comment has the
+// key but not this form.
 bool readColumns(std::string_view comment, std::size_t& columns, double& turn_deg) {
   constexpr std::string_view kKey = "columns:";
   const std::size_t at = comment.find(kKey);
@@ -23,7 +24,7 @@ bool readColumns(std::string_view comment, std::size_t& columns, double& turn_de
   return readNumber(takeWord(rest), turn_deg) && turn_deg > 0 && turn_deg <= 360;
 }
 
-// Returns a line's numbers as a beam; nothing if they are none.
+// Returns the numbers of a line as a beam; nothing if they are not valid for row `row`.
 std::optional<Beam> beamOf(const std::vector<double>& n, std::size_t row) {
   if (n.empty()) return std::nullopt;
   if (n.size() < 3) return Beam{n[0] * kDegree, n.size() > 1 ? n[1] * kDegree : 0};

@@ -1,4 +1,5 @@
-// Reads tables of the angles of a spinning scanner's rows: text files with one line per row.
+// Reads tables of the angles of a spinning scanner's rows. A table is a text file with one line per
+// row.
 #pragma once
 
 #include <string_view>
@@ -8,17 +9,18 @@
 
 namespace merlin::render::range {
 
-// Sets geometry, angles, columns and beams of `header`. A line has one to three numbers, in
-// degrees: the row's number, its altitude and the azimuth that is added to that of each column; or
-// altitude and azimuth; or the altitude alone. Comments begin with #. A comment "columns: 1024 over
-// 360 deg" gives the number of columns and the angle over which they are spread; without it these
-// are the image's number and the header's angle, or else 360. If a comment also has the word
-// "destagger", the rows of the image have already been shifted by whole columns to correct their
-// azimuth, and only the remainder (leftOfShift()) is added. Errors, with the line: kMalformed.
+// Parses a table and sets geometry, angles, columns and beams of `header`. A line has one to three
+// numbers, in degrees where they are angles: the altitude alone; altitude and azimuth; or the row's
+// number, altitude and azimuth. The azimuth is added to that of each column. Comments begin with #.
+// A comment "columns: 1024 over 360 deg" gives the number of columns and the angle over which they
+// are spread; without it, they are the image's number of columns and the header's angle, or 360
+// degrees if the header has none. If a comment contains the word "destagger", the rows of the image
+// have already been shifted by whole columns to correct their azimuth, and only the remainder
+// (leftOfShift()) is added. Errors, with the line: kMalformed.
 Result<Ok> parseAngleTable(std::string_view text, ImageHeader& header);
 
-// The part of an azimuth that remains after a shift by whole columns of `turn_rad` / `columns`
-// each.
+// Returns the part of an azimuth that remains after a shift by whole columns of `turn_rad` /
+// `columns` each [rad].
 double leftOfShift(double azimuth_rad, double turn_rad, std::size_t columns);
 
 }  // namespace merlin::render::range

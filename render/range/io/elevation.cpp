@@ -13,7 +13,7 @@
 namespace merlin::render::range {
 namespace {
 
-// The latitude and longitude of the south-west corner that a name such as N44W072.hgt tells.
+// The latitude and longitude of a tile's south-west corner, as given by a name such as N44W072.hgt.
 struct Corner {
   double latitude_deg = 0, longitude_deg = 0;
 };
@@ -30,7 +30,7 @@ std::optional<Corner> cornerOf(std::string_view name) {
 
 constexpr std::size_t kTileSides[] = {1201, 3601};
 
-// EPSG:4326, the system of the tiles' corners; `origin` has the longitude first.
+// EPSG:4326, the coordinate system of the tiles' corners. `origin` has the longitude first.
 constexpr const char* kWgs84 =
     "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563,"
     "AUTHORITY[\"EPSG\",\"7030\"]],AUTHORITY[\"EPSG\",\"6326\"]],"
@@ -47,10 +47,11 @@ std::size_t sideOf(std::size_t bytes) {
 
 struct GridHeader {
   std::optional<double> columns, rows, west, south, cell, dx, dy, no_data;
-  std::optional<double> west_middle, south_middle;  // of the lower left cell, not its corner
+  // Middle of the lower left cell, instead of its corner.
+  std::optional<double> west_middle, south_middle;
 };
 
-// Reads a line of the header; false if its key is unknown.
+// Sets the field of the header that `key` names; returns false if the key is unknown.
 bool readKey(const std::string& key, double value, GridHeader& header) {
   struct Key {
     const char* name;
@@ -79,7 +80,8 @@ Result<GridHeader> readGridHeader(std::string_view& text) {
     const std::string key = lowerCase(takeWord(value));
     double number = 0;
     if (key.empty() || key[0] < 'a' || key[0] > 'z' || key == "nan") return header;
-    // Voids may be any number: often one that no height can be, such as the least float.
+    // The value that marks voids may be any number, often one that no height can have, such as the
+    // lowest float.
     const bool read =
         readNumber(trimmed(value), number) && (key == "nodata_value" || std::abs(number) <= 1e30);
     if (!read || !readKey(key, number, header))
@@ -100,10 +102,11 @@ Result<std::size_t> countOf(const char* key, const std::optional<double>& value)
                      : fmt::format("{} is missing", key)};
 }
 
-// Whether the text of a .prj file declares degrees: WKT, or ArcInfo's lines such as "Units DD".
+// Returns whether the text of a .prj file declares degrees: WKT, or ArcInfo's lines such as "Units
+// DD".
 bool saysDegrees(std::string_view projection) {
   const std::string text = lowerCase(projection);
-  // A projected system contains a geographic one.
+  // The WKT of a projected system contains a geographic one, so it is tested first.
   if (text.find("projc") != std::string::npos) return false;
   if (text.find("geogcs") != std::string::npos || text.find("geogcrs") != std::string::npos)
     return true;
@@ -135,7 +138,7 @@ bool isInDegrees(const Origin& origin, double dx, std::string_view projection) {
   return origin && std::abs((*origin)[0]) <= 360 && std::abs((*origin)[1]) <= 90 && dx < 0.1;
 }
 
-// The words of a .prj file, with one blank between them.
+// Returns the words of a .prj file, separated by one blank.
 std::string inOneLine(std::string_view text) {
   std::string line;
   for (std::string_view word = takeWord(text); !word.empty(); word = takeWord(text))
@@ -143,12 +146,13 @@ std::string inOneLine(std::string_view text) {
   return line;
 }
 
-// Sets the distances of columns and rows; converts degrees to metres.
+// Sets the cell size, i.e. the distances of columns and rows; converts degrees to metres. Also sets
+// projection and origin.
 void setCells(const GridHeader& header, std::string_view projection, StoredImage& image) {
   double dx = header.dx.value_or(header.cell.value_or(0));
   double dy = header.dy.value_or(header.cell.value_or(0));
   const std::string line = inOneLine(projection);
-  if (line.size() <= kMostProjection / 4)  // an escaped byte takes four
+  if (line.size() <= kMostProjection / 4)  // oneLine() may write a byte as four
     image.header.projection = oneLine(line);
   if (!line.empty()) image.notes.push_back(fmt::format("projection: {}", oneLine(excerpt(line))));
   image.header.origin = originOf(header, dx, dy);

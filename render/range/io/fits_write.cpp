@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kCard = 80, kBlock = 2880;
 
-// The header of one image: cards of 80 characters, filled up to whole blocks.
+// Builds the header of one image: cards of 80 characters, filled up to whole blocks of 2880 bytes.
 class FitsHeader {
  public:
   void add(std::string_view name, std::string_view value) {
@@ -26,9 +26,9 @@ class FitsHeader {
   }
   void addNumber(std::string_view name, double value) { add(name, fmt::format("{}", value)); }
 
-  // A text that is too long for its card goes on in the next ones.
+  // Adds a text. A text that is too long for one card continues on the next cards.
   void addText(std::string_view name, std::string_view text) {
-    constexpr std::size_t kPart = 67;  // between quotes, with place for '&'
+    constexpr std::size_t kPart = 67;  // characters between quotes, with room for '&'
     const std::string quoted = withQuotesDoubled(text);
     std::string before = fmt::format("{:<8}= ", name);
     for (std::size_t begin = 0;;) {
@@ -59,7 +59,8 @@ class FitsHeader {
     for (const char c : text) quoted.append(c == '\'' ? 2 : 1, c);
     return quoted;
   }
-  // `length`, or one less where it would part the two characters of a doubled quote.
+  // Returns `length`, or length - 1 if a cut at `length` would split the two characters of a
+  // doubled quote.
   static std::size_t wholeQuotes(const std::string& quoted, std::size_t begin, std::size_t length) {
     std::size_t quotes = 0;
     while (quotes < length && quoted[begin + length - 1 - quotes] == '\'') ++quotes;

@@ -14,14 +14,14 @@ namespace merlin::render::range {
 namespace {
 
 constexpr std::string_view kMark = "MERLIN grid 1\n";
-constexpr std::size_t kMostHead = std::size_t{4} << 20;  // [bytes]
+constexpr std::size_t kMostHead = std::size_t{4} << 20;  // limit of the head [bytes]
 constexpr std::size_t kMostNotes = 16, kMostNote = 1000;
 
 std::string textOf(std::string_view value) {
   return oneLine(wholeCharacters(value.substr(0, kMostNote)));
 }
 
-// Applies a line of the head. Returns what is wrong with it; empty if nothing is.
+// Applies a line of the head. Returns an error message, or an empty text on success.
 std::string setGridKey(std::string_view line, GridHead& head) {
   const std::size_t colon = std::min(line.find(':'), line.size());
   const std::string_view key = line.substr(0, colon);
@@ -71,7 +71,7 @@ Result<GridHead> parseHead(std::string_view& bytes) {
   return Error{Errc::kMalformed, "has no line values, which ends the head"};
 }
 
-// Converts cells in degrees to metres.
+// Converts the cell size to metres if it is in degrees, and adds a note.
 void setMetres(const GridHead& head, StoredImage& image) {
   if (!head.latitude_deg || !image.header.cell) return;
   auto& cell = *image.header.cell;

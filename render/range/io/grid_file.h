@@ -1,5 +1,5 @@
-// The file format in which merlin-import passes range images and elevation maps, read from the
-// formats of other programs, to merlin:
+// Reads and writes the file format in which merlin-import passes range images and elevation maps,
+// which it has read from formats of other programs, to merlin:
 //
 //   MERLIN grid 1
 //   size: 344 403
@@ -27,24 +27,25 @@ namespace merlin::render::range {
 
 struct GridHead {
   std::size_t width = 0, height = 0;
-  std::string format{};                  // "FITS", one line
-  ImageHeader header{};                  // without beams' columns
-  std::optional<double> latitude_deg{};  // of the map's middle; if set, header.cell is in degrees
-  std::vector<std::string> notes{};      // one line each
+  std::string format{};  // name of the original format, one line, such as "FITS"
+  ImageHeader header{};  // ImageHeader::columns is not stored
+  // Latitude of the map's middle; if set, header.cell is in degrees.
+  std::optional<double> latitude_deg{};
+  std::vector<std::string> notes{};  // notes for the user, one line each
 };
 
 bool isGrid(std::string_view bytes) noexcept;
 
 struct ParsedGrid {
-  StoredImage image;  // with cells in metres
+  StoredImage image;  // the image, with cells in metres
   std::string format;
 };
 
-// Checks everything, since the file comes from a program that has read an untrusted file. Errors,
-// with the line: kMalformed.
+// Parses a grid file. Checks everything, since the file comes from a program that has read an
+// untrusted file. Errors, with the line: kMalformed.
 Result<ParsedGrid> parseGrid(std::string_view bytes);
 
-// Callback that sets the values of a row; if it returns false, writeGrid() stops.
+// Callback that sets the values of a row and returns true; if it returns false, writeGrid() stops.
 using ReadRow = std::function<bool(std::size_t row, std::span<float> values)>;
 
 // Writes the head and all rows. Returns false if `write` or `read` returned false. REQUIRES: width

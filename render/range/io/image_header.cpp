@@ -31,10 +31,10 @@ void setCamera(const Numbers& n, ImageHeader& header) {
   for (std::size_t i = 0; i < 12; ++i) (*header.camera)[i] = n[i];
 }
 
-// A key with numbers.
+// A key whose value is a list of numbers.
 struct Key {
   const char* key;
-  std::size_t least, most;  // numbers
+  std::size_t least, most;  // minimum and maximum count of the numbers
   const char* allowed;
   void (*set)(const Numbers&, ImageHeader&);
 };
@@ -61,7 +61,8 @@ Error keyFault(std::string_view key, std::string_view found, std::string_view al
           fmt::format("{}: found \"{}\", allowed: {}", key, oneLine(excerpt(found)), allowed)};
 }
 
-// Adds "NAME=FILE"; the file must be in the same folder, since the header comes from outside.
+// Adds a feature file given as "NAME=FILE". The file must be in the same folder, since the header
+// comes from an untrusted file.
 Result<Ok> addFeature(std::string_view value, ImageHeader& header) {
   const std::size_t equals = value.find('=');
   const std::string_view name = value.substr(0, equals);

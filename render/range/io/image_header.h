@@ -1,5 +1,5 @@
-// ImageHeader: what a range file says about its pixels and its scanner, before the command line
-// overrides it; and its text form: "key: value" lines, which PGM files contain as comments
+// ImageHeader: the properties of pixels and scanner that a range file gives, before the command
+// line overrides them. Their text form is lines "key: value", which PGM files contain as comments
 // (README.md).
 #pragma once
 
@@ -14,46 +14,53 @@
 
 namespace merlin::render::range {
 
-// A registered image in a file of its own: the name of the feature that it becomes, and the name of
-// the file, which lies in the folder of the file that names it.
+// A registered image in a separate file: the name of the feature that it becomes, and the name of
+// the file, which lies in the same folder as the range file.
 struct FeatureFile {
   std::string name, file;
 };
 
 struct ImageHeader {
   std::optional<Scanner> scanner{};
-  std::optional<std::array<double, 2>> angles_deg{};  // horizontal, vertical; with beams only [0]
-  std::vector<Beam> beams{};                          // of a spinning scanner, one per row
-  std::optional<std::size_t> columns{};               // number for which `beams` is made
-  std::optional<double> minimum{}, maximum{};         // ranges at the stored 0 and largest value
-  std::optional<double> scale{};                      // metres per unit of the values
-  std::optional<double> no_return{};                  // the stored value of pixels without a return
-  std::optional<Pose> camera{};                       // T_world_scanner
-  std::optional<std::array<double, 2>> cell{};        // elevation map: size of a cell [units]
+  // Horizontal, vertical; if there are beams, only [0] is used.
+  std::optional<std::array<double, 2>> angles_deg{};
+  std::vector<Beam> beams{};  // rows of a spinning scanner, top row first
+  // Number of columns for which `beams` was made.
+  std::optional<std::size_t> columns{};
+  // Range stored as 0; range stored as the largest value.
+  std::optional<double> minimum{}, maximum{};
+  std::optional<double> scale{};      // metres per unit of the values
+  std::optional<double> no_return{};  // stored value of pixels without a return
+  std::optional<Pose> camera{};       // T_world_scanner
+  // Elevation map: width and height of a cell [units].
+  std::optional<std::array<double, 2>> cell{};
   std::string unit{};
-  std::string projection{};                       // of an elevation map: one line of text (WKT)
-  std::optional<std::array<double, 2>> origin{};  // of an elevation map: Geometry::origin
+  // Elevation map: projection as one line of text (WKT)
+  std::string projection{};
+  std::optional<std::array<double, 2>> origin{};  // elevation map: see Geometry::origin
   std::vector<FeatureFile> features{};
 };
 
-// "orthogonal", "spinning", "pinhole", "elevation"; for kRays "rays".
+// Returns the name of a scanner: "orthogonal", "spinning", "pinhole", "elevation" or "rays".
 const char* nameOf(Scanner scanner);
-std::optional<Scanner> scannerOf(std::string_view name);  // not kRays
+// Inverse of nameOf(); nothing for kRays and unknown names.
+std::optional<Scanner> scannerOf(std::string_view name);
 
-inline constexpr std::size_t kMostFeatures = 64;  // files that a header may name
+inline constexpr std::size_t kMostFeatures = 64;  // limit of files that a header may name
 
-inline constexpr std::size_t kMostProjection = 8192;  // [bytes]
+inline constexpr std::size_t kMostProjection = 8192;  // limit of the projection text [bytes]
 
-// Sets the field that the line names, if it is "key: value" with a key of the table in README.md;
-// other lines are ignored. Errors: kMalformed, with the key, what was found and what is allowed.
+// If `line` is "key: value" with a key of the table in README.md, sets that field of the header;
+// other lines are ignored. Errors: kMalformed, with the key, the value found and the allowed
+// values.
 Result<Ok> applyLine(std::string_view line, ImageHeader& header);
 
-// Returns the header with which a file describes the image's geometry. REQUIRES: the geometry is
-// not kRays.
+// Returns the header that describes the image's geometry in a file. REQUIRES: the geometry is not
+// kRays.
 ImageHeader headerOf(const RangeImage& image);
 
-// The header as lines that applyLine() can read back, each preceded by `before` and ended by a line
-// feed.
+// Returns the header as lines that applyLine() can read back; each line begins with `before` and
+// ends with a line feed.
 std::string linesOf(const ImageHeader& header, std::string_view before);
 
 }  // namespace merlin::render::range

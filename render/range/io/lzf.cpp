@@ -5,13 +5,13 @@
 namespace merlin::render::range {
 namespace {
 
-constexpr std::size_t kMostRatio = 132;  // a reference of three bytes gives at most 264
+constexpr std::size_t kMostRatio = 132;  // limit of the compression ratio: 3 bytes give at most 264
 
 }  // namespace
 
 std::optional<std::vector<std::uint8_t>> unpackLzf(std::span<const std::uint8_t> packed,
                                                    std::size_t size) {
-  if (size / kMostRatio > packed.size()) return std::nullopt;  // before memory is taken
+  if (size / kMostRatio > packed.size()) return std::nullopt;  // checked before memory is allocated
   std::vector<std::uint8_t> out;
   out.reserve(size);
   for (std::size_t at = 0; at < packed.size();) {

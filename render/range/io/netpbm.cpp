@@ -16,7 +16,8 @@
 namespace merlin::render::range {
 namespace {
 
-constexpr std::size_t kMostHeader = std::size_t{1} << 22;  // bytes with its comments
+// Limit of the header with its comments [bytes].
+constexpr std::size_t kMostHeader = std::size_t{1} << 22;
 
 bool isBlank(char c) { return kSpaces.find(c) != std::string_view::npos; }
 
@@ -26,7 +27,7 @@ class HeaderReader {
   HeaderReader(std::string_view bytes, ImageHeader& header)
       : bytes_(bytes.substr(0, kMostHeader)), header_(header) {}
 
-  // The next number, 1 to `most`. `what`: its name, for messages.
+  // Reads the next number, which must be 1 to `most`. `what`: name of the number, for messages.
   Result<std::size_t> number(const char* what, std::size_t most) {
     if (const auto skipped = skipBlanks(); !skipped) return skipped.error();
     const std::size_t start = at_;
@@ -39,7 +40,7 @@ class HeaderReader {
                                        : fmt::format("the {} is \"{}\"; allowed are 1 to {}", what,
                                                      oneLine(excerpt(word)), most));
   }
-  // Skips the one blank that ends the header; returns where the pixels begin.
+  // Returns the offset of the pixels, which begin after the single blank that ends the header.
   std::size_t pixels() const { return std::min(at_ + 1, bytes_.size()); }
   void skip(std::size_t n) { at_ += n; }
 
@@ -150,9 +151,9 @@ bool writePgm(const RangeImage& image, int bits, const WriteBytes& write,
   const double largest = bits == 8 ? 255 : 65535;
   const Ends ends = endsOf(image.range);
   ImageHeader header = headerOf(image);
-  // Without a unit, a reader would take ranges between a minimum and a maximum for metres.
+  // Without a unit, a reader would assume metres, as the header has a minimum and a maximum.
   if (header.unit.empty() && image.geometry.scanner != Scanner::kElevation) header.unit = "unknown";
-  // The nearest range is stored as 1, since 0 is no return.
+  // The nearest range is stored as 1, since 0 means no return.
   const double span = std::max(double{ends.high} - ends.low, 1e-6 * std::abs(ends.high) + 1e-30);
   const double step = span / (largest - 1);
   header.minimum = ends.low - step;

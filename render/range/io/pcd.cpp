@@ -37,7 +37,7 @@ void addPlanes(const PcdHeader& header, const std::vector<PcdValues>& values, Pc
 
 using Place = std::array<double, 3>;
 
-// The box around all points that are finite; low > high if there is none.
+// The box around all finite points; low > high if there are none.
 struct PointBox {
   Place low = {1e300, 1e300, 1e300}, high = {-1e300, -1e300, -1e300};
 
@@ -62,11 +62,11 @@ PointBox boxOf(const PcdValues& x, const PcdValues& y, const PcdValues& z) {
   return box;
 }
 
-// Returns where the points are seen from. This is the file's viewpoint, unless that cannot be the
-// scanner's place because only the points have the coordinates of a map: then it is a place above
-// the points, since ranges from 0 0 0 would have fewer digits than the points.
+// Returns the point from which ranges are measured. This is the file's viewpoint, unless that
+// cannot be the scanner's position because only the points have map coordinates. In that case it is
+// a point above the others, since ranges from 0 0 0 would have fewer digits than the points.
 Place viewpointFor(const PointBox& box, const PcdHeader& header, std::vector<std::string>& notes) {
-  constexpr double kFar = 100, kAbove = 10;  // diagonals
+  constexpr double kFar = 100, kAbove = 10;  // in diagonals of the box
   const auto& v = header.viewpoint;
   const Place middle = box.middle();
   const Place away = {middle[0] - v[0], middle[1] - v[1], middle[2] - v[2]};
@@ -80,7 +80,7 @@ Place viewpointFor(const PointBox& box, const PcdHeader& header, std::vector<std
   return {middle[0], middle[1], box.high[2] + kAbove * box.diagonal()};
 }
 
-// Converts points to rays and ranges from the viewpoint.
+// Converts points to rays and ranges as seen from the viewpoint.
 void addPoints(const PcdValues& x, const PcdValues& y, const PcdValues& z, const Place& viewpoint,
                RangeImage& image) {
   Geometry& g = image.geometry;

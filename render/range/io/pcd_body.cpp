@@ -36,7 +36,8 @@ double numberAt(const std::uint8_t* p, const PcdField& field) {
   return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);
 }
 
-// Sets one property of all fields from the words of a line.
+// Sets one property of all fields from the words of a line, one word per field. Returns false if a
+// word is invalid or the number of words differs.
 template <typename Set>
 bool setFields(std::string_view words, PcdHeader& header, Set set) {
   for (PcdField& field : header.fields) {
@@ -144,7 +145,7 @@ Error tooFew(const PcdHeader& header, std::size_t there, std::size_t needed) {
                       header.height, needed, header.data == "ascii" ? " at least" : "")};
 }
 
-// Reads a number of a text. A packed colour may be written as the float that has the same bits.
+// Reads a number in text form. A packed colour may be written as the float that has the same bits.
 bool readWord(std::string_view word, const PcdField& field, double& value) {
   if (!readNumber(word, value)) return false;
   if (!isPackedColour(field)) return true;
@@ -182,8 +183,8 @@ Result<std::vector<PcdValues>> readAscii(std::string_view text, const PcdHeader&
   return values;
 }
 
-// `by_field`: all numbers of the first field come first, then those of the next one; otherwise all
-// fields of a point are together.
+// Reads the numbers of all fields from binary data. `by_field`: true if all numbers of the first
+// field come first, then those of the next field; false if all fields of a point are together.
 std::vector<PcdValues> readNumbers(const std::uint8_t* bytes, const PcdHeader& header,
                                    bool by_field) {
   std::vector<PcdValues> values = emptyValues(header);

@@ -30,7 +30,7 @@ std::optional<Error> sizeFault(const std::string& path, std::size_t width, std::
                            height, image.width, image.height)};
 }
 
-// Repeats the one value of each pixel three times, as grey.
+// Repeats the single value of each pixel three times, as grey.
 void spread(Plane& plane) {
   std::vector<float> grey;
   grey.reserve(3 * plane.values.size());
@@ -82,17 +82,18 @@ Plane planeOf(const std::string& name, const image::ImageFile& picture) {
   return plane;
 }
 
-// Whether the file is a PNG with 16 bits per channel. These are measured values; a reader of
-// pictures would keep only the upper 8 bits, after a gamma correction.
+// Returns whether the file is a PNG with 16 bits per channel. Such files hold measured values; a
+// reader of pictures would keep only the upper 8 bits, after a gamma correction.
 bool isPng16(std::span<const std::byte> file) {
-  constexpr std::size_t kDepthAt = 24;  // behind the mark, the chunk's head, width and height
+  constexpr std::size_t kDepthAt = 24;  // after the mark, the chunk's head, width and height
   constexpr std::string_view kPngMark = "\x89PNG";
   return file.size() > kDepthAt && file[kDepthAt] == std::byte{16} &&
          std::equal(kPngMark.begin(), kPngMark.end(), file.begin(),
                     [](char c, std::byte b) { return std::byte(c) == b; });
 }
 
-// Returns one channel if red, green and blue are equal everywhere, as for a 16-bit PGM.
+// Converts the levels of a picture. Returns one channel if red, green and blue are equal
+// everywhere, as for a 16-bit PGM.
 StoredImage storedOf(const image::Levels& levels) {
   StoredImage stored;
   stored.width = static_cast<std::size_t>(levels.width);
@@ -115,13 +116,14 @@ Result<Plane> readPng16(const std::string& name, const std::string& path,
   return planeOf(name, std::move(stored));
 }
 
-// The values that are stored as 0 (`minimum`) and as `largest` (`maximum`).
+// The scale of stored values: `minimum` is stored as 0, `maximum` as `largest`.
 struct StoredScale {
   double minimum = 0, maximum = kLargest, largest = kLargest;
   double step() const { return (maximum - minimum) / largest; }
 };
 
-// Whole numbers within whole ends are kept exactly by a whole number of steps between them.
+// Returns a scale for values from `low` to `high`. If values and ends are whole numbers, there is a
+// whole number of steps between neighbouring values, so that they are kept exactly.
 StoredScale ofRange(double low, double high, bool whole) {
   const double span = high - low;
   const bool exact =

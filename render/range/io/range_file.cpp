@@ -22,12 +22,12 @@ namespace {
 
 std::string nameIn(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
-// A PPM is a picture, not a range image.
+// Returns whether the file is a PGM. A PPM is a picture, not a range image.
 bool isPgm(std::string_view bytes, std::string_view) {
   return isNetpbm(bytes) && (bytes[1] == '2' || bytes[1] == '5');
 }
 
-// The text of the file FILE.prj beside FILE.asc; empty if there is none.
+// Returns the text of the file FILE.prj in the same folder as FILE.asc; empty if there is none.
 std::string projectionBeside(const std::string& path) {
   constexpr std::size_t kMost = 4096;
   const std::size_t dot = path.find_last_of("./");
@@ -42,7 +42,7 @@ struct RangeFormat {
   Result<StoredImage> (*read)(std::string_view bytes, const std::string& path);
 };
 
-// Formats of points have their own functions below, since they have no ranges.
+// Formats that store ranges or heights. Formats of points are handled by separate functions below.
 constexpr RangeFormat kFormats[] = {
     {"PGM", isPgm, [](std::string_view bytes, const std::string&) { return parseNetpbm(bytes); }},
     {"ESRI ASCII grid", [](std::string_view bytes, std::string_view) { return isEsriGrid(bytes); },
@@ -70,7 +70,7 @@ Result<Ok> readTable(const RangeOptions& options, ImageHeader& header) {
   return Ok{};
 }
 
-// What the caller says overrides what the file says.
+// Overrides values of the file's header by the caller's options.
 Result<Ok> overrideHeader(const RangeOptions& options, ImageHeader& header) {
   if (const auto read = readTable(options, header); !read) return read;
   if (!options.angle_table.empty() && options.scanner && *options.scanner != Scanner::kSpinning)
@@ -109,7 +109,7 @@ Geometry geometryOf(const ImageHeader& header, const RangeOptions& options, std:
   return g;
 }
 
-// Converts stored values to ranges by the header's scale; values that mean no return become
+// Converts stored values to ranges, by the header's scale; values that mean no return become
 // kNoReturn.
 void setRanges(const StoredImage& stored, RangeImage& image) {
   const ImageHeader& header = stored.header;
@@ -240,10 +240,10 @@ std::string emptyFault(const RangeImage& image) {
       image.width, image.height, kFarthest);
 }
 
-// Returns what was read from `path` if points can be made of it; otherwise the reason.
+// Returns `loaded` if points can be computed from it; otherwise an error that names the file.
 Result<LoadedRange> checked(const std::string& path, const RangeOptions& options,
                             Result<LoadedRange> loaded) {
-  // Errors of the file system and of the table of angles name their file.
+  // Errors of the file system and of the table of angles already name their file.
   const auto named = [&](const Error& error) {
     const bool has_name =
         error.what.starts_with(path + ":") ||

@@ -20,25 +20,25 @@ namespace {
 
 namespace ply = mesh::ply;
 
-constexpr std::size_t kMostPlyHeader = std::size_t{64} << 10;  // [bytes]
+constexpr std::size_t kMostPlyHeader = std::size_t{64} << 10;  // limit of the header [bytes]
 constexpr std::size_t kMostProperties = 64;
 constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
 
-// Where a property of a vertex goes.
+// The destination of a vertex property: a component of a plane.
 struct Target {
   std::size_t plane = 0, offset = 0, dimension = 1;
   double factor = 1;
   bool kept = false;
 };
 
-// The vertices in the order of the file, and which of them each pixel has.
+// The vertices in the order of the file, and the vertex of each pixel.
 struct Points {
   std::vector<float> xyz{};  // relative to the origin
-  mesh::Origin origin{};     // of the file's coordinates, near the first vertex
+  mesh::Origin origin{};     // offset from the file's coordinates, near the first vertex
   std::vector<Plane> planes{};
   std::vector<std::uint32_t> of_pixel{};
 
-  // A vertex in the file's coordinates.
+  // Returns a vertex in the file's coordinates.
   std::array<double, 3> at(std::uint32_t vertex) const {
     const float* p = &xyz[3 * std::size_t{vertex}];
     return {p[0] + origin[0], p[1] + origin[1], p[2] + origin[2]};
@@ -100,7 +100,8 @@ Target targetOf(const ply::Property& property, Points& points) {
   Target target;
   for (const ply::PropertyMapping& row : ply::kPropertyMappings) {
     if (property.name != row.property) continue;
-    if (std::string_view(row.feature) != "colour") return target;  // normals are computed anew
+    // Others, such as normals, are not kept.
+    if (std::string_view(row.feature) != "colour") return target;
     target = {planeNamed("colour", 3, points), row.offset, 3,
               isInteger(property.type) ? 1.0 / 255 : 1, true};
     return target;
@@ -109,7 +110,7 @@ Target targetOf(const ply::Property& property, Points& points) {
   return {planeNamed(property.name, 1, points), 0, 1, 1, true};
 }
 
-// Reads the next list to its end, without keeping it.
+// Skips the next list. Returns false if the body ends within it.
 bool skipList(ply::Body& body, const ply::Property& list) {
   double count = 0, value = 0;
   if (!body.next(list.count_type, count) || !(count >= 0)) return false;
@@ -138,10 +139,11 @@ Result<Ok> skipElement(const ply::Element& element, ply::Body& body) {
   return Ok{};
 }
 
-// Where x, y, z and the planes' values of one vertex are to go.
+// The destinations of the properties of one vertex: x, y, z and the planes' values.
 struct VertexLayout {
   std::vector<Target> targets{};
-  std::array<std::size_t, 3> axis = {kNoVertex, kNoVertex, kNoVertex};  // number of the property
+  // Indices of the properties x, y, z.
+  std::array<std::size_t, 3> axis = {kNoVertex, kNoVertex, kNoVertex};
 };
 
 Result<VertexLayout> layoutOf(const ply::Element& element, Points& points) {
@@ -214,7 +216,7 @@ Result<Points> readPoints(const ply::Header& header, std::string_view bytes, con
   ply::Body body(bytes, header.form);
   bool vertices = false, pixels = false;
   for (const ply::Element& element : header.elements) {
-    // In a text, each word takes two bytes or more, except the last one.
+    // In ASCII, each word takes two bytes or more, except the last one.
     const std::size_t least = element.leastBytes(header.form);
     if (least > 0 && element.count > (body.left() + 1) / least) return tooMany(element);
     const bool vertex = element.name == "vertex", pixel = element.name == "range_grid";
@@ -248,7 +250,8 @@ double medianOfSteps(std::vector<double>& values) {
   return *middle;
 }
 
-// How uneven steps are: the median of their distances from their median, as a share of it.
+// Returns how uneven steps are: the median of their distances from their median, divided by that
+// median.
 double unevenness(std::vector<double> steps) {
   if (steps.empty()) return std::numeric_limits<double>::infinity();
   const double median = medianOfSteps(steps);
@@ -256,8 +259,8 @@ double unevenness(std::vector<double> steps) {
   return median > 0 ? medianOfSteps(steps) / median : std::numeric_limits<double>::infinity();
 }
 
-// Whether steps between neighbours in a row are more even as angles seen from the origin than as
-// lengths seen from far along z. Samples at most 8192 pairs.
+// Returns whether steps between neighbours in a row are more even as angles seen from the origin
+// than as lengths seen from far away along z. Samples at most 8192 pairs.
 bool isSeenFromTheOrigin(const Points& points, const Size& size) {
   std::vector<double> angles, lengths;
   const std::size_t pixels = size.width * size.height;
@@ -277,7 +280,7 @@ bool isSeenFromTheOrigin(const Points& points, const Size& size) {
   return unevenness(std::move(angles)) < unevenness(std::move(lengths));
 }
 
-// Returns a point above the middle of the points, along z: ten diagonals of their box above it.
+// Returns a point above the middle of the points: ten diagonals of their box higher, along z.
 std::array<double, 3> distantPoint(const Points& points) {
   const std::vector<float>& xyz = points.xyz;
   const mesh::Origin& o = points.origin;

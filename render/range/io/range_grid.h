@@ -11,7 +11,8 @@
 
 namespace merlin::render::range {
 
-// Whether the header of a PLY file has an element range_grid. Reads its first 64 KiB at most.
+// Returns whether the header of a PLY file has an element range_grid. Reads at most the first 64
+// KiB.
 bool isRangeGrid(std::string_view bytes) noexcept;
 
 struct RangeGrid {
@@ -19,13 +20,13 @@ struct RangeGrid {
   std::vector<std::string> notes;
 };
 
-// num_cols and num_rows of the header's obj_info give the size. Each pixel has a list of one
-// vertex, or an empty list if there is no return. x, y, z become ranges and rays; colours (integers
-// of 0 to 255, else 0 to 1) become the plane "colour"; each other property of the vertices becomes
-// a plane of its name. Such a file does not say where the scanner was: it is taken to be at the
-// origin or at a distant point in the direction of z, whichever sees the columns at more even
-// steps. Errors, with the line of the header or the number of the vertex or pixel: kMalformed,
-// kUnsupported (too many pixels).
+// Parses a PLY file with a range_grid; `bytes` is the whole file. num_cols and num_rows in the
+// header's obj_info lines give the size. Each pixel has a list of one vertex, or an empty list if
+// there is no return. x, y, z become ranges and rays; colours (integers of 0 to 255, else 0 to 1)
+// become the plane "colour"; each other property of the vertices becomes a plane of its name. Such
+// a file does not contain the scanner's position. It is assumed to be the origin or a distant point
+// in the direction of z, whichever sees the columns at more even steps. Errors, with the line of
+// the header or the number of the vertex or pixel: kMalformed, kUnsupported (too many pixels).
 Result<RangeGrid> parseRangeGrid(std::string_view bytes);
 
 }  // namespace merlin::render::range

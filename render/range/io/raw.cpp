@@ -39,8 +39,8 @@ Error layoutFault(std::string_view text, std::string_view why) {
                       oneLine(excerpt(text)), why)};
 }
 
-// Returns the text before `end`, and removes it and `end` from `text`; the whole text if there is
-// no `end`.
+// Removes the text up to and including the character `end` from `text`, and returns it without
+// `end`; if there is no `end`, removes and returns the whole text.
 std::string_view takeUntil(std::string_view& text, char end) {
   const std::size_t at = std::min(text.find(end), text.size());
   const std::string_view taken = text.substr(0, at);
@@ -67,9 +67,9 @@ std::string addPlane(std::string_view text, RawLayout& layout) {
   return fmt::format("the type \"{}\" is none of {}", oneLine(excerpt(type)), rawTypes());
 }
 
-// Where the values of a plane are.
+// The position of a plane's values in the file.
 struct Place {
-  std::size_t start = 0, stride = 0;  // [bytes]
+  std::size_t start = 0, stride = 0;  // first value, distance between values [bytes]
 };
 Place placeOf(const RawLayout& layout, std::size_t plane) {
   const std::size_t pixels = layout.width * layout.height;

@@ -1,4 +1,4 @@
-// StoredImage: the pixels of a file as they are stored, with its header. Private to
+// StoredImage: the pixels of a file as they are stored, with the file's header. Private to
 // render/range/io.
 #pragma once
 
@@ -13,8 +13,8 @@ namespace merlin::render::range {
 
 struct StoredImage {
   std::size_t width = 0, height = 0;
-  std::size_t channels = 1;     // 3: red, green, blue
-  double largest = 0;           // largest value that can be stored; 0: the values have no scale
+  std::size_t channels = 1;     // 1, or 3: red, green, blue
+  double largest = 0;           // largest value that the file can store; 0: values have no scale
   std::vector<float> values{};  // pixels x channels, rows from top to bottom
   ImageHeader header{};
   std::vector<Plane> planes{};  // further images in the same file

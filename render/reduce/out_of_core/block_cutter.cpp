@@ -25,7 +25,7 @@ class BlockCutter::Piece {
     for (int k = 0; k < 3; ++k) block.mesh.triangles.push_back(numberOf(triangle[k], places[k]));
   }
 
-  // Marks the vertex as one with a neighbour outside the piece.
+  // Marks the vertex at `place` as one with a neighbour outside the piece.
   void touch(std::uint32_t place) {
     if (has(place)) border_[place - begin_] = true;
   }
@@ -65,9 +65,10 @@ class BlockCutter::Piece {
 
   Block block;
   std::size_t begin_;
-  std::vector<std::uint32_t> numbers_;  // by place: number in the block
+  // By place along the curve: index of the vertex in the block.
+  std::vector<std::uint32_t> numbers_;
   std::vector<bool> border_;
-  // Numbers of the few vertices outside the piece.
+  // Indices in the block of the few vertices that lie outside the piece.
   std::unordered_map<std::uint32_t, std::uint32_t> guests_;
 };
 

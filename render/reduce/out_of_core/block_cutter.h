@@ -1,5 +1,5 @@
-// Cuts a mesh along the space-filling curve into pieces that are meshes of their own. Private to
-// render/reduce.
+// BlockCutter: cuts a mesh along a space-filling curve into pieces, each of which is a mesh of its
+// own. Private to render/reduce.
 #pragma once
 
 #include <cstdint>
@@ -10,30 +10,32 @@
 
 namespace merlin::render::reduce {
 
-// A piece of a mesh, as a mesh of its own with the same features.
+// A piece of a mesh as an independent mesh; it has the same features as the whole mesh.
 struct Block {
   mesh::Mesh mesh;
-  std::vector<std::uint32_t> vertices;  // by vertex: its index in the whole mesh
-  std::vector<bool> locked;             // by vertex: whether it must keep its position
+  std::vector<std::uint32_t> vertices;  // for each vertex of the piece: its index in the whole mesh
+  // for each vertex of the piece: whether it must keep its position
+  std::vector<bool> locked;
 };
 
-// Pieces as ranges of vertices along the curve: [k stride, k stride + size) for k = first .. last.
+// Describes pieces as ranges of the vertices in curve order: piece k, for k = first .. last, has
+// the vertices from k * stride to k * stride + size (exclusive).
 struct Pieces {
   std::size_t stride, size, first, last;
 };
 
-// Memory: 4 bytes per vertex, 20 during construction. The mesh and `locked` must outlive it.
-// Reentrant.
+// Takes 4 bytes of memory per vertex, 20 during construction. The mesh and `locked` must outlive
+// the cutter. Reentrant.
 class BlockCutter {
  public:
-  // locked: one entry per vertex of the mesh, or empty.
+  // locked[v]: whether vertex v of the mesh must keep its position; empty if none must.
   BlockCutter(const mesh::Mesh& mesh, const std::vector<bool>& locked, Threads threads);
 
   // Cuts out all pieces in one pass over the triangles. A triangle belongs to the piece that
-  // contains two or three of its vertices; with only the triangles whose three vertices are inside,
-  // a collapse could create an edge that already exists outside the piece. Locks the vertices that
-  // `locked` names, those with a neighbour outside the piece, and those outside the piece itself
-  // (third vertices of triangles).
+  // contains two or three of its vertices. (If only triangles with all three vertices inside
+  // belonged to a piece, a collapse could create an edge that already exists outside the piece.)
+  // These vertices of a piece are locked: those set in `locked`, those with a neighbour outside the
+  // piece, and the third vertices of triangles, which lie outside the piece themselves.
   std::vector<Block> cut(const Pieces& pieces) const;
 
  private:

@@ -1,6 +1,6 @@
-// Reduces a mesh in blocks, which are pieces of the space-filling curve. The blocks are reduced one
-// after another, with locked borders and the same error limit; what they leave is then reduced as
-// one mesh.
+// Reduces a mesh in blocks, which are cut along a space-filling curve. The blocks are reduced one
+// after another, with locked borders and the same error limit; the triangles that remain are then
+// reduced as one mesh.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -82,8 +82,9 @@ class InBlocks {
                                     static_cast<double>(block.mesh.triangleCount()));
   }
 
-  // Returns the error limit with which all blocks together keep about the share `share_`, so that
-  // all become equally coarse. The limit is estimated from samples along the whole curve.
+  // Returns the error limit with which all blocks together keep about the share `share_` of their
+  // triangles, so that all blocks become equally coarse. The limit is estimated from samples along
+  // the whole curve; it is infinite if the samples cannot be reduced that far.
   float errorForAll(const BlockCutter& cutter) const {
     const std::size_t n = mesh_.vertexCount(), stride = (n + kSamples - 1) / kSamples;
     std::vector<float> errors;
@@ -127,16 +128,17 @@ class InBlocks {
 
   // --- joining the logs --------------------------------------------------------------------------
 
-  // Joins the logs, sorted by the largest error so far in each block, so that all blocks are
-  // equally coarse at each level.
+  // Joins the logs of the parts: collapses are sorted by the largest error so far in their part, so
+  // that all parts are equally coarse at each point of the joined log.
   void join(std::vector<Part>& parts) {
-    using Head = std::tuple<float, std::size_t, std::size_t>;  // error, part, index of its collapse
+    // Largest error so far, part, index of the collapse in the part.
+    using Head = std::tuple<float, std::size_t, std::size_t>;
     std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (!parts[p].log.error.empty()) heads.push({parts[p].log.error[0], p, 0});
     }
     reserve();
-    // By part and collapse: the node in the joined log.
+    // nodes[part][collapse]: index of the collapse's node in the joined log.
     std::vector<std::vector<std::uint32_t>> nodes(parts.size());
     while (!heads.empty()) {
       const auto [error, p, k] = heads.top();
@@ -156,7 +158,8 @@ class InBlocks {
       log.features.emplace_back().reserve(f.dimension * vertices());
   }
 
-  // Appends collapse k of a part to the log. nodes: the nodes of the part's earlier collapses.
+  // Appends collapse k of a part to the log. nodes: indices in the joined log of the part's earlier
+  // collapses; the new one is appended.
   void append(const Part& part, std::size_t k, std::vector<std::uint32_t>& nodes) {
     lod::CollapseLog& log = result_.log;
     const auto own = static_cast<std::uint32_t>(part.vertices.size());
@@ -180,7 +183,7 @@ class InBlocks {
 
   void reduceRest() {
     const std::size_t first = result_.log.children.size();
-    Part rest;  // its `vertices` are nodes of the joined log
+    Part rest;  // its `vertices` are indices of nodes of the joined log
     Reduction r;
     {
       std::vector<bool> locked;
@@ -207,12 +210,14 @@ class InBlocks {
     result_.report.stopped = r.report.stopped;
   }
 
-  // Returns the mesh that the blocks leave. nodes: by vertex, its node. locked: by vertex, whether
-  // a locked vertex of the mesh has merged into it.
+  // Returns the mesh that remains after the reduction of the blocks. Output `nodes`: for each of
+  // its vertices, the node of the joined log. Output `locked`: for each vertex, whether a locked
+  // vertex of the input mesh has merged into it; stays empty if none is locked.
   mesh::Mesh restOf(std::vector<std::uint32_t>& nodes, std::vector<bool>& locked) const {
     const lod::CollapseLog& log = result_.log;
     const std::size_t n = vertices(), all = n + log.children.size();
-    // By node: first the node that it merges into, then the vertex of `rest` that it has become.
+    // into[node] is first the node that `node` merges into, later the index of the vertex of `rest`
+    // that it has become.
     std::vector<std::uint32_t> into(all, kNoNode);
     for (std::size_t k = 0; k < log.children.size(); ++k) {
       for (const std::uint32_t child : log.children[k])
@@ -265,7 +270,8 @@ class InBlocks {
   const std::vector<bool>& locked_;
   std::size_t blocks_;
   const Progress& progress_;
-  double target_, share_;  // shares of the triangles: requested; left by the blocks
+  // Shares of the triangles (0..1): requested by the caller; left by the blocks.
+  double target_, share_;
   Reduction result_;
   bool cancelled_ = false;
 };

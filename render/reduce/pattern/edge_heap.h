@@ -1,9 +1,9 @@
 // EdgeHeap: a priority queue of edges by length, shortest first, in which lengths can be updated
 // ([GOURLEY98] 4.2.2).
 //
-// A binary heap that also stores the place of each edge in it. Of edges with equal length the one
-// with the smaller number comes first, so that the order is the same on every machine.
-// Thread-bound.
+// This is a binary heap that also stores the place of each edge in the heap. If two edges have
+// equal length, the one with the smaller number comes first, so that the order is the same on every
+// machine. Thread-bound.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace merlin::render::reduce {
 
 class EdgeHeap {
  public:
-  // Edges 0..lengths.size()-1, all in the heap. O(n).
+  // Builds a heap of the edges 0 .. lengths.size() - 1; lengths[e] is the length of edge e. O(n).
   explicit EdgeHeap(std::vector<float> lengths);
 
   bool empty() const noexcept { return heap_.empty(); }

@@ -4,7 +4,8 @@
 
 namespace merlin::render::reduce {
 
-// Asks the reducer itself, so that what is shown is what it uses.
+// Calls the reducer itself, so that the lengths shown to the user are those that the reduction
+// uses.
 Result<std::vector<float>> edgeLengths(const mesh::Mesh& mesh, const Weights& weights) {
   const auto space = PatternSpace::make(mesh, weights);
   if (!space) return space.error();

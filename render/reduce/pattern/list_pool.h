@@ -11,17 +11,20 @@ namespace merlin::render::reduce {
 
 class ListPool {
  public:
-  // `lists` empty lists, with room for counts[i] numbers in list i.
+  // Makes counts.size() empty lists; list i has room for counts[i] numbers.
   explicit ListPool(std::span<const std::uint32_t> counts);
 
   std::span<const std::uint32_t> operator[](std::size_t list) const noexcept {
     return {pool_.data() + at_[list].offset, at_[list].size};
   }
 
-  // Replaces a list. Amortised O(1) per number. Invalidates every span that operator[] gave out.
+  // Replaces the contents of a list. Amortised O(1) per number. Invalidates every span that
+  // operator[] has returned.
   void assign(std::size_t list, std::span<const std::uint32_t> numbers);
-  void append(std::size_t list, std::uint32_t number);  // REQUIRES: room from the constructor
-  void remove(std::size_t list, std::uint32_t number);  // first occurrence; keeps the order
+  // REQUIRES: the list has fewer than counts[list] numbers
+  void append(std::size_t list, std::uint32_t number);
+  // removes the first occurrence; the others keep their order
+  void remove(std::size_t list, std::uint32_t number);
 
  private:
   struct At {

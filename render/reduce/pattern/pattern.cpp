@@ -1,4 +1,4 @@
-// The cost `pattern`: calls PatternReducer until a stop criterion is met.
+// Implements the cost `pattern`: calls PatternReducer until a stop criterion is met.
 #include <algorithm>
 
 #include "render/reduce/costs.h"
@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kProgressInterval = 4096;
 
-// Returns the stop criterion that `left` triangles meet; null if they meet none.
+// Returns the name of the stop criterion that a mesh of `left` triangles meets, or nullptr if it
+// meets none.
 const char* reasonToStop(std::size_t left, const ReduceSettings& s, std::size_t triangles_before) {
   if (left <= s.min_triangles) return "triangles";
   if (static_cast<double>(left) <= s.min_percent / 100 * static_cast<double>(triangles_before)) {

@@ -74,8 +74,9 @@ PatternReducer::Step PatternReducer::collapseShortest(double max_error) {
   return Step::kNothingLeft;
 }
 
-// Returns false if the collapse would remove the mesh's last triangle. If components or topology
-// are to be preserved: also if it would remove a component's last triangle or change the topology.
+// Returns false if the collapse would remove the mesh's last triangle. With preserve_components_,
+// also returns false if it would remove a component's last triangle; with preserve_topology_, also
+// if it would change the topology.
 bool PatternReducer::mayGo(const Plan& p, std::uint32_t edge) {
   const std::size_t shared = surface_.trianglesAt(edge);
   if (shared == surface_.liveTriangles()) return false;
@@ -84,8 +85,9 @@ bool PatternReducer::mayGo(const Plan& p, std::uint32_t edge) {
   return !preserve_topology_ || surface_.linkCondition(edge);
 }
 
-// True if neither the two ends nor the merged vertex have more than most_triangles_ triangles. A
-// collapse takes time in proportion to these numbers.
+// Returns true if neither end of the edge nor the merged vertex has more than most_triangles_
+// triangles, since the time of a collapse is proportional to these numbers. Otherwise records the
+// excess in smallest_left_out_.
 bool PatternReducer::isSmallEnough(std::uint32_t edge) {
   const auto [a, b] = surface_.ends(edge);
   const std::size_t of_a = surface_.triangleCount(a), of_b = surface_.triangleCount(b);
@@ -116,8 +118,8 @@ void PatternReducer::measureAll() {
   }
 }
 
-// Position of the new vertex, [GOURLEY98] 4.3: if both ends are on the boundary, the sharper
-// corner; if one is, that end; if none is, the midpoint.
+// Chooses the position of the new vertex by [GOURLEY98] 4.3: if both ends are on the boundary, the
+// end at the sharper corner; if one is, that end; if none is, the midpoint.
 PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
   const auto [a, b] = surface_.ends(edge);
   Plan p{a, b, 0.5F, {}};
@@ -133,8 +135,8 @@ PatternReducer::Plan PatternReducer::plan(std::uint32_t edge) const {
   return p;
 }
 
-// Angle by which the border turns at v [rad]: 0 (straight) to pi; 4 unless v has exactly two border
-// edges.
+// Returns the angle by which the border turns at v [rad], from 0 (straight) to pi. Returns 4 if v
+// does not have exactly two border edges.
 float PatternReducer::sharpness(std::uint32_t v) const {
   Vec3 direction[2];
   std::size_t found = 0;
@@ -153,8 +155,8 @@ float PatternReducer::sharpness(std::uint32_t v) const {
   return std::numbers::pi_v<float> - std::acos(std::clamp(mesh::dot(d, e) / lengths, -1.0F, 1.0F));
 }
 
-// [GOURLEY98] 4.3: returns whether a face of the new star would turn over or lose its area. Fills
-// new_normals_.
+// Returns whether a face of the new star would turn over or lose its area ([GOURLEY98] 4.3). Stores
+// the unit normals of the new faces in new_normals_.
 bool PatternReducer::flips(const Plan& p) {
   new_normals_.clear();
   const float* moved = p.position.data();
@@ -179,8 +181,9 @@ bool PatternReducer::flips(const Plan& p) {
   return false;
 }
 
-// Equations 4.8, 4.9: returns the distances of a and b from the nearest plane of a new face (all of
-// these pass through the new vertex); if no face is left, from the new vertex.
+// Returns the distances of a and b from the nearest plane of a new face (equations 4.8, 4.9); all
+// these planes pass through the new vertex. If there is no new face, returns the distances from the
+// new vertex.
 std::array<float, 2> PatternReducer::planeDistances(const Plan& p) const {
   std::array<float, 2> nearest{};
   for (std::size_t side = 0; side < 2; ++side) {
@@ -195,8 +198,8 @@ std::array<float, 2> PatternReducer::planeDistances(const Plan& p) const {
   return nearest;
 }
 
-// Equation 4.10: adds the distance of each end to its accumulated error; the new vertex gets the
-// larger sum.
+// Returns the accumulated error of the new vertex (equation 4.10): each end's distance is added to
+// its accumulated error, and the larger sum counts.
 float PatternReducer::errorAfter(const Plan& p) const {
   const auto [a, b] = planeDistances(p);
   return std::max(error_[p.a] + a, error_[p.b] + b);
@@ -213,8 +216,8 @@ void PatternReducer::apply(const Plan& p, std::uint32_t edge, float error) {
   for (const std::uint32_t e : surface_.edgesOf(p.a)) heap_.update(e, lengthOf(e));
 }
 
-// Sets the new vertex' features: the normal from the new faces, the others interpolated with the
-// same weight as the position.
+// Sets the features of the new vertex: the normal is computed from the new faces; all other
+// features are interpolated with the same weight as the position.
 void PatternReducer::mixFeatures(const Plan& p) {
   for (std::size_t f = 0; f < features_.size(); ++f) {
     float* a = &features_[f].values[p.a * features_[f].dimension];

@@ -1,4 +1,5 @@
-// PatternReducer: the algorithm POLYMUR, one collapse at a time. Private to render/reduce.
+// PatternReducer: carries out the algorithm POLYMUR, one collapse per call. Private to
+// render/reduce.
 //
 // [GOURLEY98] 4.3, figure 4.6. Thread-bound.
 #pragma once
@@ -23,22 +24,23 @@ class PatternReducer {
 
   enum class Step { kDone, kNothingLeft, kTooCoarse };
 
-  // Collapses the shortest edge that the rules allow, unless its error would be more than
-  // `max_error` (model units).
+  // Collapses the shortest edge that the rules allow and returns kDone. Returns kTooCoarse, without
+  // a collapse, if the error would exceed `max_error` (model units); returns kNothingLeft if the
+  // rules allow no edge.
   Step collapseShortest(double max_error = std::numeric_limits<double>::infinity());
 
-  // Raises the limit of triangles per vertex and recomputes the lengths of all edges. Returns
-  // false, and does nothing, if that limit has refused no edge.
+  // Raises the limit of triangles per vertex and recomputes the lengths of all edges. If the
+  // present limit has not refused any edge, returns false and changes nothing.
   bool allowLargerStars();
 
-  // Lets components vanish from now on; recomputes the lengths of all edges.
+  // From now on lets collapses remove whole components; recomputes the lengths of all edges.
   void releaseComponents();
 
   std::size_t collapses() const noexcept { return result_.log.children.size(); }
   std::size_t triangles() const noexcept { return surface_.liveTriangles(); }
 
-  // Distance of the present weighted pattern vectors of two vertices: the length of an edge between
-  // them, equation 4.3.
+  // Returns the distance between the current weighted pattern vectors of two vertices, which is the
+  // length of an edge between them (equation 4.3).
   float patternDistance(std::uint32_t a, std::uint32_t b) const noexcept;
 
   // Returns the result and leaves the reducer empty. The caller must fill `stopped` and `about`.
@@ -50,7 +52,7 @@ class PatternReducer {
   // A candidate collapse: vertex b is removed, vertex a moves to `position`.
   struct Plan {
     std::uint32_t a = 0, b = 0;
-    float towards_b = 0;  // 0: at a, 1: at b, 0.5: midpoint
+    float towards_b = 0;  // where `position` is on the edge: 0 at a, 1 at b, 0.5 midpoint
     Vec3 position{};
   };
 
@@ -76,17 +78,18 @@ class PatternReducer {
   WorkingMesh surface_;
   const PatternSpace& space_;
   bool preserve_topology_, preserve_components_;
-  // Limit of triangles per vertex, higher than useful surfaces need, and the smallest number above
-  // the limit that was refused.
+  // most_triangles_: limit of triangles per vertex, above what useful surfaces need.
+  // smallest_left_out_: the smallest number of triangles that this limit has refused.
   static constexpr std::size_t kNoneLeftOut = std::numeric_limits<std::size_t>::max();
   std::size_t most_triangles_ = 128, smallest_left_out_ = kNoneLeftOut;
-  std::vector<float> positions_;         // by vertex, present values
-  std::vector<mesh::Feature> features_;  // by vertex, present values
+  std::vector<float> positions_;         // by vertex: current coordinates [model units]
+  std::vector<mesh::Feature> features_;  // current values, by vertex
   std::size_t normal_ = 0;               // index of "normal" in features_
   std::vector<float> patterns_;          // by vertex: weighted pattern vectors
   std::vector<std::uint8_t> boundary_;   // by vertex
-  std::vector<float> error_;             // by vertex: accumulated, equation 4.10
-  std::vector<std::uint32_t> node_;      // by vertex: its node in the log
+  // by vertex: accumulated error, equation 4.10 [model units]
+  std::vector<float> error_;
+  std::vector<std::uint32_t> node_;  // by vertex: index of its node in the log
   EdgeHeap heap_;
   std::vector<float> new_normals_;  // scratch: normals of the plan's new faces, 3 floats each
   Reduction result_;

@@ -6,7 +6,8 @@
 namespace merlin::render::reduce {
 namespace {
 
-constexpr std::uint32_t kGone = ~std::uint32_t{0};  // first vertex of removed triangles and edges
+// Marks removed triangles and edges, as their first vertex.
+constexpr std::uint32_t kGone = ~std::uint32_t{0};
 // Lists longer than this keep removed entries until tidy().
 constexpr std::size_t kLongList = 64;
 
@@ -62,7 +63,7 @@ WorkingMesh::WorkingMesh(const mesh::Mesh& mesh)
   for (std::uint32_t v = 0; v < mark_.size(); ++v) countTriangles(v);
 }
 
-// Counts the triangles at each edge of a.
+// Recomputes shared_, the number of triangles, of each edge of vertex a.
 void WorkingMesh::countTriangles(std::uint32_t a) {
   for (const std::uint32_t e : spokes_[a]) count_[otherEnd(e, a)] = 0;
   for (const std::uint32_t t : around_[a]) {
@@ -118,7 +119,8 @@ bool WorkingMesh::linkCondition(std::uint32_t edge) noexcept {
   return shared == 1 || !(isBoundary(a) && isBoundary(b));
 }
 
-// True if a face at a and a face at b would coincide after the collapse, as on a tetrahedron.
+// Returns true if a face at a and a face at b would coincide after the collapse, as on a
+// tetrahedron.
 bool WorkingMesh::linksShareAnEdge(std::uint32_t a, std::uint32_t b) const noexcept {
   const auto has = [&](std::uint32_t t, std::uint32_t v) { return v == a || contains(t, v); };
   for (const std::uint32_t t : around_[a]) {

@@ -1,5 +1,5 @@
-// WorkingMesh: the connectivity of a mesh while it is reduced: the triangles and edges of each
-// vertex, updated by each collapse. Thread-bound; private to render/reduce.
+// WorkingMesh: the connectivity of a mesh during its reduction: lists of the triangles and edges of
+// each vertex, updated by each collapse. Thread-bound; private to render/reduce.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class WorkingMesh {
   using Ends = std::array<std::uint32_t, 2>;
 
   std::size_t liveTriangles() const noexcept { return live_; }
-  std::size_t edgeCount() const noexcept { return ends_.size(); }  // of the input mesh
+  std::size_t edgeCount() const noexcept { return ends_.size(); }  // edges of the input mesh
   Ends ends(std::uint32_t edge) const noexcept { return ends_[edge]; }
   std::uint32_t otherEnd(std::uint32_t edge, std::uint32_t v) const noexcept {
     return ends_[edge][0] == v ? ends_[edge][1] : ends_[edge][0];
@@ -34,26 +34,28 @@ class WorkingMesh {
     return c[0] == v || c[1] == v || c[2] == v;
   }
 
-  // Returns the number of triangles of v. For a vertex with many triangles, trianglesOf() and
-  // edgesOf() still contain removed ones until tidy(), since removing from a long list is slow.
+  // Returns the number of triangles of v that still exist. Use this instead of
+  // trianglesOf(v).size(): since removing from a long list is slow, the lists trianglesOf() and
+  // edgesOf() of a vertex with many triangles contain removed entries until tidy().
   std::size_t triangleCount(std::uint32_t v) const noexcept {
     return around_[v].size() - stale_triangles_[v];
   }
-  // Drops removed triangles and edges from v's lists; the others keep their order. O(1) if there
-  // are none.
+  // Drops removed triangles and edges from v's lists; the remaining entries keep their order. O(1)
+  // if there is nothing to drop.
   void tidy(std::uint32_t v);
 
-  // Number of triangles at an edge: 1 at a boundary, 2 inside, more if non-manifold.
+  // Returns the number of triangles at an edge: 1 at a boundary, 2 inside, more if non-manifold.
   std::size_t trianglesAt(std::uint32_t edge) const noexcept { return shared_[edge]; }
-  bool isBoundary(std::uint32_t v) const noexcept;  // has a boundary edge
+  bool isBoundary(std::uint32_t v) const noexcept;  // true if v has a boundary edge
 
-  // True if collapsing the edge keeps the topology: the link condition, T. K. Dey et al., "Topology
-  // preserving edge contraction", 1999, with borders. REQUIRES: tidy() was called for both ends.
+  // Returns true if collapsing the edge keeps the topology. This is the link condition of T. K. Dey
+  // et al., "Topology preserving edge contraction", 1999, extended to meshes with borders.
+  // REQUIRES: tidy() was called for both ends.
   bool linkCondition(std::uint32_t edge) noexcept;
 
-  // Merges b into a: removes the triangles that contain both, and merges edges that coincide then.
-  // Returns the removed edges, including the collapsed one; valid until the next call. REQUIRES:
-  // tidy() was called for a and b.
+  // Merges vertex b into vertex a: removes the triangles that contain both, and merges edges that
+  // then coincide. Returns the removed edges, including the collapsed one; the span is valid until
+  // the next call. REQUIRES: tidy() was called for a and b.
   std::span<const std::uint32_t> collapse(std::uint32_t a, std::uint32_t b);
 
  private:
@@ -70,7 +72,8 @@ class WorkingMesh {
   std::vector<std::uint32_t> shared_;  // by edge: number of its triangles
   // By vertex: number of removed entries that are still in its list.
   std::vector<std::uint32_t> stale_triangles_, stale_edges_;
-  std::vector<std::uint32_t> mark_;   // scratch, by vertex: stamp_ where seen
+  // scratch, by vertex: equals stamp_ if the current search has visited it
+  std::vector<std::uint32_t> mark_;
   std::vector<std::uint32_t> count_;  // scratch, by vertex
   std::uint32_t stamp_ = 0;
   std::vector<std::uint32_t> scratch_, gone_;

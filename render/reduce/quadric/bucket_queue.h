@@ -1,10 +1,10 @@
-// BucketQueue: a priority queue of vertices by the cost of their cheapest edge, approximately
-// sorted. Private to render/reduce.
+// BucketQueue: an approximately sorted priority queue of vertices; the key of a vertex is the cost
+// of its cheapest edge. Private to render/reduce.
 //
-// A bucket holds costs with equal binary exponents and equal upper six bits of the mantissa;
-// buckets are at most 1.6 % apart. Each bucket is a linked list, with one link per vertex. Entries
-// never move to another bucket: a cost that a collapse has made stale is recomputed after pop().
-// O(1) for each operation.
+// Costs with equal binary exponents and equal upper six bits of the mantissa share a bucket, which
+// therefore spans at most 1.6 %. Each bucket is a linked list, with one link per vertex. An entry
+// never moves to another bucket: if a collapse has made its cost stale, the caller recomputes the
+// cost after pop(). push(), pop() and peek() are O(1).
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,15 @@
 
 namespace merlin::render::reduce {
 
-// `Next` is a callable: std::uint32_t& (std::uint32_t vertex), the vertex' link.
+// `Next` is a callable, std::uint32_t& (std::uint32_t vertex), that returns the list link of a
+// vertex; the caller owns the links.
 class BucketQueue {
  public:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   BucketQueue() : first_(kBuckets, kNone), filled_(kBuckets / 64, 0) {}
 
-  // The lower end of the costs in a bucket.
+  // Returns the lowest cost that belongs to a bucket.
   static float floorOf(std::size_t bucket) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(bucket + kLowest) << kDropped);
   }
@@ -32,7 +33,7 @@ class BucketQueue {
   }
   static constexpr std::size_t buckets() { return kBuckets; }
 
-  // Inserts the vertex into the bucket of its cost. REQUIRES: cost > 0, vertex is in no bucket.
+  // Inserts the vertex into the bucket of its cost. REQUIRES: cost > 0; the vertex is in no bucket.
   template <typename Next>
   void push(std::uint32_t vertex, float cost, const Next& next) {
     const std::size_t k = bucketOf(cost);
@@ -42,8 +43,8 @@ class BucketQueue {
     current_ = std::min(current_, k);
   }
 
-  // Removes and returns a vertex of the first bucket that is not empty, if that bucket is before
-  // `limit`; else returns kNone.
+  // Removes and returns a vertex of the first non-empty bucket if the index of that bucket is below
+  // `limit`; otherwise returns kNone.
   template <typename Next>
   std::uint32_t pop(std::size_t limit, const Next& next) {
     const std::size_t k = filledFrom(current_);
@@ -56,7 +57,8 @@ class BucketQueue {
     return vertex;
   }
 
-  // Moves all vertices of `other` into this queue; O(vertices in `other`).
+  // Moves all vertices of `other` into this queue, in O(vertices in `other`), and leaves `other`
+  // empty.
   template <typename Next>
   void join(BucketQueue&& other, const Next& next) {
     for (std::size_t k = other.filledFrom(0); k < kBuckets; k = other.filledFrom(k + 1)) {
@@ -70,13 +72,15 @@ class BucketQueue {
     other = BucketQueue();
   }
 
-  // The bucket in which the last pop() looked, or a lower one into which push() has inserted since.
+  // Returns the index of the bucket in which the last pop() looked, or of a lower bucket into which
+  // push() has inserted a vertex since.
   std::size_t current() const noexcept { return current_; }
 
   static constexpr std::size_t kAhead = 5;
 
-  // The vertices that pop() would return next, then kNone; for prefetching. Vertices that push()
-  // has put among them since the last call may be missing.
+  // Returns the next kAhead vertices that pop() would return, filled up with kNone; use for
+  // prefetching only. Vertices that push() has inserted among them since the last call may be
+  // missing.
   template <typename Next>
   const std::array<std::uint32_t, kAhead>& peek(const Next& next) {
     const std::size_t bucket = filledFrom(current_);
@@ -95,13 +99,13 @@ class BucketQueue {
   }
 
  private:
-  static constexpr int kDropped = 17;  // lower bits of the mantissa that do not count: 17 of 23
-  // Buckets cover costs from 2^-80 to 2^80 (area times squared distance, unit of length: mean edge
-  // length).
+  static constexpr int kDropped = 17;  // number of low mantissa bits that are ignored, of 23
+  // The buckets cover costs from 2^-80 to 2^80. A cost is an area times a squared distance; the
+  // unit of length is the mean edge length.
   static constexpr std::int64_t kLowest = std::int64_t{127 - 80} << (23 - kDropped);
   static constexpr std::size_t kBuckets = std::size_t{160} << (23 - kDropped);
 
-  // Returns the first bucket from k on that is not empty; kBuckets if there is none.
+  // Returns the index of the first non-empty bucket at or after k; kBuckets if there is none.
   std::size_t filledFrom(std::size_t k) const {
     std::size_t word = k / 64;
     if (word >= filled_.size()) return kBuckets;
@@ -113,7 +117,8 @@ class BucketQueue {
     return word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
   }
 
-  // Returns the vertex after `vertex`, which is in ahead_bucket_; updates ahead_bucket_.
+  // Returns the vertex that follows `vertex` in the queue, or kNone. REQUIRES: `vertex` is in
+  // bucket ahead_bucket_, which is updated to the bucket of the result.
   template <typename Next>
   std::uint32_t after(std::uint32_t vertex, const Next& next) {
     const std::uint32_t follows = vertex == kNone ? kNone : next(vertex);

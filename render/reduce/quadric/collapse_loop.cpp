@@ -5,10 +5,10 @@
 
 namespace merlin::render::reduce {
 
-// Most of the time is spent waiting for memory. So the data of the next five vertices are
-// prefetched in three stages: record, star, ring. The stages are two vertices apart, since a dead
-// vertex takes little time. Always inlined: GCC would drop a call that only prefetches as having no
-// effect.
+// Prefetches the data of the next five vertices in the queue, since a collapse spends most of its
+// time waiting for memory. There are three stages: record, star, ring. They are two vertices apart,
+// since a dead vertex takes little time. The function is always inlined, because GCC would remove a
+// call that only prefetches as having no effect.
 [[gnu::always_inline]] inline void CollapseLoop::prefetch(CollapseWorker& w) {
   const QuadricMesh& mesh = s_.mesh;
   const std::array<std::uint32_t, BucketQueue::kAhead>& next = w.queue.peek(s_.nextOf());
@@ -39,8 +39,8 @@ void CollapseLoop::tryVertex(CollapseWorker& w, std::uint32_t v) {
   const CollapseRules& rules = s_.rules;
   const std::size_t bucket = w.queue.current();
   const bool last = bucket + 1 == BucketQueue::buckets();
-  // A large unordered star is not requeued: evaluating it again costs more than a better order of
-  // collapses gains.
+  // A vertex with a large unordered star is not put back into the queue: evaluating the star again
+  // costs more than a better order of collapses gains.
   const bool large = !rules.keepTopology() && mesh[v].degree > kManyCorners;
   const float ceiling =
       last || large ? kNoEdge : rules.tolerance() * BucketQueue::floorOf(bucket + 1);
@@ -57,7 +57,8 @@ void CollapseLoop::tryVertex(CollapseWorker& w, std::uint32_t v) {
     }
     const std::uint32_t x = costs.neighbour[edge];
     __builtin_prefetch(mesh.corners(mesh[x].star));
-    // For large stars the rules are checked first, since measuring takes longer.
+    // For large stars the rules are checked before the cost is raised, since raise() takes longer
+    // than the check.
     const bool many = mesh[v].degree + mesh[x].degree > 2 * kManyCorners;
     if (many && !seams_.isAlong(costs, v, edge) && costs.deviation[edge] < 0 &&
         !choice_.mayCollapse(w, costs, v, edge)) {
@@ -70,8 +71,8 @@ void CollapseLoop::tryVertex(CollapseWorker& w, std::uint32_t v) {
   }
 }
 
-// Collapses the edge if that is allowed; if it is along a seam, also the coincident edge. Returns
-// whether it did. REQUIRES: raise() was called for the edge.
+// Collapses the edge if the rules allow it; if the edge is along a seam, also the coincident edge.
+// Returns whether it collapsed anything. REQUIRES: raise() was called for the edge.
 bool CollapseLoop::collapse(CollapseWorker& w, std::uint32_t v, std::uint32_t edge) {
   if (seams_.isAlong(w.costs, v, edge)) return collapseSeam(w, v, edge);
   if (!choice_.mayCollapse(w, w.costs, v, edge)) return false;

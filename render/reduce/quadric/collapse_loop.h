@@ -1,4 +1,4 @@
-// CollapseLoop: takes vertices from a worker's queue, cheapest first, and collapses an edge of
+// CollapseLoop: takes vertices from a worker's queue, cheapest first, and collapses one edge of
 // each. Private to render/reduce.
 #pragma once
 
@@ -10,8 +10,9 @@
 
 namespace merlin::render::reduce {
 
-// Keeps references to the state and the seams, which must outlive it. Several threads may call it
-// for different parts of the mesh, each with a worker of its own.
+// Keeps references to the state and the seams, which must outlive the loop. Several threads may
+// call reduceTo() at the same time if each has a worker of its own and works on a different part of
+// the mesh.
 class CollapseLoop {
  public:
   CollapseLoop(ReductionState& state, Seams& seams)
@@ -22,7 +23,7 @@ class CollapseLoop {
         evaluate_(edgeEvaluator()) {}
 
   // Collapses edges until the worker has removed `removed` triangles or its queue has no vertex
-  // left in a bucket before `bucket_limit`.
+  // left in a bucket whose index is below `bucket_limit`.
   void reduceTo(CollapseWorker& w, std::size_t removed, std::size_t bucket_limit);
 
  private:

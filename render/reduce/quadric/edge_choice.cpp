@@ -5,7 +5,7 @@
 namespace merlin::render::reduce {
 namespace {
 
-// Number of candidate edges, the cheapest ones, that a vertex with a large star tries.
+// Number of edges, the cheapest ones, that a vertex with a large star tries.
 constexpr std::size_t kMostCandidates = 8;
 
 }  // namespace
@@ -21,9 +21,10 @@ void EdgeChoice::leaveOut(std::uint32_t v, EdgeCosts& costs) const {
   costs.findCheapest();
 }
 
-// Returns the squared distance from the surface of the farther of the edge's two witnesses. If an
-// estimate from the planes of each end's star would not raise the cost, returns that estimate
-// instead, except at sharp vertices, where planes miss what a thin tip loses.
+// Returns the squared distance from the surface of the farther of the edge's two witnesses, and
+// stores in w.costs.witness which end it belongs to. To save time, returns an estimate from the
+// planes of the ends' stars if that estimate would not raise the cost; not at sharp vertices, where
+// planes do not show what a thin tip loses.
 float EdgeChoice::witnessDeviation(CollapseWorker& w, std::uint32_t v, std::uint32_t edge) const {
   const QuadricVertex &a = s_.mesh[v], &x = s_.mesh[w.costs.neighbour[edge]];
   const EdgeCosts& c = w.costs;
@@ -52,7 +53,8 @@ bool EdgeChoice::raise(CollapseWorker& w, std::uint32_t v, std::uint32_t edge) c
   else if ((flags & kLocked) && rules.keepTopology())
     stayAtLocked(s_.view(), v, w.costs, edge);
   if (w.costs.cost[edge] >= kNoEdge) return before < kNoEdge;
-  // Not measured at large unordered stars, whose borders do not describe a shape.
+  // The border deviation is not measured at large unordered stars, whose borders do not describe a
+  // shape.
   const bool unordered = !rules.keepTopology() && a.degree + x.degree > 2 * kManyCorners;
   if ((flags & kOpen) && !unordered) deviation = borderDeviation(s_.view(), v, w.costs, edge);
   if (!rules.fast) deviation = std::max(deviation, witnessDeviation(w, v, edge));
@@ -68,7 +70,8 @@ bool EdgeChoice::mayCollapse(CollapseWorker& w, const EdgeCosts& costs, std::uin
   const CollapseRules& rules = s_.rules;
   const QuadricVertex &a = s_.mesh[v], &x = s_.mesh[costs.neighbour[edge]];
   if (w.inside_only && !(x.flags & kInside)) return false;
-  // At least one triangle must stay. (A part needs no check: the first stage's rules keep some.)
+  // At least one triangle must stay. (A part of the mesh needs no check, because the rules of the
+  // first stage keep some triangles.)
   if (!w.inside_only && costs.shared[edge] >= s_.triangles - w.removed) return false;
   const bool locked = rules.stage == QuadricStage::kAll && !s_.labels.empty() &&
                       s_.labels[v] != s_.labels[costs.neighbour[edge]];

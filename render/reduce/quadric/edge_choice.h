@@ -1,4 +1,5 @@
-// EdgeChoice: which edges of a vertex may collapse, and at what cost. Private to render/reduce.
+// EdgeChoice: decides which edges of a vertex may collapse, and at what cost. Private to
+// render/reduce.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +9,26 @@
 
 namespace merlin::render::reduce {
 
-// Keeps references to the state and the seams, which must outlive it. Changes nothing but the
-// worker. Several threads may call it, each with a worker of its own.
+// Keeps references to the state and the seams, which must outlive it. Writes only to the worker and
+// to edge costs, so several threads may call it if each has a worker of its own.
 class EdgeChoice {
  public:
   EdgeChoice(const ReductionState& state, const Seams& seams)
       : s_(state), seams_(seams), judge_(edgeJudge()), farther_(fartherWitness()) {}
 
-  // Leaves out edges whose trial would take too long, by setting their cost to kNoEdge, then finds
-  // the cheapest. Trying an edge looks at the stars of both ends. To avoid O(n^2) for n corners, a
-  // vertex with a large star tries only a few of its edges, and no vertex tries an edge to a larger
-  // star of more than kMostCorners triangles.
+  // Excludes edges that would take too long to try, by setting their cost to kNoEdge; then finds
+  // the cheapest of the others. Trying an edge visits the stars of both ends. To avoid O(n^2) time
+  // for n corners, a vertex with a large star tries only a few of its edges, and no vertex tries an
+  // edge to a vertex whose star is larger than its own and has more than kMostCorners triangles.
   void leaveOut(std::uint32_t v, EdgeCosts& costs) const;
 
-  // Raises the cost of `edge`, once, where the quadric underestimates the loss: at borders, seams,
-  // locked vertices, distant witnesses and vanishing components. Returns whether it has risen.
+  // Raises the cost of `edge` where the quadric underestimates the loss: at borders, seams, locked
+  // vertices, distant witnesses and vanishing components. Returns true if the cost has risen. A
+  // second call for the same edge has no effect and returns false.
   bool raise(CollapseWorker& w, std::uint32_t v, std::uint32_t edge) const;
 
-  // Whether the present rules allow the collapse of `edge` of v; counts it if they do not.
+  // Returns whether the current rules allow the collapse of `edge` of v. A refusal is counted in
+  // the worker.
   bool mayCollapse(CollapseWorker& w, const EdgeCosts& costs, std::uint32_t v,
                    std::uint32_t edge) const;
 

@@ -11,9 +11,9 @@ namespace {
 
 using TwoCorners = simd::Vector<std::uint32_t, 16>;
 
-// Appends the corners of `star`, except those that contain `other`, starting at the edge to
-// `other`, so that two fans become one. Returns the end of the output. REQUIRES: room for all
-// corners.
+// Copies the corners of `star` to `to`, except those that contain `other`. Starts at the edge to
+// `other`, so that the two fans of a collapse become one. Returns the end of the output. REQUIRES:
+// room for all corners of the star.
 Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other) {
   std::size_t first = 0;
   while (first < star.size() && star[first].b != other) ++first;
@@ -32,7 +32,8 @@ Corner* appendStar(Corner* to, std::span<const Corner> star, std::uint32_t other
   return to;
 }
 
-// Replaces x by v in a star. Processes whole lines; entries after the last corner have no meaning.
+// Replaces x by v in a star. Processes whole lines, since entries after the last corner have no
+// meaning.
 void rename(Corner* star, std::uint32_t degree, std::uint32_t x, std::uint32_t v) {
   const TwoCorners old = {x, x, x, x}, change = TwoCorners{v, v, v, v} ^ old;
   for (std::uint32_t line = 0; line < degree; line += kLine) {
@@ -56,7 +57,7 @@ void EdgeCollapser::collapse(CollapseWorker& w, std::uint32_t v, std::uint32_t e
   if (s_.channels.count() > 0) {
     const float p[] = {w.costs.x[edge], w.costs.y[edge], w.costs.z[edge]};
     const float q[] = {p[0] - w.costs.rx[edge], p[1] - w.costs.ry[edge], p[2] - w.costs.rz[edge]};
-    // x, which dies, keeps a copy as the values of the new node.
+    // Vertex x dies; it keeps a copy of the values, for the new node in the log.
     s_.channels.mix(v, x, p, q);
   }
   mergeStars(w, v, x);
@@ -75,8 +76,9 @@ void EdgeCollapser::collapse(CollapseWorker& w, std::uint32_t v, std::uint32_t e
   if (!w.revived.empty()) reviveHubs(w, cost);
 }
 
-// Moves v to the new position and copies to it the flags, seam and witness that remain of its
-// neighbour, which dies. Returns the record of the new node, without error and normal.
+// Moves v to the new position; the neighbour in row `edge` dies and passes its flags, seam and
+// witness on to v as far as they still apply. Returns the record of the new node, without error and
+// normal.
 NodeRecord EdgeCollapser::mergeVertices(const EdgeCosts& costs, std::uint32_t v,
                                         std::uint32_t edge) {
   const std::uint32_t x = costs.neighbour[edge];
@@ -100,7 +102,8 @@ NodeRecord EdgeCollapser::mergeVertices(const EdgeCosts& costs, std::uint32_t v,
   return record;
 }
 
-// If o is a hub, decrements its number of triangles; a hub that has become small will be revived.
+// If vertex o is a hub, decrements its number of triangles. If the hub has become small, adds it to
+// w.revived.
 void EdgeCollapser::loseTriangle(CollapseWorker& w, std::uint32_t o) {
   QuadricVertex& hub = s_.mesh[o];
   if (!(hub.flags & kHub)) return;
@@ -110,7 +113,7 @@ void EdgeCollapser::loseTriangle(CollapseWorker& w, std::uint32_t o) {
     w.revived.push_back(o);
 }
 
-// Makes hubs that have become small normal vertices again and queues them.
+// Turns the hubs in w.revived back into normal vertices and queues them.
 void EdgeCollapser::reviveHubs(CollapseWorker& w, float cost) {
   const EvaluateEdges set = edgeEvaluator(Evaluate::kQuadric);
   for (const std::uint32_t hub : w.revived) {
@@ -132,7 +135,7 @@ void EdgeCollapser::mergeStars(CollapseWorker& w, std::uint32_t v, std::uint32_t
   std::uint32_t before = open ? v : sb.back().b;
   for (const Corner& c : sb) {
     if (s_.hubs && (c.b == v || c.c == v)) loseTriangle(w, c.b == v ? c.c : c.b);
-    // In a closed fan two vertices are adjacent to both ends: those before and after v.
+    // In a closed fan, the two vertices before and after v are adjacent to both ends of the edge.
     if (c.b != v) renameInRing(w, c.b, v, x, open || before == v || c.c == v);
     if (open && c.c != v) renameInRing(w, c.c, v, x, true);
     before = c.b;
@@ -140,8 +143,8 @@ void EdgeCollapser::mergeStars(CollapseWorker& w, std::uint32_t v, std::uint32_t
   storeStar(w, v, x, static_cast<std::uint32_t>(end - merged));
 }
 
-// Stores the first `corners` corners of w.merged as the star of v: in the room of v or x, if one of
-// them is large enough.
+// Stores the first `corners` corners of w.merged as the star of v. Reuses the room of v or x if one
+// of them is large enough.
 void EdgeCollapser::storeStar(CollapseWorker& w, std::uint32_t v, std::uint32_t x,
                               std::uint32_t corners) {
   QuadricVertex &a = s_.mesh[v], &b = s_.mesh[x];
@@ -183,13 +186,14 @@ void EdgeCollapser::renameInRing(CollapseWorker& w, std::uint32_t o, std::uint32
   ring.degree = static_cast<std::uint32_t>(to - star);
 }
 
-// Puts neighbours that had no legal edge back into the queue, as they may have one now.
+// Puts neighbours of v that had no legal edge back into the queue with the key `cost`, as they may
+// have a legal edge now.
 void EdgeCollapser::wakeRing(CollapseWorker& w, std::uint32_t v, float cost) {
   const auto wake = [&](std::uint32_t o) {
     QuadricVertex& ring = s_.mesh[o];
     if ((ring.flags & (kIdle | kHub)) != kIdle) return;
-    // A large star is requeued only at some of the changes, since its evaluation visits all its
-    // corners.
+    // A vertex with a large star is requeued only after some of the collapses, since evaluating it
+    // visits all of its corners.
     const std::uint32_t rarely = ring.degree / kMostCorners;
     if (rarely > 0 && w.collapses % rarely != 0) return;
     ring.flags &= static_cast<std::uint8_t>(~kIdle);

@@ -7,16 +7,18 @@
 
 namespace merlin::render::reduce {
 
-// Keeps references to the state and the seams, which must outlive it. Several threads may call it
-// for different parts of the mesh, each with a worker of its own.
+// Keeps references to the state and the seams, which must outlive it. Several threads may call
+// collapse() at the same time if each has a worker of its own and works on a different part of the
+// mesh.
 class EdgeCollapser {
  public:
   EdgeCollapser(ReductionState& state, Seams& seams)
       : s_(state), seams_(seams), evaluate_(edgeEvaluator()) {}
 
-  // Merges the neighbour in row `edge` of w.costs, which are the edges of v, into v. Appends it to
-  // the worker's log, queues neighbours that had no edge to collapse, and evaluates the edges of v
-  // into w.costs, unless v has lost its last triangle.
+  // Collapses an edge of v: merges the neighbour in row `edge` of w.costs into v, and appends that
+  // neighbour to the worker's log. Puts adjacent vertices that had no edge to collapse back into
+  // the queue. Then evaluates the new edges of v into w.costs, unless v has lost its last triangle.
+  // REQUIRES: w.costs holds the edges of v.
   void collapse(CollapseWorker& w, std::uint32_t v, std::uint32_t edge);
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 // The largest coordinate that validate() allows.
 constexpr float kFarthest = 1e18F;
-constexpr std::size_t kAhead = 16;  // records prefetched
+constexpr std::size_t kAhead = 16;  // number of records that are prefetched ahead
 
 }  // namespace
 
@@ -51,12 +51,12 @@ void LogBuilder::copy(std::size_t k, lod::CollapseLog& log, std::vector<float>* 
     (*normals)[3 * k + i] = length > 0 ? n[i] / length : 0;
 }
 
-// Gives each node at the position of a locked vertex exactly the coordinates of the input, so that
-// seams match bit by bit.
+// Gives each node at the position of a locked vertex exactly the coordinates of that vertex in the
+// input mesh, so that the two sides of a seam match bit by bit.
 void LogBuilder::pin(lod::CollapseLog& log) const {
   if (s_.locked.empty()) return;
   const std::uint32_t vertices = s_.mesh.vertexCount();
-  // By node: the locked vertex of the input at whose position it is, or kNowhere.
+  // pinned[node]: the locked vertex of the input at whose position the node is, or kNowhere.
   std::vector<std::uint32_t> pinned(vertices + log.children.size(), kNowhere);
   for (std::uint32_t v = 0; v < vertices; ++v) {
     if (s_.locked[v]) pinned[v] = v;

@@ -11,13 +11,13 @@
 
 namespace merlin::render::reduce {
 
-// Keeps references, which must outlive it.
+// Keeps references to the state and the input mesh, which must outlive it.
 class LogBuilder {
  public:
   LogBuilder(ReductionState& state, const mesh::Mesh& input) : s_(state), input_(input) {}
 
-  // Returns the log; of its features only "normal" is filled. Frees the stars of the mesh and
-  // overwrites state.next. O(n), on the state's threads.
+  // Returns the log; only its feature "normal" is filled. Frees the stars of the mesh and
+  // overwrites state.next. O(n), on state.threads.
   lod::CollapseLog build();
 
  private:

@@ -9,7 +9,8 @@
 
 namespace merlin::render::reduce {
 
-// Open addressing; expected O(1) per operation. Scratch memory: one per thread.
+// The table uses open addressing; expected O(1) per operation. It is scratch memory: use one per
+// thread.
 class NumberTable {
  public:
   // Removes all keys and makes room for `numbers` keys. Amortised O(1).
@@ -25,7 +26,8 @@ class NumberTable {
     }
   }
 
-  // The value of the key `number`, which is added with the value 0 if it is new.
+  // Returns the value of the key `number`; a new key is added with the value 0. REQUIRES: no more
+  // keys than reset() made room for.
   std::uint32_t& operator[](std::uint32_t number) {
     const std::size_t mask = entries_.size() - 1;
     std::size_t k = (std::uint64_t{number} * 0x9E3779B97F4A7C15U >> 32) & mask;

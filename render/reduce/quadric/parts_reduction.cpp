@@ -9,9 +9,11 @@
 namespace merlin::render::reduce {
 namespace {
 
-// In one step, the cost limit of all parts rises by this many buckets: a factor of about 1.4.
+// In one step, the cost limit of all parts rises by this many buckets, which is a factor of about
+// 1.4.
 constexpr std::size_t kStep = 32;
-constexpr double kStepTakes = 1.25;  // typical factor by which a step reduces the triangles
+// Typical factor by which one step reduces the number of triangles.
+constexpr double kStepTakes = 1.25;
 constexpr std::size_t kMostSteps = 16;
 constexpr std::size_t kMostParts = 32;
 // Minimum number of vertices per part, if there are more than two parts.
@@ -20,8 +22,8 @@ constexpr std::size_t kLeastPart = 30'000;
 constexpr double kReduction = 6;
 
 // Returns the number of triangles at which `parts` parts are joined in pairs. The borders between
-// the parts, which cannot be reduced before, are then at most a tenth of the triangles; a fourth in
-// small meshes, where joining earlier would hardly pay.
+// the parts, which cannot be reduced before that, then have at most a tenth of the triangles. In
+// small meshes they have up to a fourth, since joining earlier would hardly save time.
 std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangles) {
   const double part = static_cast<double>(vertices) / static_cast<double>(parts);
   const double ratio = kReduction * std::sqrt(part / 200'000);
@@ -29,8 +31,8 @@ std::size_t leftBy(std::size_t parts, std::size_t vertices, std::size_t triangle
                                   std::max(ratio, parts == 2 ? kReduction : 1.0));
 }
 
-// Returns the number of steps that each part takes before it waits for the others: an estimate of
-// the steps needed to get from `left` to `keep` triangles, 1 to kMostSteps.
+// Returns the number of steps that each part does before it waits for the others: the estimated
+// number of steps from `left` to `keep` triangles, clamped to 1 .. kMostSteps.
 std::size_t stepsAtOnce(std::size_t left, std::size_t keep) {
   const double ratio = static_cast<double>(left) / static_cast<double>(keep);
   const double steps = std::log(std::max(1.0, ratio)) / std::log(kStepTakes);
@@ -59,14 +61,14 @@ void PartsReduction::run(std::size_t keep, const Progress& progress) {
     joinLogs(parts, joined);
     if (parts.size() == 2 || s_.cancelled) break;
     joinInPairs(parts);
-    measure = edgeEvaluator();  // also quadrics: those at former borders are stale
+    measure = edgeEvaluator();  // also recomputes quadrics, since those at former borders are stale
   }
   s_.log = std::move(joined);
   s_.whole.room = s_.mesh.freeRoom();
   for (CollapseWorker& w : parts) s_.whole.takeOver(std::move(w));
 }
 
-// Cuts the curve into `count` parts of equal numbers of vertices.
+// Divides the curve into `count` parts with equal numbers of vertices.
 std::vector<CollapseWorker> PartsReduction::makeParts(std::size_t count) {
   std::vector<CollapseWorker> parts(count);
   const std::size_t n = s_.mesh.vertexCount();
@@ -163,7 +165,7 @@ void PartsReduction::joinLogs(std::vector<CollapseWorker>& parts,
   }
 }
 
-// Joins each second part to the one before it on the curve.
+// Joins each second part to the part before it on the curve.
 void PartsReduction::joinInPairs(std::vector<CollapseWorker>& parts) {
   forBlocks(s_.threads, parts.size() / 2, [&](std::size_t p) {
     CollapseWorker &w = parts[2 * p], &other = parts[2 * p + 1];

@@ -1,5 +1,6 @@
-// The cost `quadric`: weighted features become channels of the quadrics. Other features do not
-// influence the cost; their values at a new vertex are interpolated between the two old vertices.
+// Implements the cost `quadric`: weighted features become channels of the quadrics. Other features
+// do not influence the cost; their values at a new vertex are interpolated between the two old
+// vertices.
 #include "render/reduce/quadric/quadric.h"
 
 #include <algorithm>
@@ -22,8 +23,8 @@ using ChannelFeature = QuadricPlan::ChannelFeature;
 constexpr float kLabelWeight = 0.005F;
 
 std::vector<ChannelFeature> channelsOf(const mesh::Mesh& mesh, const PatternSpace& space) {
-  // Weights are relative to that of the geometry, whose scale is weight / diagonal of the bounding
-  // box; so the ratio of two scales is in model units.
+  // The weight of a feature is relative to that of the geometry, whose scale is its weight divided
+  // by the diagonal of the bounding box; so the ratio of the two scales is in model units.
   const PatternFeature* geometry = space.find("geometry");
   std::vector<ChannelFeature> channels;
   std::size_t first = 0;
@@ -43,7 +44,7 @@ std::size_t countOf(const mesh::Mesh& mesh, const std::vector<ChannelFeature>& c
 }
 
 // Maps labels, which are only names, to numbers in [0, 1) that are far apart for most pairs. The
-// channel thus has a step where two labels meet, and moving the step costs.
+// channel thus has a step where two labels meet, and a collapse that moves the step has a cost.
 std::vector<float> heightsOf(const std::vector<float>& labels) {
   constexpr double kGoldenRatio = 0.6180339887498949;
   std::vector<float> heights(labels.size());
@@ -54,8 +55,8 @@ std::vector<float> heightsOf(const std::vector<float>& labels) {
   return heights;
 }
 
-// Returns where the node lies between its children a and b, projected onto their edge: 0 at a, 1 at
-// b.
+// Returns the position of a node between its children a and b, projected onto the segment between
+// them: 0 at a, 1 at b, 0.5 if a and b coincide.
 float between(const float* node, const float* a, const float* b) {
   double ab = 0, an = 0;
   for (int k = 0; k < 3; ++k) {
@@ -65,8 +66,8 @@ float between(const float* node, const float* a, const float* b) {
   return ab > 0 ? static_cast<float>(std::clamp(an / ab, 0.0, 1.0)) : 0.5F;
 }
 
-// Returns the values at the nodes of a feature that does not influence the cost: interpolated
-// between the children; for labels those of the nearer child.
+// Returns a feature's values at all nodes, for a feature that does not influence the cost: values
+// are interpolated between the two children; a label is that of the nearer child.
 std::vector<float> carryAlong(const mesh::Mesh& mesh, const mesh::Feature& feature,
                               const lod::CollapseLog& log) {
   const std::size_t d = feature.dimension, vertices = mesh.vertexCount();
@@ -111,8 +112,9 @@ Result<Ok> checkWeights(const Weights& weights, const PatternSpace& space) {
   return Ok{};
 }
 
-// Returns the vertices to lock: those of settings.locked, and all coincident vertices, so that
-// seams do not open; empty if there are none. next: coincidentVertices().
+// Returns which vertices to lock: those of settings.locked, and all coincident vertices, so that
+// seams do not open. Returns an empty vector if there are none. next: the result of
+// coincidentVertices().
 std::vector<bool> lockedVertices(const ReduceSettings& settings,
                                  const std::vector<std::uint32_t>& next) {
   std::vector<bool> locked = settings.locked;
@@ -129,11 +131,11 @@ std::vector<bool> lockedVertices(const ReduceSettings& settings,
 Weights quadricWeights(const mesh::Mesh& mesh) {
   Weights weights{{"geometry", 1.0F}};
   for (const mesh::Feature& f : mesh.features) {
-    // The names curvature and boundary mean computed values in pattern space.
+    // In pattern space, the names curvature and boundary denote computed values, not features.
     if (f.name == "normal" || f.name == "label" || f.name == "curvature" || f.name == "boundary")
       continue;
-    // 0.003 was chosen from 0.001, 0.003 and 0.005: with it, renderings of two coloured scans
-    // change least (number of pixels that change by more than 15 %), and the surface's error is a
+    // With 0.003 (also tried: 0.001 and 0.005) renderings of two coloured scans change least,
+    // measured as the number of pixels that change by more than 15 %, and the surface's error is a
     // few percent larger than without colours. Texture coordinates weigh more, because a shifted
     // texture is visible before a faded one.
     weights[f.name] = f.name == "texcoord" ? 0.05F : 0.003F;
@@ -192,10 +194,10 @@ Reduction runQuadric(const mesh::Mesh& mesh, const QuadricPlan& plan,
   result.report.stopped = stopped;
   for (const ChannelFeature& c : plan.channels) {
     const mesh::Feature& f = mesh.features[c.feature];
-    if (f.name == "label") continue;  // not interpolated: carryAlong()
+    if (f.name == "label") continue;  // labels are not interpolated; carryAlong() sets them
     std::vector<float>& values = result.log.features[c.feature];
     values.resize(result.log.children.size() * f.dimension);
-    if (values.empty()) continue;  // without a collapse, there is no element to write to
+    if (values.empty()) continue;  // no collapses: there is no element to write to
     for (std::size_t k = 0; k < f.dimension; ++k)
       reducer.channelValues(c.first + k, c.scale, values.data() + k, f.dimension);
   }

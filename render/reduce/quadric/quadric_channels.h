@@ -9,8 +9,8 @@
 
 namespace merlin::render::reduce {
 
-// One block per vertex: a, then (b x, y, z, s) for each channel (quadric_evaluate.h). Unit of
-// length: mean edge length.
+// Stores one block of floats per vertex: a, then (b x, b y, b z, s) for each channel, with a, b and
+// s as defined in quadric_evaluate.h. The unit of length is the mean edge length.
 class QuadricChannels {
  public:
   struct Range {
@@ -27,7 +27,7 @@ class QuadricChannels {
   std::size_t count() const noexcept { return count_; }
   std::size_t stride() const noexcept { return 1 + 4 * count_; }
   float* block(std::uint32_t v) const noexcept { return blocks_.data() + v * stride(); }
-  // Loads the record of a vertex that will soon be read into the cache.
+  // Prefetches the block of a vertex that will be read soon into the cache.
   void prefetch(std::uint32_t v) const noexcept {
     constexpr std::size_t kCacheLine = 64 / sizeof(float);
     const float* const first = block(v);
@@ -37,18 +37,20 @@ class QuadricChannels {
     return block(v)[4 + 4 * channel];
   }
 
-  // Sets the range of a channel's values, as given and weighted; values at new vertices stay in it.
+  // Sets the range of a channel's values: `given` in the caller's unit, `weighted` as stored in the
+  // blocks. Values at new vertices are clamped to it.
   void setRange(std::size_t channel, const Range& given, const Range& weighted) {
     given_[channel] = given;
     weighted_[channel] = weighted;
   }
 
-  // Sets the values of v and x to the best ones for the vertex that they merge into, which is at
-  // `p` relative to v and at `q` relative to x.
+  // Computes the best channel values for the vertex into which v and x merge, and stores them in
+  // both blocks. `p`: position of the merged vertex relative to v. `q`: its position relative to x.
   void mix(std::uint32_t v, std::uint32_t x, const float (&p)[3], const float (&q)[3]) const;
 
-  // Returns the value of v, divided by `weight`, within the given range. If a feature is so large
-  // or so small that weighting makes its values NaN, returns the lowest given value.
+  // Returns the value of a channel at v in the caller's unit: the stored value divided by `weight`,
+  // clamped to the given range. If the quotient is NaN, because the feature's values are extremely
+  // large or small, returns the lowest given value.
   float given(std::uint32_t v, std::size_t channel, float weight) const noexcept;
 
  private:

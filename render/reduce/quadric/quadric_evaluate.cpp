@@ -13,7 +13,7 @@ namespace {
 constexpr float kLeastCost = 1e-22F;
 constexpr float kPull = 1e-5F;  // pull to the edge's midpoint, as a share of the quadric's trace
 
-// Computes the costs of eight edges of w at a time. `channels`: whether there are channels.
+// Computes the costs of the edges of w, eight at a time. `channels`: whether there are channels.
 template <bool channels>
 struct Solver {
   const QuadricView& view;
@@ -21,11 +21,12 @@ struct Solver {
   const float* wc;  // w's channel block
   EdgeCosts& out;
 
-  // One channel at the neighbours x: sum of area times gradient, and the value minus w's.
+  // One channel at eight neighbours x: the sum of area times gradient, and the value minus that at
+  // w.
   struct Channel {
     Floats bx, by, bz, delta;
   };
-  static constexpr std::size_t kKept = 8;  // channels that are kept between the two passes
+  static constexpr std::size_t kKept = 8;  // channels whose data are kept between the two passes
 
   MERLIN_INLINE Channel channelOf(const std::uint32_t* x, std::size_t k) const {
     Channel c;
@@ -35,14 +36,14 @@ struct Solver {
     return c;
   }
 
-  // Sum of the areas of the triangles at each neighbour x.
+  // Returns the sum of the areas of the triangles at each of eight neighbours x.
   MERLIN_INLINE Floats areasOf(const std::uint32_t* x) const {
     const auto at = [&](int i) { return view.channels->block(x[i])[0]; };
     return Floats{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
   }
 
-  // Solves rows first .. first + 7 and returns their costs; those from first + count on are
-  // kNoEdge. REQUIRES: room for 8 rows from `first`.
+  // Computes rows first .. first + 7 of `out` and returns their costs; rows from first + count on
+  // get the cost kNoEdge. REQUIRES: room for 8 rows from `first`.
   MERLIN_INLINE Floats solve(const Neighbours<true>& at, std::uint32_t first,
                              std::uint32_t count) const {
     const std::uint32_t* x = &out.neighbour[first];
@@ -62,7 +63,7 @@ struct Solver {
     const std::size_t n = channels ? view.channels->count() : 0;
     const Floats area = channels ? areasOf(x) : all(0.0F);
     const Floats s = channels ? 1.0F / (area + wc[0] + kTiny) : all(0.0F);
-    // Eliminates the values of the channels: adds the terms of their optimum to A and to the
+    // Eliminates the channel values: adds the terms of their optimum to the matrix A and to the
     // right-hand side.
     for (std::size_t k = 0; k < n; ++k) {
       const Channel c = channelOf(x, k);
@@ -114,7 +115,8 @@ struct Solver {
   }
 };
 
-// Returns the lowest row number among the cheapest lanes. rows: the row of each lane's cost.
+// Returns the lowest row number among the lanes with the lowest cost. rows: the row of each lane's
+// cost.
 MERLIN_INLINE std::uint32_t rowOfLeast(const Floats& costs, const Ints& rows) {
   const Ints cheapest = costs == simd::leastLane(costs) ? rows : all(~0U >> 1);
   return static_cast<std::uint32_t>(simd::leastLane(cheapest)[0]);
@@ -177,8 +179,8 @@ MERLIN_INLINE void evaluateRare(const QuadricView& view, std::uint32_t vertex, E
     evaluateStar<true, what>(view, vertex, out);
 }
 
-// Most vertices are closed fans of up to eight triangles without channels. This fast path is
-// compiled apart from the other cases (`rare`), so that it has all registers.
+// Evaluates a vertex. Most vertices are closed fans of up to eight triangles without channels; this
+// fast path is compiled apart from the other cases (`rare`), so that it can use all registers.
 template <Evaluate what>
 MERLIN_INLINE void evaluate(const QuadricView& view, std::uint32_t vertex, EdgeCosts& out,
                             EvaluateEdges rare) {
@@ -211,7 +213,7 @@ MERLIN_WIDE void evaluateWide(const QuadricView& view, std::uint32_t vertex, Edg
   evaluate<what>(view, vertex, out, rareWide<what>);
 }
 
-// Indexed by Evaluate.
+// Functions indexed by the values of Evaluate.
 using Evaluators = std::array<EvaluateEdges, 3>;
 constexpr Evaluators kPortable = {evaluatePortable<Evaluate::kQuadric>,
                                   evaluatePortable<Evaluate::kEdges>,

@@ -15,7 +15,7 @@ std::uint32_t linesFor(std::uint32_t corners) {
   return std::max(1U, (corners + kLine - 1) / kLine);
 }
 
-constexpr std::uint32_t kClaim = 1 << 13;  // corners claimed at a time
+constexpr std::uint32_t kClaim = 1 << 13;  // number of corners claimed at a time
 constexpr unsigned kMostScans = 8;         // threads that each scan all triangles in fillStars()
 
 // Calls work(v) for each of n vertices, in parallel; work(v) may write only data of v.
@@ -24,7 +24,7 @@ void forEachVertex(std::size_t n, Threads threads, const Work& work) {
   forEach(threads, n, [&](std::size_t v) { work(static_cast<std::uint32_t>(v)); });
 }
 
-// Sorts by the upper 3 x `bits` bits; stable.
+// Sorts the keys by their upper 3 x `bits` bits; stable.
 void radixSort(HugeArray<std::uint64_t>& keys, unsigned bits) {
   HugeArray<std::uint64_t> other(keys.size());
   const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
@@ -37,7 +37,7 @@ void radixSort(HugeArray<std::uint64_t>& keys, unsigned bits) {
   }
 }
 
-// Returns 1 / mean edge length, from a sample of the edges.
+// Returns 1 / mean edge length, estimated from a sample of the edges.
 float scaleOf(const mesh::Mesh& mesh) {
   const std::size_t step = std::max<std::size_t>(1, mesh.triangleCount() / 4096);
   double sum = 0, count = 0;
@@ -48,16 +48,17 @@ float scaleOf(const mesh::Mesh& mesh) {
     ++count;
   }
   const double scale = count / sum;
-  // If the edges have no length, or too little for floats, uses the bounding box.
+  // If the edges are too short for floats or have no length, the bounding box gives the scale.
   if (sum > 0 && scale < 1e30) return static_cast<float>(scale);
   const float diagonal = mesh::boundingBox(mesh.positions).diagonal();
   return diagonal > 0 ? 1 / diagonal : 1;
 }
 
-// True if a vertex is the first one (b) of two corners, so that the star is non-manifold.
+// Returns true if some vertex is the first one (b) of two corners, which means that the star is
+// non-manifold.
 bool comesTwice(std::span<const Corner> star) {
-  // Fast test: if all b hash to different bits of 64, none occurs twice. Otherwise compares all
-  // pairs.
+  // Fast test: if all b hash to different bits of 64, none occurs twice. Otherwise all pairs are
+  // compared.
   std::uint64_t seen = 0;
   bool twice = false;
   for (const Corner& c : star) {
@@ -84,8 +85,9 @@ std::optional<std::uint32_t> FreshLines::claim(std::uint32_t corners) {
   return begin;
 }
 
-// Claims 64 KiB at a time, so that threads seldom contend; `corners` if that is more, or if there
-// is no room for 64 KiB.
+// Makes sure that `corners` unused corners are available; returns false if there are too few.
+// Claims 64 KiB at a time, so that threads seldom contend, or only `corners` if that is more or if
+// 64 KiB are not available.
 bool StarRoom::claimFresh(std::uint32_t corners) {
   if (end_ - next_ >= corners) return true;
   std::uint32_t size = std::max(kClaim, corners);
@@ -105,7 +107,7 @@ std::uint32_t StarRoom::take(std::uint32_t corners, std::uint32_t& capacity) {
     next_ += capacity;
     return next_ - capacity;
   }
-  // Reuses returned room: of the right size, or larger if no fresh lines are left.
+  // Reuses returned room: room of the right size, or larger room if no fresh lines are left.
   for (std::size_t k = lines; k < free_.size(); ++k) {
     if (free_[k].empty()) continue;
     const std::uint32_t star = free_[k].back();
@@ -129,8 +131,9 @@ void StarRoom::join(StarRoom&& other) {
   other.free_.clear();
 }
 
-// Uses a Morton curve with 1,024 cells per axis; with 4,096 for meshes of more than 4 million
-// vertices, where too many would share a cell, if the vertex number still fits into the key.
+// Uses a Morton curve with 1,024 cells per axis. For meshes of more than 4 million vertices, where
+// too many would share a cell, uses 4,096 cells per axis if the vertex number still fits into the
+// key.
 std::vector<std::uint32_t> alongCurve(const mesh::Mesh& mesh, Threads threads) {
   const mesh::Box box = mesh::boundingBox(mesh.positions);
   float extent = 0;
@@ -195,8 +198,8 @@ void QuadricMesh::fillStars(const mesh::Mesh& mesh, const HugeArray<std::uint32_
       }
     });
   };
-  // By vertex: first the number of its corners, then the index of its next corner. Kept apart from
-  // the records, so that it stays in caches.
+  // places[v] is first the number of corners of v, then the index of its next corner. It is kept
+  // apart from the records, so that it stays in the caches.
   HugeArray<std::uint32_t> places(vertexCount());
   forEachCorner([&](std::uint32_t v, std::uint32_t, std::uint32_t) { ++places[v]; });
   std::uint64_t total = 0;
@@ -235,11 +238,12 @@ void QuadricMesh::tidyHub(std::uint32_t hub) noexcept {
   vertices_[hub].degree = static_cast<std::uint32_t>(to - star);
 }
 
-// Sorts the corners into the order of the fan; sets kOpen if they do not form one closed fan.
+// Sorts the corners of v into the order of a closed fan; sets kOpen if they do not form one closed
+// fan.
 void QuadricMesh::orderStar(QuadricVertex& v) {
   Corner* s = stars_.data() + v.star;
   const std::uint32_t n = v.degree;
-  bool closed = n > 2 && n <= 1000;  // this search is O(n^2)
+  bool closed = n > 2 && n <= 1000;  // limit, since this search is O(n^2)
   for (std::uint32_t i = 0; closed && i + 1 < n; ++i) {
     std::uint32_t j = i + 1;
     while (j < n && s[j].b != s[i].c) ++j;

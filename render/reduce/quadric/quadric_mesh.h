@@ -1,5 +1,5 @@
-// QuadricMesh: the mesh while the cost `quadric` reduces it: one record and one star per vertex.
-// Private to render/reduce.
+// QuadricMesh: the mesh during a reduction with the cost `quadric`; it has one record and one star
+// per vertex. Private to render/reduce.
 //
 // The star of a vertex is the list of its triangles, each stored as its other two vertices, a
 // Corner (b, c), in the triangle's order. In a closed fan each corner's c is the next corner's b;
@@ -36,7 +36,7 @@ inline constexpr std::uint32_t kLine = 8;  // corners per line
 // Upper triangle of a symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<float, 6>;
 
-// A 3D vector in seven bytes, with a precision of 1/8,000 of its length.
+// A 3D vector stored in seven bytes, with a precision of 1/8,000 of its largest component.
 class ShortVector {
  public:
   std::array<float, 3> get() const noexcept {
@@ -65,42 +65,43 @@ class ShortVector {
 };
 
 struct alignas(64) QuadricVertex {
-  // Position: unit mean edge length, origin the centre of the bounding box. Quadric h: the sum of
-  // A n n' over the star's triangles, A twice the area, n the unit normal. All planes pass through
-  // the vertex, so that there is no linear part. position and h[0] are loaded as four floats.
+  // Position: in units of the mean edge length, from the centre of the bounding box. Quadric h: the
+  // sum of A n n' over the star's triangles, where A is twice the area and n the unit normal. Since
+  // all these planes pass through the vertex, the quadric has no linear part. `position` and h[0]
+  // are loaded together as four floats.
   float position[3];
   float h[6];
   std::uint32_t star;      // index of its first corner
   std::uint32_t degree;    // number of corners in its star
-  std::uint32_t capacity;  // number of corners that its lines hold
-  std::uint32_t node;      // number of its node in the log
-  float deviation;         // bound of the squared distance to the vertices that it replaces
+  std::uint32_t capacity;  // number of corners for which its lines have room
+  std::uint32_t node;      // index of its node in the log
+  float deviation;         // bound of the squared distance to the vertices merged into it
   std::uint8_t flags;
   ShortVector witness;  // position of the witness (quadric_witness.h), relative to the vertex
 };
 static_assert(sizeof(QuadricVertex) == 64);
 
 enum : std::uint8_t {
-  kOpen = 1,     // its star is not one closed fan: at a border or non-manifold
-  kDead = 2,     // merged into another; its record then holds a NodeRecord
-  kIdle = 4,     // no legal edge; back in the queue when its neighbourhood changes
-  kInside = 8,   // its whole ring is in its part
-  kLocked = 32,  // stays where it is
+  kOpen = 1,     // its star is not one closed fan: the vertex is at a border or non-manifold
+  kDead = 2,     // merged into another vertex; its record now holds a NodeRecord
+  kIdle = 4,     // has no legal edge; queued again when its neighbourhood changes
+  kInside = 8,   // all its neighbours are in the same part (PartsReduction)
+  kLocked = 32,  // must keep its position
   kSharp = 16,   // a thin tip or a sharp ridge: the normals of its faces nearly cancel
-  kHub = 64,     // has too many triangles to take part for now: HubRecord
+  kHub = 64,     // has too many triangles to take part for now; see HubRecord
 };
 
-// True if the vertex is part of the surface. (A vertex that has lost all of its triangles is not
-// dead, but no triangle uses it.)
+// Returns true if the vertex is part of the surface: it is not merged into another one and has
+// triangles.
 inline bool lives(const QuadricVertex& v) noexcept { return !(v.flags & kDead) && v.degree > 0; }
 
 // A hub is a vertex with so many triangles that each collapse next to it would take long. Its
-// record holds a HubRecord instead of a quadric, and the NaN there gives every edge to it the cost
-// kNoEdge. Collapses next to a hub do not write into its star: a dead vertex there stands for the
-// vertex that it merged into (mergedInto()), and a corner whose two vertices have become one is no
-// longer a triangle. Only the number of its triangles is kept up to date.
+// record holds a HubRecord instead of a quadric; the NaN in it gives each edge to the hub the cost
+// kNoEdge. A collapse next to a hub does not update the hub's star, only its number of triangles.
+// Until tidyHub(), a dead vertex in the star therefore stands for the vertex that it merged into
+// (mergedInto()), and a corner whose two vertices have become the same is no longer a triangle.
 struct HubRecord {
-  float no_number;  // NaN, in place of h[0]
+  float no_number;  // NaN; stored in place of h[0]
   std::uint32_t triangles;
 };
 
@@ -116,15 +117,17 @@ inline void setHub(QuadricVertex& v, std::uint32_t triangles) noexcept {
   v.flags |= kHub;
 }
 
-// Returns the number of triangles of v.
+// Returns the number of triangles of v, whether v is a hub or not.
 inline std::uint32_t trianglesOf(const QuadricVertex& v) noexcept {
   return v.flags & kHub ? hubRecordOf(v).triangles : v.degree;
 }
 
-// For a dead vertex: the vertex that it merged into, stored in the place of its star.
+// Returns a reference to the index of the vertex that a dead vertex merged into. It takes the place
+// of the star's index. REQUIRES: the vertex is dead.
 inline std::uint32_t& mergedInto(QuadricVertex& dead) noexcept { return dead.star; }
 
-// The result of a collapse, stored in the dead vertex' record over its position and h.
+// The result of a collapse. It is stored in the record of the vertex that died, over its position
+// and h.
 struct NodeRecord {
   std::uint32_t children[2];
   float position[3], error, normal[3];
@@ -141,15 +144,15 @@ inline void setNodeRecord(QuadricVertex& dead, const NodeRecord& record) noexcep
   std::memcpy(static_cast<void*>(dead.position), &record, sizeof record);
 }
 
-// Hands out lines of corners that no star has used yet. Thread-safe; one for all threads.
+// Hands out lines of corners that no star has used yet. Thread-safe; all threads share one.
 class FreshLines {
  public:
   void reset(std::uint32_t begin, std::uint32_t end) {
     next_ = begin;
     end_ = end;
   }
-  // Takes `corners` consecutive corners; returns the index of the first one, or nothing if too few
-  // are left.
+  // Claims `corners` consecutive corners and returns the index of the first one; returns nothing if
+  // too few are left.
   std::optional<std::uint32_t> claim(std::uint32_t corners);
 
  private:
@@ -157,18 +160,19 @@ class FreshLines {
   std::uint32_t end_ = 0;
 };
 
-// Allocates room for stars in lines of corners and reuses returned room by size. One per thread.
+// Allocates room for stars in whole lines of corners, and reuses returned room of the same size.
+// Thread-bound: use one per thread.
 class StarRoom {
  public:
   StarRoom() = default;
   explicit StarRoom(FreshLines& fresh) : fresh_(&fresh) {}
 
-  // Returns the index of the first corner of a room for `corners` corners or more, and sets
-  // `capacity` to its size. Throws std::bad_alloc if there is no room.
+  // Allocates room for at least `corners` corners, returns the index of its first corner and sets
+  // `capacity` to its size in corners. Throws std::bad_alloc if no room is left.
   std::uint32_t take(std::uint32_t corners, std::uint32_t& capacity);
   void give(std::uint32_t star, std::uint32_t capacity);
 
-  // Takes over the room that was returned to `other`.
+  // Takes over the returned room that `other` holds.
   void join(StarRoom&& other);
 
  private:
@@ -179,13 +183,14 @@ class StarRoom {
   std::vector<std::vector<std::uint32_t>> free_;  // returned room, by number of lines
 };
 
-// Returns the mesh's vertices in the order of a space-filling curve, the same for any number of
-// threads. O(n) time (radix sort), 16 bytes per vertex of temporary memory.
+// Returns the indices of the mesh's vertices in the order of a space-filling curve; the order does
+// not depend on the number of threads. O(n) time (radix sort), 16 bytes of temporary memory per
+// vertex.
 std::vector<std::uint32_t> alongCurve(const mesh::Mesh& mesh, Threads threads);
 
 class QuadricMesh {
  public:
-  // REQUIRES: validate(mesh), tidy(mesh). O(n).
+  // Builds records and stars from an input mesh, in O(n). REQUIRES: validate(mesh), tidy(mesh).
   explicit QuadricMesh(const mesh::Mesh& mesh, Threads threads = 1);
 
   std::uint32_t vertexCount() const noexcept { return static_cast<std::uint32_t>(input_.size()); }
@@ -194,7 +199,7 @@ class QuadricMesh {
     return {stars_.data() + v.star, v.degree};
   }
   Corner* corners(std::uint32_t star) const noexcept { return stars_.data() + star; }
-  // The index of vertex v in the input mesh.
+  // Returns the index in the input mesh of vertex v.
   std::uint32_t inputOf(std::uint32_t v) const noexcept { return input_[v]; }
 
   float scale() const noexcept { return scale_; }  // 1 / mean edge length, in model units
@@ -203,8 +208,8 @@ class QuadricMesh {
   StarRoom freeRoom() noexcept { return StarRoom(fresh_); }
   void dropStars() { stars_ = {}; }
   // Updates the star of a hub: replaces dead vertices by those that they merged into, and removes
-  // corners that are no longer triangles. Amortised O(corners). Not thread-safe for hubs whose
-  // stars contain the same dead vertex.
+  // corners that are no longer triangles. Amortised O(corners). Must not be called in parallel for
+  // hubs whose stars contain the same dead vertex.
   void tidyHub(std::uint32_t hub) noexcept;
 
  private:

@@ -45,8 +45,8 @@ const char* QuadricReducer::run(const Limits& limits, const Progress& progress) 
   state_.rules.fast = limits.fast;
   state_.rules.keep_components = limits.preserve_topology || limits.preserve_components;
   const std::size_t keep = std::max<std::size_t>(limits.triangles, 1);
-  // Parts stop at three times the target; the final reduction of the whole evens out their
-  // coarseness.
+  // Parts stop at three times the target, so that the final reduction of the whole mesh can even
+  // out differences in coarseness between them.
   if (PartsReduction::partsFor(state_.mesh.vertexCount()) > 1 && 3 * keep < state_.triangles)
     PartsReduction(state_, seams_, loop_).run(3 * keep, progress);
   else
@@ -66,7 +66,7 @@ void QuadricReducer::runStages(std::size_t keep, const Limits& limits, const Pro
   for (const QuadricStage stage : stages) {
     if (state_.triangles <= keep || state_.cancelled) return;
     if (stage != QuadricStage::kAll && limits.by_all_rules) return;
-    // Once the error limit is reached, fewer rules would not help.
+    // Once the error limit is reached, dropping rules would not help.
     if (stage != QuadricStage::kAll && state_.whole.too_coarse) return;
     if (stage == QuadricStage::kNoLock && state_.labels.empty()) continue;
     if (!keepsTopology(stage) && limits.preserve_topology) return;

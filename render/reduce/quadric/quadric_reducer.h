@@ -1,10 +1,11 @@
-// QuadricReducer: collapses edges by the costs of quadric_evaluate, on several threads. Private to
-// render/reduce.
+// QuadricReducer: reduces a mesh by the edge costs of quadric_evaluate.h, on several threads.
+// Private to render/reduce.
 //
-// Large meshes are first reduced in parts, side by side (PartsReduction). When a sixth of the
-// triangles is left, the mesh is reduced as a whole (WholeReduction), in stages, each of which
-// drops a rule of the one before. Both run a CollapseLoop: EdgeChoice says which edge of a vertex
-// may collapse, EdgeCollapser carries that out, Seams keeps the two sides of a seam together.
+// Large meshes are first reduced in parts, in parallel (PartsReduction), until at most about a
+// sixth of the triangles is left, or three times the requested number if that is more. Then the
+// mesh is reduced as a whole (WholeReduction), in stages, each of which drops a rule of the stage
+// before. Both use a CollapseLoop, in which EdgeChoice decides which edge of a vertex may collapse,
+// EdgeCollapser carries out the collapse, and Seams keeps the two sides of a seam together.
 // LogBuilder makes the log.
 #pragma once
 
@@ -23,39 +24,43 @@ class QuadricReducer {
   // outlive the reducer.
   QuadricReducer(const mesh::Mesh& mesh, std::size_t channels, Threads threads);
 
-  // Sets a channel: values[v * stride] is its value at vertex v of the mesh. A difference of 1
-  // costs like a distance of `scale` model units.
+  // Sets the values of a channel: values[v * stride] is the value at vertex v of the input mesh. A
+  // value difference of 1 costs as much as a distance of `scale` model units.
   void setChannel(std::size_t channel, const float* values, std::size_t stride, float scale);
 
-  // values: one label per vertex of the mesh. Vertices with different labels merge only when no
-  // other collapse is allowed.
+  // Sets the labels: values[v] is the label of vertex v of the input mesh. Vertices with different
+  // labels merge only when no other collapse is allowed.
   void setLabels(const float* values);
 
-  // Keeps each vertex v of the mesh with locked[v] where it is as long as any other collapse is
-  // allowed.
+  // Locks each vertex v of the input mesh with locked[v]: it keeps its position as long as any
+  // other collapse is allowed.
   void lock(const std::vector<bool>& locked);
 
-  // Lets seams shrink; to be called after lock() has locked their vertices. next: rings of
-  // coincident vertices of the mesh (coincidentVertices()). Where a ring has two vertices, an edge
-  // along the seam may collapse together with the coincident edge on the other side.
+  // Lets seams shrink: where exactly two vertices coincide, an edge along the seam may collapse
+  // together with the coincident edge on the other side. next: rings of coincident vertices, the
+  // result of coincidentVertices() for the input mesh. Call after lock() has locked the vertices on
+  // seams.
   void pair(const std::vector<std::uint32_t>& next) { seams_.pair(next); }
 
   struct Limits {
-    std::size_t triangles = 0;  // stop when no more than these are left; 0: no limit
-    float error = std::numeric_limits<float>::infinity();  // maximum of a collapse, model units
+    std::size_t triangles = 0;  // stop when at most this many are left; 0: no limit
+    // maximum error of a collapse [model units]
+    float error = std::numeric_limits<float>::infinity();
     bool preserve_topology = false, preserve_components = false;
-    bool by_all_rules = false;  // stop when the rules allow no more, instead of dropping one
-    bool fast = false;          // accept costs up to 4 times that of the queue; use no witnesses
+    bool by_all_rules = false;  // stop when the rules allow no collapse, instead of dropping a rule
+    bool fast = false;          // faster, less accurate: see CollapseRules::fast
     Threads threads = 1;
   };
-  // Returns why it stopped: a value of ReduceReport::stopped.
+  // Reduces the mesh and returns why it stopped: one of the values of ReduceReport::stopped.
+  // `progress` is called on the caller's thread; false cancels.
   const char* run(const Limits& limits, const Progress& progress);
 
-  // Writes a channel's value at the node of collapse k to values[k * stride], in the unit in which
-  // setChannel() was given them. `scale`: as in setChannel().
+  // Writes the value of a channel at the node of each collapse k to values[k * stride], in the unit
+  // in which setChannel() received it. `scale`: the same as for setChannel().
   void channelValues(std::size_t channel, float scale, float* values, std::size_t stride) const;
 
-  // Returns the log; of its features only "normal" is filled.
+  // Returns the report and the log; only the log's feature "normal" is filled. Call once, after
+  // run().
   Reduction finish();
 
  private:

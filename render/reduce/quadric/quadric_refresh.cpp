@@ -5,8 +5,8 @@
 namespace merlin::render::reduce {
 namespace {
 
-// Makes all hubs normal vertices. Not in parallel, since the stars of several hubs may contain the
-// same dead vertices.
+// Turns all hubs back into normal vertices. Not in parallel, since the stars of several hubs may
+// contain the same dead vertices.
 void releaseHubs(ReductionState& state) {
   for (std::uint32_t v = 0; state.hubs && v < state.mesh.vertexCount(); ++v) {
     if (!(state.mesh[v].flags & kHub)) continue;

@@ -1,4 +1,4 @@
-// Work on all living vertices at once. Private to render/reduce.
+// Functions that process all living vertices in parallel. Private to render/reduce.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace merlin::render::reduce {
 
-// Calls work(v, scratch) for each living vertex, in parallel. work(std::uint32_t, EdgeCosts&) may
-// write only data of v.
+// Calls work(v, scratch) for each living vertex v, in parallel on state.threads. The signature is
+// work(std::uint32_t, EdgeCosts&); it may write only data of v and of its scratch.
 template <typename Work>
 void forEachLiving(const ReductionState& state, const Work& work) {
   constexpr std::size_t kBlock = 1 << 12;
@@ -23,8 +23,9 @@ void forEachLiving(const ReductionState& state, const Work& work) {
   });
 }
 
-// Recomputes the quadrics of all living vertices. Those with too many triangles become hubs without
-// a quadric; since the cost of an edge needs the quadrics of both ends, they do not take part.
+// Recomputes the quadrics of all living vertices. A vertex with more than rules.most_corners
+// triangles becomes a hub, which has no quadric; since the cost of an edge needs the quadrics of
+// both ends, hubs do not take part in collapses.
 void refreshQuadrics(ReductionState& state);
 
 }  // namespace merlin::render::reduce

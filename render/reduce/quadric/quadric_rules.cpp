@@ -9,19 +9,21 @@
 namespace merlin::render::reduce {
 namespace {
 
-// A collapse must not make a larger star than this: it would be a fan of slivers.
+// Maximum number of triangles in a star that a collapse may make; a larger star would be a fan of
+// slivers.
 constexpr std::uint32_t kMostDegree = 24;
 // Minimum cosine of the angle between a face's normals before and after a collapse.
 constexpr float kLeastCosine = 0.2F;
 
 bool isIn(const Corner& corner, std::uint32_t v) { return corner.b == v || corner.c == v; }
 
-// Link condition: the ends have no common neighbours except those of the triangles they share.
+// Returns true if the link condition holds: the ends have no common neighbours except those in the
+// triangles that they share.
 MERLIN_INLINE bool linkHolds(const QuadricView& view, const QuadricVertex& a,
                              const QuadricVertex& x, const EdgeCosts& costs, std::uint32_t edge) {
   const std::uint32_t shared = costs.shared[edge];
   if (shared == 2 && (a.flags & x.flags & kOpen))
-    return false;  // would pinch the surface between two borders
+    return false;  // the collapse would pinch the surface between two borders
   const Corner* star = view.corners + x.star;
   const bool open = x.flags & kOpen;
   Ints common = {};
@@ -37,8 +39,8 @@ MERLIN_INLINE bool linkHolds(const QuadricView& view, const QuadricVertex& a,
   return sum(common) == static_cast<std::int32_t>(shared);
 }
 
-// A collapse takes one triangle from each vertex opposite the edge. True if each of them keeps at
-// least one triangle (on a border) or three (in a closed fan).
+// Returns true if each vertex opposite the edge keeps enough triangles after the collapse, which
+// takes one from each: at least one on a border, or three in a closed fan.
 MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex& a, std::uint32_t x,
                                    std::uint32_t edge) {
   const Corner* star = view.corners + a.star;
@@ -54,7 +56,7 @@ MERLIN_INLINE bool sidesKeepEnough(const QuadricView& view, const QuadricVertex&
   return true;
 }
 
-// anyTurns() for a closed fan of up to eight triangles, all at once.
+// Does what anyTurns() does, for a closed fan of up to eight triangles, which it tests all at once.
 MERLIN_INLINE bool fanTurns(const QuadricView& view, const QuadricVertex& v, const float* origin,
                             const float* from, const float* to, std::uint32_t other) {
   const Ints ring = firsts(&view.corners[v.star].b, v.degree);
@@ -76,8 +78,8 @@ MERLIN_INLINE bool fanTurns(const QuadricView& view, const QuadricVertex& v, con
   return simd::any(stays & ~fine);
 }
 
-// True if a face of v's star, without those that contain `other`, turns too far when v moves from
-// `from` to `to` (both relative to `origin`).
+// Returns true if a face of v's star turns too far (kLeastCosine) when v moves from `from` to `to`,
+// both relative to `origin`. Ignores faces that contain `other`.
 bool anyTurns(const QuadricView& view, const QuadricVertex& v, const float* origin,
               const float* from, const float* to, std::uint32_t other) {
   const Corner* star = view.corners + v.star;
@@ -120,7 +122,7 @@ float segmentDistance2(const float* p, const float* a, const float* b) {
   return sum;
 }
 
-// borderNeighbours() for a large star: O(corners).
+// Does what borderNeighbours() does, for a star of more than kPairwise corners. O(corners).
 std::size_t borderOfMany(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
                          std::uint32_t* found, std::size_t room, NumberTable& numbers) {
   constexpr std::uint32_t kIsB = 1, kIsC = 2;
@@ -138,8 +140,8 @@ std::size_t borderOfMany(const QuadricView& view, const QuadricVertex& v, std::u
   return n;
 }
 
-// Finds the neighbours of v along border edges, without `other`: at most `room`. Returns their
-// number.
+// Stores in `found` the neighbours of v along border edges, except `other`, at most `room` of them.
+// Returns their number.
 std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, std::uint32_t other,
                              std::uint32_t* found, std::size_t room, NumberTable& numbers) {
   if (v.degree > kPairwise) return borderOfMany(view, v, other, found, room, numbers);
@@ -157,8 +159,8 @@ std::size_t borderNeighbours(const QuadricView& view, const QuadricVertex& v, st
   return n;
 }
 
-// True if v has at most the star of a corner of a tetrahedron: a closed fan of three triangles, or
-// one triangle.
+// Returns true if v may be a corner of the last triangles of a component: its star is a closed fan
+// of at most three triangles, or one triangle.
 bool isLast(const QuadricVertex& v) {
   const std::uint32_t triangles = trianglesOf(v);
   return triangles <= 3 && !((v.flags & kOpen) && triangles > 1);

@@ -1,5 +1,5 @@
 // Computes the data of one vertex from its star: ring, quadric, normal, channel sums. Private to
-// quadric_evaluate.cpp, which compiles it twice (simd.h).
+// quadric_evaluate.cpp, which compiles it for two instruction sets (simd.h).
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ inline constexpr float kTiny = 1e-30F;
 // length of the mean is the sine of the angle between its axis and its side.
 inline constexpr float kSharpMean = 0.6F;
 
-// Eight neighbours, one per lane: positions relative to w, and the quadrics h if `quadrics` is
-// true.
+// Eight neighbours of a vertex w, one per SIMD lane: their positions relative to w and, if
+// `quadrics` is true, their quadrics h.
 template <bool quadrics>
 struct Neighbours {
   Floats x, y, z, h[6];
@@ -36,12 +36,12 @@ struct Neighbours {
   }
 };
 
-// findNeighbours() for a large star: O(corners).
+// Does what findNeighbours() does, for a star of more than kPairwise corners. O(corners).
 inline void findManyNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
   out.count = 0;
   out.numbers.reset(2 * std::size_t{w.degree});
   const auto indexOf = [&](std::uint32_t v) {
-    std::uint32_t& after = out.numbers[v];  // index + 1; 0: new
+    std::uint32_t& after = out.numbers[v];  // row of the neighbour + 1; 0: not found yet
     if (after == 0) {
       out.neighbour[out.count] = v;
       out.shared[out.count] = 0;
@@ -56,8 +56,8 @@ inline void findManyNeighbours(const QuadricView& view, const QuadricVertex& w, 
   }
 }
 
-// Finds the neighbours of a vertex with any star, each once, and the number of triangles that each
-// shares with it.
+// Finds each neighbour of w once, and the number of triangles that each shares with w; works for
+// any star.
 inline void findNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
   if (w.degree > kPairwise) {
     findManyNeighbours(view, w, out);
@@ -82,7 +82,8 @@ inline void findNeighbours(const QuadricView& view, const QuadricVertex& w, Edge
   }
 }
 
-// Finds the neighbours of a vertex with a closed fan: the first vertices of its corners, in order.
+// Finds the neighbours of a vertex w whose star is a closed fan: they are the first vertices of its
+// corners, in order.
 inline void fanNeighbours(const QuadricView& view, const QuadricVertex& w, EdgeCosts& out) {
   out.count = w.degree;
   for (std::uint32_t i = 0; i < w.degree; ++i) {
@@ -96,8 +97,8 @@ MERLIN_INLINE void findRing(const QuadricView& view, const QuadricVertex& w, Edg
     findNeighbours(view, w, out);
   else
     fanNeighbours(view, w, out);
-  // Pads the rows with the first neighbour: rows are processed eight at a time, and a closed fan
-  // also reads the row after the last eight.
+  // Pads the rows with the first neighbour, because rows are processed eight at a time and a closed
+  // fan also reads the row after the last group of eight.
   store(&out.neighbour[out.count], all(out.neighbour[0]));
   store(&out.neighbour[out.count + 8], all(out.neighbour[0]));
   for (std::uint32_t first = 0; first < out.count + 8; first += 8) {
@@ -108,21 +109,22 @@ MERLIN_INLINE void findRing(const QuadricView& view, const QuadricVertex& w, Edg
   }
 }
 
-// Up to eight triangles (w, b, c): u and v are the positions of b and c relative to w. Unused lanes
-// hold triangles of zero area.
+// Up to eight triangles (w, b, c): u and v are the positions of their vertices b and c relative to
+// w. Unused lanes hold triangles of zero area.
 struct EightTriangles {
   Floats ux, uy, uz, vx, vy, vz;
   Ints b, c;
 };
 
-// The triangles of a closed fan of up to eight with these neighbours; neighbours beyond the last
-// repeat the first one, so that the fan closes.
+// Returns the triangles of a closed fan of up to eight triangles. x, y, z: positions of
+// `neighbours` relative to w. Lanes beyond the last neighbour must repeat the first one, so that
+// the fan closes.
 MERLIN_INLINE EightTriangles fanTriangles(const Floats& x, const Floats& y, const Floats& z,
                                           const Ints& neighbours) {
   return {x, y, z, next(x), next(y), next(z), neighbours, next(neighbours)};
 }
 
-// Returns eight triangles of a star from corner `first` on. REQUIRES: findRing() was called.
+// Returns the eight triangles of w's star from corner `first` on. REQUIRES: findRing() was called.
 MERLIN_INLINE EightTriangles starTriangles(const QuadricVertex& w, const EdgeCosts& out,
                                            std::uint32_t first) {
   const float *x = out.rx.data(), *y = out.ry.data(), *z = out.rz.data();
@@ -150,7 +152,7 @@ MERLIN_INLINE EightTriangles starTriangles(const QuadricVertex& w, const EdgeCos
           load(v[1]), load(v[2]), load(of_b), load(of_c)};
 }
 
-// The quadrics and the unit normals of eight triangles; zero for triangles of zero area.
+// Quadrics and unit normals of eight triangles; both are zero for triangles of zero area.
 struct Planes {
   Floats h[6], normal[3];
   Floats area, inverse;  // twice the area, and its reciprocal
@@ -173,16 +175,16 @@ struct Planes {
   }
 };
 
-// The values of a channel at eight vertices.
+// Returns the values of channel k at eight vertices.
 MERLIN_INLINE Floats valuesOf(const QuadricChannels& channels, const Ints& vertices,
                               std::size_t k) {
   const auto at = [&](int i) { return channels.value(static_cast<std::uint32_t>(vertices[i]), k); };
   return Floats{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
 }
 
-// Adds the terms that the gradients of the channels contribute: to the quadrics of the triangles,
-// and to the channel sums in `block`, which is that of w. `fan`: the triangles are from
-// fanTriangles(), so that the c of a triangle is the b of the next one.
+// Adds the contribution of the channels' gradients to the quadrics of the triangles and to the
+// channel sums in `block`, the channel block of w. `fan`: the triangles are from fanTriangles(), so
+// that vertex c of a triangle is vertex b of the next one.
 template <bool fan>
 MERLIN_INLINE void addGradients(const QuadricChannels& channels, const EightTriangles& t,
                                 Planes& planes, float* block) {
@@ -214,10 +216,10 @@ MERLIN_INLINE void addGradients(const QuadricChannels& channels, const EightTria
   }
 }
 
-// Sums over a star's triangles.
+// Sums of quadrics and normals over the triangles of a star.
 struct Sums {
-  Floats most = {};  // h, then x and y of the normal
-  float z = 0;       // of the normal
+  Floats most = {};  // the six components of h, then x and y of the normal
+  float z = 0;       // z component of the normal
 
   Sums() = default;
   MERLIN_INLINE explicit Sums(const Planes& p)
@@ -228,7 +230,8 @@ struct Sums {
     most += other.most;
     z += other.z;
   }
-  // Stores in pieces of the size of a register, since the quadric is read again at once.
+  // Stores the sums in w.h and out.normal. It writes pieces of register size, since the quadric is
+  // read again immediately.
   MERLIN_INLINE void store(QuadricVertex& w, EdgeCosts& out) const {
     const auto first = __builtin_shufflevector(most, most, 0, 1, 2, 3);
     const auto then = __builtin_shufflevector(most, most, 4, 5);
@@ -240,7 +243,7 @@ struct Sums {
   }
 };
 
-// `block`: the channel block of w; not used unless `channels`.
+// Returns the sums over eight triangles. `block`: the channel block of w; used only if `channels`.
 template <bool channels, bool fan>
 MERLIN_INLINE Sums sumsOf(const QuadricView& view, const EightTriangles& triangles, float* block) {
   Planes planes(triangles);
@@ -253,8 +256,8 @@ MERLIN_INLINE void clearSums(const QuadricChannels& channels, float* block) {
   for (std::size_t k = 0; k < channels.count(); ++k) std::fill_n(block + 1 + 4 * k, 3, 0.0F);
 }
 
-// Adds |e|^2 I - e e' for a border edge e = (x, y, z): the squared distance to the line of the
-// edge, weighted by |e|^2 and kBorderWeight.
+// Adds the quadric kBorderWeight (|e|^2 I - e e') of a border edge e = (x, y, z) to h: the squared
+// distance to the line of the edge, weighted by |e|^2 and kBorderWeight.
 MERLIN_INLINE void addBorder(float h[6], float x, float y, float z) {
   const float l = x * x + y * y + z * z;
   h[0] += kBorderWeight * (l - x * x);
@@ -265,7 +268,8 @@ MERLIN_INLINE void addBorder(float h[6], float x, float y, float z) {
   h[5] += kBorderWeight * (l - z * z);
 }
 
-// Sets kSharp if w is a thin tip or a sharp ridge. n: sum of the unit normals of its faces.
+// Sets or clears kSharp of w: whether w is a thin tip or a sharp ridge. n: sum of the unit normals
+// of its faces.
 MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
   const float upright = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   const auto faces = static_cast<float>(w.degree);
@@ -273,8 +277,8 @@ MERLIN_INLINE void setSharp(QuadricVertex& w, const float* n) {
   if (upright < kSharpMean * kSharpMean * faces * faces) w.flags |= kSharp;
 }
 
-// Sets the quadric, kSharp and channel sums of w, and out.normal, for any star. REQUIRES:
-// findRing() was called. `block`: the channel block of w; not used unless `channels`.
+// Sets the quadric, kSharp and channel sums of w, and out.normal; works for any star. `block`: the
+// channel block of w; used only if `channels`. REQUIRES: findRing() was called.
 template <bool channels>
 MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& out, float* block) {
   if (channels) clearSums(*view.channels, block);
@@ -289,8 +293,8 @@ MERLIN_INLINE void setOwn(const QuadricView& view, QuadricVertex& w, EdgeCosts& 
   }
 }
 
-// As setOwn(), for a closed fan of up to eight triangles. out.neighbour holds the first vertices of
-// its corners in order, and x, y, z their positions relative to w.
+// Does what setOwn() does, for a closed fan of up to eight triangles. out.neighbour holds the first
+// vertices of its corners in order; x, y, z are their positions relative to w.
 template <bool channels>
 MERLIN_INLINE void setOwnOfFan(const QuadricView& view, QuadricVertex& w, const Floats& x,
                                const Floats& y, const Floats& z, EdgeCosts& out, float* block) {

@@ -19,8 +19,8 @@ MERLIN_INLINE Floats dot(const Floats (&a)[3], const Point& p) {
   return a[0] * p.x + a[1] * p.y + a[2] * p.z;
 }
 
-// Squared distance from a point p to the segment from the origin to a, from the dot products of p
-// and a.
+// Returns the squared distance from a point p to the segment from the origin to a, computed from
+// the dot products of p and a.
 MERLIN_INLINE Floats segmentDistance2(const Floats& pp, const Floats& pa, const Floats& aa,
                                       const Floats& inverse_aa) {
   Floats t = pa * inverse_aa;
@@ -29,12 +29,12 @@ MERLIN_INLINE Floats segmentDistance2(const Floats& pp, const Floats& pa, const 
   return pp - t * (pa + pa - t * aa);
 }
 
-// Eight triangles (0, b, c).
+// Eight triangles, one per lane, with the vertices (origin, b, c).
 struct Triangles {
   Floats b[3], c[3];
 
-  // Reduces `nearest` to the squared distances from two points to those triangles whose lanes are
-  // set in `there`, where these are smaller.
+  // Lowers `nearest`, the squared distances from two points to the surface, where a triangle is
+  // nearer. Only triangles whose lanes are set in `there` count.
   MERLIN_INLINE void approach(const Point (&points)[2], const Ints& there,
                               Floats (&nearest)[2]) const {
     const Floats n[3] = {b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2],
@@ -60,7 +60,7 @@ struct Triangles {
   }
 };
 
-// Positions of eight vertices, relative to `to`.
+// Computes the positions of eight vertices relative to `to`.
 MERLIN_INLINE void cornersFrom(const QuadricView& view, const Ints& vertices, const float* to,
                                Floats (&corners)[3]) {
   std::uint32_t numbers[8];
@@ -71,8 +71,8 @@ MERLIN_INLINE void cornersFrom(const QuadricView& view, const Ints& vertices, co
   for (int k = 0; k < 3; ++k) corners[k] -= to[k];
 }
 
-// Triangles::approach() for the triangles that v's star keeps once v and `other` have merged at
-// `to`.
+// Calls Triangles::approach() for the triangles of v's star that remain after v and `other` have
+// merged at `to`.
 MERLIN_INLINE void approachStar(const QuadricView& view, const QuadricVertex& v,
                                 std::uint32_t other, const float* to, const Point (&points)[2],
                                 Floats (&nearest)[2]) {
@@ -80,7 +80,7 @@ MERLIN_INLINE void approachStar(const QuadricView& view, const QuadricVertex& v,
     const std::uint32_t* const corners = &view.corners[v.star + first].b;
     const std::uint32_t count = v.degree - first;
     const Ints b = firsts(corners, count);
-    Ints c = next(b);  // valid for a closed fan; replaced below for others
+    Ints c = next(b);  // valid for a closed fan; replaced below for other stars
     Triangles t;
     cornersFrom(view, b, to, t.b);
     if (!(v.flags & kOpen) && v.degree <= kLine) {

@@ -1,4 +1,4 @@
-// ReductionState: what the steps of a reduction share. Private to render/reduce.
+// ReductionState: the data that the steps of a reduction share. Private to render/reduce.
 #pragma once
 
 #include <cstddef>
@@ -18,25 +18,30 @@ inline constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
 // Maximum number of triangles in a star while the topology is kept. Useful surfaces stay below it;
 // a collapse next to a larger star would take too long.
 inline constexpr std::uint32_t kMostCorners = 128;
-// Once the topology may change, stars are unordered; the maximum is then kMostUnordered at first.
-// If a star has more than kManyCorners triangles, only a few of its edges are tried.
+// Once the topology may change, stars are unordered and their maximum number of triangles is
+// kMostUnordered at first. Of a star with more than kManyCorners triangles, only a few edges are
+// tried.
 inline constexpr std::uint32_t kManyCorners = 16, kMostUnordered = 32;
 
-// Which collapses are allowed at present.
+// The rules for collapses at the current stage of the reduction.
 struct CollapseRules {
   QuadricStage stage = QuadricStage::kAll;
-  std::uint32_t most_corners = kMostCorners;                 // of the stars that take part
-  float max_error = std::numeric_limits<float>::infinity();  // unit: mean edge length
+  // Maximum triangles of a star that takes part.
+  std::uint32_t most_corners = kMostCorners;
+  // Maximum error of a collapse [mean edge lengths].
+  float max_error = std::numeric_limits<float>::infinity();
   bool keep_components = false;
-  bool fast = false;  // accept costs up to 4 times that of the queue; use no witnesses
+  bool fast = false;  // larger tolerance() and no witnesses
 
   bool keepTopology() const noexcept { return keepsTopology(stage); }
-  // An edge is collapsed if its cost is below the upper end of its bucket times this factor.
+  // Returns the factor by which an edge's cost may exceed the upper end of its bucket; the edge is
+  // collapsed if the cost is lower.
   float tolerance() const noexcept { return fast ? 4.0F : 1.25F; }
 };
 
 struct ReductionState {
-  // The mesh must outlive the state. `channels`: their number.
+  // `input`: the mesh to reduce. `channel_count`: number of feature channels. `with`: threads to
+  // use.
   ReductionState(const mesh::Mesh& input, std::size_t channel_count, Threads with)
       : mesh(input, with),
         channels(input.vertexCount(), channel_count),
@@ -47,14 +52,15 @@ struct ReductionState {
 
   QuadricMesh mesh;
   QuadricChannels channels;
-  std::vector<float> labels;  // by vertex; empty if there are none
+  std::vector<float> labels;  // by vertex; empty if labels are not locked
   std::vector<bool> locked;   // by vertex of the input; empty if none is locked
   CollapseRules rules;
-  bool hubs = false;              // some vertex is a hub
-  HugeArray<std::uint32_t> next;  // links of the queues' lists; not in the records, to stay cached
-  HugeArray<std::uint32_t> log;   // dead vertices, in the order of their collapses
-  CollapseWorker whole;           // worker of the whole mesh; with parts: their sums
-  std::size_t triangles;          // left
+  bool hubs = false;  // whether any vertex is a hub
+  // by vertex: link of its queue list; a separate array caches better
+  HugeArray<std::uint32_t> next;
+  HugeArray<std::uint32_t> log;  // dead vertices, in the order of their collapses
+  CollapseWorker whole;          // worker of the whole mesh; takes over the sums of the parts
+  std::size_t triangles;         // number of triangles left
   Threads threads;
   bool cancelled = false;
 
@@ -64,7 +70,8 @@ struct ReductionState {
     return [this](std::uint32_t v) -> std::uint32_t& { return next[v]; };
   }
 
-  // Queues v by the cost of its cheapest edge, if it has one that may collapse.
+  // Adds v to the worker's queue. `cost`: cost of its cheapest edge; if that is kNoEdge, marks v as
+  // idle instead.
   void enqueue(CollapseWorker& w, std::uint32_t v, float cost) {
     if (cost >= kNoEdge)
       mesh[v].flags |= kIdle;

@@ -1,4 +1,5 @@
-// Eight vertices or triangles of a star at a time. Private to render/reduce.
+// SIMD helpers that process eight vertices or triangles of a star at a time. Private to
+// render/reduce.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,9 @@ namespace merlin::render::reduce {
 using simd::all, simd::kLane, simd::load, simd::store, simd::sum, simd::sums;
 using simd::Floats, simd::Ints;
 
-// Loads `floats` (3 or 4) floats from each of eight addresses and transposes them: a gets the first
-// float of each, b the second, and so on. at(k) returns address k; an array of addresses would be
-// written to memory by GCC.
+// Loads `floats` (3 or 4) floats from each of eight addresses and transposes them: a receives the
+// first float of each, b the second, and so on. at(k) returns address k; it is a callable, because
+// GCC would write an array of addresses to memory.
 template <std::size_t floats = 4, typename At>
 MERLIN_INLINE void transpose(const At& at, Floats& a, Floats& b, Floats& c, Floats& d) {
   simd::Vector<float, 16> q[8] = {};
@@ -32,19 +33,21 @@ MERLIN_INLINE void transpose(const At& at, Floats& a, Floats& b, Floats& c, Floa
   d = __builtin_shufflevector(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-// Rotates the lanes: each gets the value of the next lane, the eighth that of the first.
+// Rotates the lanes: each receives the value of the next lane, and the eighth the value of the
+// first.
 template <typename T>
 MERLIN_INLINE T next(const T& v) {
   return __builtin_shufflevector(v, v, 1, 2, 3, 4, 5, 6, 7, 0);
 }
 
-// Replaces all lanes from `count` on by the first lane.
+// Replaces all lanes from index `count` on by the first lane.
 MERLIN_INLINE Ints upTo(std::uint32_t count, const Ints& v) {
   const Ints first = __builtin_shufflevector(v, v, 0, 0, 0, 0, 0, 0, 0, 0);
   return kLane < static_cast<std::int32_t>(count) ? v : first;
 }
 
-// The first (or the second) numbers of eight pairs; pairs from `count` on repeat the first pair.
+// firsts() and seconds() return the first and the second numbers of eight pairs. Pairs from index
+// `count` on are replaced by the first pair.
 MERLIN_INLINE Ints firsts(const std::uint32_t* pairs, std::uint32_t count) {
   return upTo(count,
               __builtin_shufflevector(load(pairs), load(pairs + 8), 0, 2, 4, 6, 8, 10, 12, 14));

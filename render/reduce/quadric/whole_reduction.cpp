@@ -9,7 +9,7 @@
 namespace merlin::render::reduce {
 namespace {
 
-constexpr std::size_t kProgressTriangles = 1 << 16;  // triangles
+constexpr std::size_t kProgressTriangles = 1 << 16;  // removed between two progress calls
 
 }  // namespace
 
@@ -26,10 +26,10 @@ void WholeReduction::run(std::size_t keep, const Progress& progress) {
   }
 }
 
-// Puts all living vertices into one queue.
+// Recomputes the quadrics and puts all living vertices into one queue.
 void WholeReduction::requeue() {
   refreshQuadrics(s_);
-  // `next` first holds the costs, which are computed in parallel, then the links of the queue.
+  // s_.next first holds the costs, which are computed in parallel, then the links of the queue.
   const EvaluateEdges edges = edgeEvaluator(Evaluate::kEdges);
   forEachLiving(s_, [&](std::uint32_t v, EdgeCosts& costs) {
     const bool hub = s_.mesh[v].flags & kHub;
@@ -59,8 +59,9 @@ void WholeReduction::reduceTo(std::size_t keep, const Progress& progress) {
   }
 }
 
-// Returns the number of triangles of the smallest star above the limit: of a hub, or of a star that
-// a refused collapse would have made.
+// Returns the number of triangles of the smallest star that exceeded the limit: either of a hub, or
+// of a star that a refused collapse would have made. Returns the largest std::uint32_t if there is
+// none.
 std::uint32_t WholeReduction::smallestLeftOut() const {
   std::uint32_t smallest = s_.whole.refused_star;
   for (std::uint32_t v = 0; s_.hubs && v < s_.mesh.vertexCount(); ++v) {

@@ -12,12 +12,12 @@ namespace merlin::render::reduce {
 
 class WholeReduction {
  public:
-  // Keeps references, which must outlive it.
+  // Keeps references to both arguments, which must outlive it.
   WholeReduction(ReductionState& state, CollapseLoop& loop) : s_(state), loop_(loop) {}
 
-  // Reduces until at most `keep` triangles are left or state.rules.stage allows no more: with small
-  // stars first, where a collapse is fast, then raises the limit for what is left. The higher the
-  // limit, the fewer triangles are left.
+  // Reduces the mesh until at most `keep` triangles are left or state.rules.stage allows no more
+  // collapses. Collapses only small stars at first, where a collapse is fast; then raises the limit
+  // of the star size step by step, as more collapses become possible with a higher limit.
   void run(std::size_t keep, const Progress& progress);
 
  private:

@@ -35,7 +35,7 @@ std::string attributeOf(const Feature& f, bool textured) {
   return f.name == "normal" ? "NORMAL" : f.name == "colour" ? "COLOR_0" : "TEXCOORD_0";
 }
 
-// sRGB to linear, equation of IEC 61966-2-1.
+// Converts an sRGB value to a linear one, by the equation of IEC 61966-2-1.
 float linearOf(float srgb) {
   const float c = std::clamp(srgb, 0.0F, 1.0F);
   return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);
@@ -50,16 +50,16 @@ void adapt(const Feature& f, float* row) {
     row[1] = 1 - row[1];
   } else {
     const float length = std::hypot(row[0], row[1], row[2]);
-    const float none[] = {0, 0, 1};  // an arbitrary direction for a zero normal
+    const float none[] = {0, 0, 1};  // arbitrary direction that replaces a zero normal
     for (int k = 0; k < 3; ++k) row[k] = length > 0 ? row[k] / length : none[k];
   }
 }
 
-// Chunks and views begin at multiples of 4.
+// Rounds a size up, because chunks and views begin at multiples of 4 bytes.
 std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 
-// Size of the buffer, which holds in this order: positions, features, corners, with 4 bytes per
-// number; the picture, padded to a multiple of 4.
+// Returns the size of the buffer in bytes. The buffer holds, in this order: positions, features and
+// corners, with 4 bytes per number; then the picture, padded to a multiple of 4.
 std::uint64_t bytesIn(const Mesh& mesh) {
   std::uint64_t numbers = mesh.positions.size() + mesh.triangles.size();
   for (const Feature& f : mesh.features) numbers += carries(mesh, f) ? f.values.size() : 0;
@@ -68,7 +68,7 @@ std::uint64_t bytesIn(const Mesh& mesh) {
 
 class Document {
  public:
-  // `origin`: becomes the node's translation.
+  // `origin` becomes the node's translation.
   Document(const Mesh& mesh, const Origin& origin) : mesh_(mesh) {
     if (origin != Origin{}) node_["translation"] = origin;
     const Box box = boundingBox(mesh.positions);
@@ -88,7 +88,8 @@ class Document {
     bytes_ = bytesIn(mesh);
   }
 
-  // `uri` of the buffer; empty if the buffer is the binary chunk of a .glb file.
+  // Returns the JSON document. `uri`: URI of the buffer; empty if the buffer is the binary chunk of
+  // a .glb file.
   std::string text(const std::string& uri) const {
     Json buffer = {{"byteLength", bytes_}};
     if (!uri.empty()) buffer["uri"] = uri;
@@ -244,7 +245,8 @@ class Base64 {
 bool writeGltf(const Mesh& mesh, const Origin& origin, const std::string&,
                const WriteBytes& bytes) {
   const std::string json = Document(mesh, origin).text(kPayload);
-  // Searched for with its quotes, which no feature name can contain: quotes in names are escaped.
+  // The search includes the quotes of the key, which no feature name can imitate: quotes in names
+  // are escaped.
   const std::string uri = fmt::format("\"uri\":\"{}", kPayload);
   const std::size_t cut = json.find(uri) + uri.size();
   const auto put = [&](std::string_view text) { return bytes(std::as_bytes(std::span(text))); };

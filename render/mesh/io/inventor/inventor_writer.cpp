@@ -1,6 +1,6 @@
 // Writes Open Inventor 2.1 ASCII. Normals, colours and texture coordinates are bound per indexed
-// vertex; they have no index lists of their own, so coordIndex applies. J. Wernecke, "The Inventor
-// Mentor", 1994.
+// vertex; they have no own index lists, so coordIndex applies to them. Source: J. Wernecke, "The
+// Inventor Mentor", 1994.
 #include <fmt/format.h>
 
 #include "render/mesh/io/inventor_text.h"
@@ -9,7 +9,7 @@
 namespace merlin::render::mesh {
 namespace {
 
-// "Node { field [ a b c, ... ] }"
+// Prints "Node { field [ a b c, ... ] }" with `width` values per row.
 void printNode(TextSink& out, std::string_view node, std::string_view field,
                const std::vector<float>& values, std::size_t width) {
   out.print("  {} {{\n    {} [\n", node, field);

@@ -22,15 +22,15 @@ struct ObjCorner {
   std::uint32_t vertex = 0, texcoord = kNoTexcoord;
 };
 
-// The index from 0 for a number in the file: 1 is the first element, -1 the last one so far. An
-// invalid number becomes an index out of range, which checkCorners() refuses.
+// Returns the zero-based index for a number in the file, where 1 is the first element and -1 the
+// last one so far. An invalid number becomes an index out of range, which checkCorners() rejects.
 std::uint32_t indexOf(int number, std::size_t count) {
   const std::int64_t index =
       number > 0 ? std::int64_t{number} - 1 : static_cast<std::int64_t>(count) + number;
   return number == 0 || index < 0 ? 0xFFFFFFFF : static_cast<std::uint32_t>(index);
 }
 
-// The largest index that corners refer to, of vertices or of texture coordinates.
+// The largest index of vertices or texture coordinates that corners refer to.
 struct MaxIndex {
   std::uint32_t index = 0;
   int number = 0;  // as written in the file
@@ -49,7 +49,7 @@ struct MaxIndex {
 
 constexpr std::size_t kFirstBlock = 4096;
 
-// Lines with geometry that is not read.
+// A keyword of lines with geometry that is not read, and its name for the note.
 struct LeftOut {
   std::string_view keyword, what;
 };
@@ -65,7 +65,7 @@ class ObjParser {
   explicit ObjParser(std::string_view content) : left_(content) {}
 
   Result<ObjSurface> parse() {
-    // Refuses binary files, which may be large, before they are parsed.
+    // Rejects binary files, which may be large, before they are parsed.
     const std::size_t zero = left_.substr(0, kFirstBlock).find('\0');
     if (zero != std::string_view::npos)
       return Error{Errc::kMalformed, fmt::format("byte {} is 0: an OBJ file is text", zero)};
@@ -81,8 +81,8 @@ class ObjParser {
   }
 
  private:
-  // Whether the line goes on in the next one, i.e. ends with a backslash. In lines that hold a
-  // name, a backslash without a blank before it belongs to the name.
+  // Returns whether the line continues on the next one, i.e. ends with a backslash. In lines that
+  // hold a name, a backslash without a blank before it belongs to the name.
   static bool goesOn(std::string_view line) {
     if (!line.ends_with('\\')) return false;
     line.remove_suffix(1);
@@ -224,7 +224,8 @@ class ObjParser {
     return at->second;
   }
 
-  // Called at the end: vertices and texture coordinates may follow the faces that use them.
+  // Checks that the corners' indices are in range. Called at the end, because vertices and texture
+  // coordinates may follow the faces that use them.
   Result<Ok> checkCorners() const {
     const auto vertices = vertices_.check("vertex", surface_.mesh.vertexCount());
     return vertices ? texcoords_.check("texture coordinate", surface_.texcoords.size() / 2)
@@ -258,18 +259,18 @@ class ObjParser {
   }
 
   std::string_view left_;
-  std::string joined_;  // a line that continues on others
+  std::string joined_;  // the current line, if it was joined from several
   std::size_t line_ = 0;
   ObjSurface surface_;
   Fans fans_;
-  std::array<std::size_t, kLeftOut.size()> left_out_{};  // lines of each kind
+  std::array<std::size_t, kLeftOut.size()> left_out_{};  // number of lines of each kind in kLeftOut
   std::vector<float> colours_;
   std::unordered_map<std::string, std::uint32_t> material_numbers_{{"", 0}};
   std::uint32_t material_ = 0;
   std::string object_, group_;
   std::unordered_map<std::string, std::uint32_t> part_numbers_;
   std::optional<std::uint32_t>
-      part_;  // of the object and the group; nothing until a triangle is there
+      part_;  // Part number of the current object and group; nothing before their first triangle
   MaxIndex vertices_, texcoords_;
   bool textured_ = false;
 };

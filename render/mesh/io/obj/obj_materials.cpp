@@ -17,7 +17,7 @@
 namespace merlin::render::mesh {
 namespace {
 
-// Number of words after an option of map_Kd; -1 if `option` is not one.
+// Returns the number of words that follow an option of map_Kd; -1 if `option` is unknown.
 int wordsOf(std::string_view option) {
   constexpr std::pair<std::string_view, int> kOptions[] = {
       {"-clamp", 1}, {"-blendu", 1}, {"-blendv", 1}, {"-cc", 1}, {"-bm", 1},      {"-boost", 1},
@@ -30,7 +30,7 @@ int wordsOf(std::string_view option) {
 
 class Library {
  public:
-  // opens  whether images are read; else only their paths are kept
+  // `opens`: whether images are read; if false, only their paths are kept.
   Library(const std::vector<std::string>& names, std::string folder,
           std::vector<std::string>& notes, bool opens)
       : files_(std::move(folder)), notes_(notes), materials_(names.size()), opens_(opens) {
@@ -43,7 +43,7 @@ class Library {
       note(file.error().what + "; its materials are left out");
       return;
     }
-    ObjMaterial* material = nullptr;  // null: a material that no face uses
+    ObjMaterial* material = nullptr;  // null while the current material is one that no face uses
     for (std::string_view text = file->text(); !text.empty();) {
       std::string_view line = takeUncommented(text);
       const std::string_view keyword = takeWord(line);
@@ -96,7 +96,7 @@ class Library {
       std::string_view after = rest;
       const std::string_view option = takeWord(after);
       int words = wordsOf(option);
-      if (words < 0) break;  // a file name that begins with '-'
+      if (words < 0) break;  // `rest` is a file name that begins with '-'
       if (option == "-s" || option == "-o")
         note(fmt::format("map_Kd {}: the option {} is ignored", excerpt(line), option));
       float number = 0;
@@ -126,7 +126,7 @@ class Library {
     return picture;
   }
 
-  std::map<std::string, std::size_t, std::less<>> numbers_;  // by name
+  std::map<std::string, std::size_t, std::less<>> numbers_;  // index of each material, by name
   CompanionFinder files_;
   std::vector<std::string>& notes_;
   std::size_t noted_ = 0;
@@ -138,7 +138,7 @@ class Library {
 
 constexpr std::size_t kMostLibraries = 64;
 
-// Reads the first kMostLibraries libraries. Returns whether these were all.
+// Reads the first kMostLibraries different libraries. Returns whether these were all.
 bool readAll(const std::vector<std::string>& libraries, Library& library) {
   std::set<std::string_view> named;
   for (const std::string& name : libraries) {

@@ -1,4 +1,5 @@
-// Materials of an OBJ file: a texture image or one diffuse colour. Private to render/mesh/io.
+// Reads the materials of an OBJ file: each has a texture image, or one diffuse colour. Private to
+// render/mesh/io.
 #pragma once
 
 #include <array>
@@ -31,7 +32,7 @@ std::vector<ObjMaterial> readMaterials(const std::vector<std::string>& names,
                                        const std::vector<std::string>& libraries,
                                        const std::string& folder, std::vector<std::string>& notes);
 
-// The paths of the images that readMaterials() would read, each once. Opens no image.
+// Returns the paths of the images that readMaterials() would read, each once. Opens no image.
 std::vector<std::string> picturesOf(const std::vector<std::string>& names,
                                     const std::vector<std::string>& libraries,
                                     const std::string& folder);

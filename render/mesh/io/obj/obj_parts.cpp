@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 using Labels = std::vector<std::uint32_t>;
-// By vertex and part: the part's own copy of the vertex; kNone until it is made.
+// Key: vertex and part. Value: the part's own copy of the vertex; kNone until it is made.
 using Twins = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
 
 Labels lowestParts(const std::vector<std::uint32_t>& part_of, const Mesh& mesh) {
@@ -23,8 +23,8 @@ Labels lowestParts(const std::vector<std::uint32_t>& part_of, const Mesh& mesh) 
   return labels;
 }
 
-// Returns the copies that are needed: of the first corner of each triangle that has no corner with
-// its part's label.
+// Returns the keys of the copies that are needed: for each triangle that has no corner with its
+// part's label, its first corner.
 Twins needed(const std::vector<std::uint32_t>& part_of, const Mesh& mesh, const Labels& labels) {
   Twins twins;
   for (std::size_t t = 0; t < part_of.size(); ++t) {

@@ -9,11 +9,11 @@
 
 namespace merlin::render::mesh {
 
-// Adds "label" (1): for each vertex the lowest part number of its triangles. So the part of a
-// triangle is the highest label of its corners, as after weldParts(). If no corner of a triangle
-// has the label of its part, the first corner is replaced by a copy, at the same position, that has
-// this label. The surface stays connected everywhere else. O(n log n).
-// part_of  by triangle: the number of its part
+// Adds the feature "label" (1): for each vertex the lowest part number of its triangles. So the
+// part of a triangle is the highest label of its corners, as after weldParts(). If no corner of a
+// triangle has the label of its part, the first corner is replaced by a copy, at the same position,
+// that has this label. The surface stays connected everywhere else. O(n log n).
+// `part_of`: for each triangle, the number of its part.
 void labelParts(const std::vector<std::uint32_t>& part_of, Mesh& mesh);
 
 }  // namespace merlin::render::mesh

@@ -1,4 +1,4 @@
-// Reads OBJ files and the texture images of their materials: a row of the table of readers.
+// Reads OBJ files and the texture images of their materials; defines a row of the table of readers.
 #include <algorithm>
 #include <functional>
 #include <iterator>
@@ -41,15 +41,16 @@ Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   return loaded;
 }
 
-// Counts what an OBJ file has, line by line, and keeps nothing but names.
+// Counts the elements of an OBJ file line by line; keeps only names.
 class ObjCounts {
  public:
   explicit ObjCounts(std::string_view content) {
     while (!content.empty()) count(takeLine(content));
   }
 
-  // Estimates the memory. While reading, the triangles' corners are kept twice, and vectors grow to
-  // twice their size; a vertex at a seam of a texture becomes several.
+  // Estimates the size and the memory. While a file is read, the corners of triangles are kept
+  // twice and vectors grow to twice their size; a vertex at a texture seam becomes several
+  // vertices.
   MeshFileSize size(const std::string& folder) const {
     const bool dressed = texcoords_ > 0 || names_.size() > 1;
     MeshFileSize size;
@@ -89,15 +90,15 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
   return ObjCounts(content).size(folder);
 }
 
-// Whether a line can belong to an OBJ file, judged by its first word.
+// Returns whether a line can belong to an OBJ file, judged by its first word.
 bool canBeObjLine(std::string_view word) {
   constexpr std::string_view kWords[] = {"v", "vt", "vn", "vp", "f",      "l",
                                          "p", "o",  "g",  "s",  "mtllib", "usemtl"};
   return word.empty() || std::ranges::find(kWords, word) != std::end(kWords);
 }
 
-// OBJ files have no magic number. So the first lines have to be lines of OBJ, with a vertex among
-// them.
+// Returns whether a file is OBJ. Since OBJ files have no magic number, all of the first lines must
+// be lines of OBJ, with a vertex among them.
 bool isObj(std::string_view content) {
   constexpr std::size_t kLooked = std::size_t{1} << 16;
   const bool all = content.size() <= kLooked;

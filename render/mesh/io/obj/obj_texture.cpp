@@ -10,14 +10,14 @@
 namespace merlin::render::mesh {
 namespace {
 
-// A combination of vertex, texture coordinate and material that corners have in common.
+// A combination of vertex, texture coordinate and material that one or more corners have.
 struct Wedge {
   std::uint32_t vertex, texcoord, material;
   bool operator==(const Wedge&) const = default;
 };
 
-// Numbers the wedges: the first wedge of each vertex has the index of the vertex, the others are
-// appended behind all vertices. The wedges of a vertex form a linked list of at most kLongest
+// Numbers the wedges: the first wedge of each vertex has the index of the vertex; the others are
+// appended after all vertices. The wedges of a vertex form a linked list of at most kLongest
 // entries; further wedges are found through a map.
 class Wedges {
  public:
@@ -58,7 +58,7 @@ class Wedges {
   std::map<std::array<std::uint32_t, 3>, std::uint32_t> others_;
 };
 
-// Returns the wedges; `triangles` receives the wedge of each corner.
+// Returns the wedges of a surface; `triangles` receives the index of each corner's wedge.
 std::vector<Wedge> wedgesOf(const ObjSurface& surface, std::vector<std::uint32_t>& triangles) {
   Wedges wedges(surface.mesh.vertexCount());
   triangles.resize(surface.mesh.triangles.size());
@@ -69,7 +69,7 @@ std::vector<Wedge> wedgesOf(const ObjSurface& surface, std::vector<std::uint32_t
   return wedges.take();
 }
 
-// Merges materials with the same content, so that no seam runs between them.
+// Merges materials with the same content, so that there is no seam between them.
 void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
   std::vector<std::uint32_t> same(materials.size());
   std::map<ObjMaterial, std::uint32_t> first;
@@ -78,8 +78,8 @@ void mergeMaterials(ObjSurface& surface, const std::vector<ObjMaterial>& materia
   for (std::uint32_t& m : surface.triangle_material) m = same[m];
 }
 
-// Returns the pictures, one for each material, and the triangles that show them: those whose
-// corners all have texture coordinates.
+// Returns the picture of each material, and for each triangle which one it shows. A triangle shows
+// a picture only if all of its corners have texture coordinates.
 SurfaceTextures texturesOf(const ObjSurface& surface, const std::vector<ObjMaterial>& materials) {
   SurfaceTextures all;
   for (const ObjMaterial& m : materials)
@@ -111,7 +111,7 @@ class Dresser {
   }
 
   std::array<float, 3> colourOf(const Wedge& w) const {
-    if (own_) {  // vertex colours are kept beside the texture, as from PLY files
+    if (own_) {  // vertex colours are kept in addition to the texture, as in PLY files
       const float* c = &own_->values[3 * std::size_t{w.vertex}];
       return {c[0], c[1], c[2]};
     }

@@ -12,7 +12,7 @@ std::string material(const Mesh& mesh, const std::string& name) {
   return "# written by MERLIN\nnewmtl textured\nKd 1 1 1\nmap_Kd " + pictureName(mesh, name) + "\n";
 }
 
-// Numbers are printed with the fewest digits that give the same double, or the same float where
+// Prints a position with the fewest digits that reproduce the same double, or the same float if
 // there is no origin.
 void printPosition(TextSink& out, const float* p, const Origin& origin) {
   if (origin == Origin{})

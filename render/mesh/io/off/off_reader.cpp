@@ -1,4 +1,4 @@
-// Reads ASCII OFF files: a row of the table of readers.
+// Reads ASCII OFF files; defines a row of the table of readers.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -19,7 +19,7 @@ Error malformed(std::size_t line, const std::string& what) {
   return {Errc::kMalformed, fmt::format("line {}: {}", line, what)};
 }
 
-// Which values follow the coordinates of each vertex; the first word of the file declares them.
+// The values that follow the coordinates of each vertex, as declared by the first word of the file.
 struct Form {
   bool normal = false, colour = false, texcoord = false;
 };
@@ -96,8 +96,9 @@ class OffFile {
   }
 
  private:
-  // Many programs write colours of vertices without the C. They are taken for colours until a
-  // vertex lacks them or has a negative one.
+  // Guesses from the first vertex whether vertices have colours. Many programs write colours of
+  // vertices without the C in the first word; they are treated as colours until a vertex lacks them
+  // or has a negative one.
   void guessColours() {
     if (form_.colour || form_.texcoord || vertices_ == 0) return;
     const auto here = std::pair(rest_, line_);
@@ -119,7 +120,7 @@ class OffFile {
     return true;
   }
 
-  // The next line that is neither blank nor a comment; empty at the end of the file.
+  // Returns the next line that is neither blank nor a comment; empty at the end of the file.
   std::string_view nextLine() {
     while (!rest_.empty()) {
       const std::string_view line = trimmed(takeUncommented(rest_));
@@ -138,7 +139,8 @@ class OffFile {
     return true;
   }
 
-  // Coordinates stay doubles until they are relative to an origin near the first vertex.
+  // Reads a position. Coordinates stay doubles until the origin, which is near the first vertex,
+  // has been subtracted.
   bool takePosition(std::string_view& line) {
     std::array<double, 3> p{};
     for (double& x : p) {
@@ -174,8 +176,9 @@ class OffFile {
     return Ok{};
   }
 
-  // Takes what follows a face's corners as the colour of the last `triangles`: red, green, blue and
-  // perhaps opacity. A single number is that of a colour in a table, which the file does not have.
+  // Takes the numbers after a face's corners (red, green, blue and possibly opacity) as the colour
+  // of the last `triangles` triangles. A single number would be an index into a colour table, which
+  // the file does not contain; it counts as unread.
   void takeFaceColour(std::string_view line, std::size_t triangles) {
     if (trimmed(line).empty()) return;
     std::vector<float> colour;
@@ -188,7 +191,7 @@ class OffFile {
       facet_colours_.insert(facet_colours_.end(), colour.begin(), colour.end());
   }
 
-  // Adds a polygon as a triangle fan, which body() cuts anew if it is not convex.
+  // Adds a polygon as a triangle fan; body() later triangulates it differently if it is not convex.
   Result<Ok> addFace(std::string_view line, std::size_t i) {
     if (line.empty())
       return malformed(line_, fmt::format("the file ends after {} of {} faces", i, faces_));
@@ -217,12 +220,12 @@ class OffFile {
   Form form_;
   std::size_t vertices_ = 0, faces_ = 0;
   bool has_alpha_ = false;
-  bool guessed_ = false, wrong_guess_ = false;  // that the vertices have colours, without the C
-  std::size_t unread_colours_ = 0;              // of faces
-  std::vector<float> facet_colours_;            // up to the last face that has one
+  bool guessed_ = false, wrong_guess_ = false;  // guess that vertices have colours; guess was wrong
+  std::size_t unread_colours_ = 0;              // number of faces whose colours were not read
+  std::vector<float> facet_colours_;            // up to the last face that has a colour
   Mesh mesh_;
   Fans fans_;
-  Origin origin_{};  // of the positions
+  Origin origin_{};  // offset subtracted from the positions
   Feature normal_{"normal", 3, {}}, colour_{"colour", 3, {}}, texcoord_{"texcoord", 2, {}};
 };
 
@@ -239,7 +242,7 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string&) {
   return MeshFileSize{file.size()};
 }
 
-// Skips comments, which may come before the first word.
+// Returns whether a file is OFF; skips comments before the first word.
 bool isOff(std::string_view content) {
   constexpr std::size_t kLooked = 4096;
   content = content.substr(0, kLooked);

@@ -52,7 +52,8 @@ Collector::FaceHandle Collector::add_face(HalfedgeHandle h) {
 }
 
 void Collector::set_next(HalfedgeHandle h, HalfedgeHandle next) {
-  if (next.is_valid()) next_[checked(h)] = checked(next);  // a border may have none
+  // A half-edge at a border may have no next one.
+  if (next.is_valid()) next_[checked(h)] = checked(next);
 }
 
 // Follows the loop of half-edges of each face and adds its corners. A half-edge belongs to one

@@ -18,7 +18,7 @@
 
 namespace merlin::render::mesh {
 
-// Thrown while OpenMesh's reader calls a Collector, and caught in openmesh_reader.cpp.
+// Exception that a Collector throws into OpenMesh's reader; openmesh_reader.cpp catches it.
 class BrokenFile : public std::runtime_error {
   using runtime_error::runtime_error;
 };
@@ -31,8 +31,8 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   using FaceHandle = OpenMesh::FaceHandle;
   using Status = OpenMesh::Attributes::StatusInfo;
 
-  // `most`: upper limit for each of the numbers of vertices, faces, corners and half-edges: as many
-  // as the file can hold.
+  // `most`: upper limit for each of the numbers of vertices, faces, corners and half-edges, so that
+  // a damaged file cannot allocate more than it can hold.
   explicit Collector(std::size_t most) : most_(most) {}
 
   // Returns the collected mesh, with polygons as triangle fans. Throws BrokenFile if the half-edges
@@ -46,7 +46,8 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_point(VertexHandle v, const OpenMesh::Vec3f& p) override;
   FaceHandle add_face(const VHandles& corners) override;
 
-  // Half-edges, numbered as in an OM file: edge e has the half-edges 2 e and 2 e + 1.
+  // The next three functions receive half-edges, numbered as in an OM file: edge e has the
+  // half-edges 2 e and 2 e + 1.
   HalfedgeHandle add_edge(VertexHandle from, VertexHandle to) override;
   FaceHandle add_face(HalfedgeHandle h) override;
   void set_next(HalfedgeHandle h, HalfedgeHandle next) override;
@@ -64,7 +65,7 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_texcoord(VertexHandle v, const OpenMesh::Vec2f& t) override { set(texcoord_, v, t, 1); }
   void set_texcoord(VertexHandle v, const OpenMesh::Vec3f& t) override { set(texcoord_, v, t, 1); }
 
-  // Ignored: status flags, and properties of faces, edges and half-edges.
+  // The following are ignored: status flags, and properties of faces, edges and half-edges.
   void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<OpenMesh::Vec2f>&) override {}
   void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<OpenMesh::Vec3f>&) override {}
   void set_face_texindex(FaceHandle, int) override {}
@@ -87,8 +88,8 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_color(FaceHandle, const OpenMesh::Vec4f&) override {}
   void add_texture_information(int, std::string) override {}
 
-  // OpenMesh looks up an OM file's custom properties in this mesh; it has none, so they are
-  // skipped.
+  // OpenMesh looks up an OM file's custom properties in this mesh. The mesh has none, so OpenMesh
+  // skips them.
   OpenMesh::BaseKernel* kernel() override { return &empty_; }
   std::size_t n_vertices() const override { return vertices(); }
   std::size_t n_faces() const override { return faces(); }
@@ -98,7 +99,8 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   std::uint32_t checked(VertexHandle v) const;
   std::uint32_t checked(HalfedgeHandle h) const;
   void addLoops();
-  // Values of a feature, up to the last vertex that was set; take() appends zeros for the others.
+  // Values of a feature, up to the last vertex that was set; take() appends zeros for the remaining
+  // vertices.
   struct Values {
     std::size_t dimension;
     std::vector<float> values;
@@ -116,7 +118,7 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   std::size_t most_;
   std::vector<float> positions_;
   std::vector<std::uint32_t> corners_;
-  std::vector<std::size_t> face_begin_;  // index into corners_
+  std::vector<std::size_t> face_begin_;  // by face: index of its first corner in corners_
   std::vector<std::uint32_t> to_, next_, face_halfedge_;
   Values normal_{3, {}}, colour_{3, {}}, texcoord_{2, {}};
   OpenMesh::PolyMesh_ArrayKernelT<> empty_;

@@ -1,5 +1,6 @@
-// Reads OM and STL files with OpenMesh's readers: two rows of the table of readers. A Collector
-// stores what they find; its counts are then compared with those in the file's header.
+// Reads OM and STL files with OpenMesh's readers; defines two rows of the table of readers. A
+// Collector stores the vertices and faces; their counts are then compared with those in the file's
+// header.
 #include <algorithm>
 #include <cstring>
 #include <istream>
@@ -25,7 +26,7 @@ using OpenMesh::IO::Options;
 class Buffer final : public std::streambuf {
  public:
   explicit Buffer(std::string_view content) {
-    char* const begin = const_cast<char*>(content.data());  // never written to
+    char* const begin = const_cast<char*>(content.data());  // the buffer never writes to it
     setg(begin, begin, begin + content.size());
   }
 
@@ -50,8 +51,9 @@ struct Counts {
 
 Error malformed(const std::string& what) { return {Errc::kMalformed, what}; }
 
-// Reads with OpenMesh. The stream throws at its end, which stops loops whose count exceeds the
-// file. Whether the file was complete is decided by the counts, not by the reader's result.
+// Reads a mesh with OpenMesh. The stream throws at its end, which stops loops whose count exceeds
+// the file. The counts of vertices and faces, not the reader's result, decide whether the file was
+// complete.
 Result<Mesh> collect(OpenMesh::IO::BaseReader& reader, std::string_view content,
                      const Counts& promised, Options options) {
   Collector collector(content.size() + 1);
@@ -82,7 +84,8 @@ Result<Mesh> collect(OpenMesh::IO::BaseReader& reader, std::string_view content,
 constexpr std::pair<const char*, std::size_t> kFeatures[] = {
     {"normal", 3}, {"colour", 3}, {"texcoord", 2}};
 
-// Packs a mesh as positions, triangles and features; each array follows its length.
+// append(), takeFrom(), packed() and unpacked() convert a mesh to bytes and back: positions,
+// triangles and features, each array after its length.
 template <typename T>
 void append(std::string& to, const std::vector<T>& values) {
   const std::uint64_t size = values.size();
@@ -122,10 +125,11 @@ Mesh unpacked(std::string_view bytes) {
   return mesh;
 }
 
-// Reads in a child process: assertions of Debian's OpenMesh end the program at a damaged file.
+// Reads a mesh in a child process, because assertions in Debian's OpenMesh end the process if a
+// file is damaged.
 Result<LoadedMesh> readBy(OpenMesh::IO::BaseReader& reader, std::string_view content,
                           const Counts& promised, const Options& options) {
-  constexpr std::size_t kBytesPerSecond = 100'000;  // of CPU time; OpenMesh is 100 times as fast
+  constexpr std::size_t kBytesPerSecond = 100'000;  // CPU time limit; OpenMesh is 100 times as fast
   const std::chrono::seconds limit(10 + content.size() / kBytesPerSecond);
   const auto bytes = inChild(
       [&]() -> Result<std::string> {
@@ -140,8 +144,8 @@ Result<LoadedMesh> readBy(OpenMesh::IO::BaseReader& reader, std::string_view con
   return loaded;
 }
 
-// False if the header declares more vertices or faces than the file has bytes; checked before any
-// memory is allocated.
+// Returns false if the header declares more vertices or faces than the file has bytes. Checked
+// before any memory is allocated.
 bool possible(const Counts& counts, std::string_view content) {
   return counts.vertices <= content.size() && counts.faces <= content.size();
 }
@@ -153,7 +157,8 @@ std::uint32_t littleEndian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-// Size of: "OM", the kind of mesh, the version, then the numbers of vertices, faces and edges.
+// Size in bytes of an OM header: "OM", the kind of mesh, the version, then the numbers of vertices,
+// faces and edges.
 constexpr std::size_t kOmHeader = 16;
 
 Result<Counts> omCounts(std::string_view content) {
@@ -177,8 +182,9 @@ std::optional<MeshFileSize> omSize(std::string_view content, const std::string&)
   return MeshFileSize{{counts->vertices, counts->faces, 0}, {}};
 }
 
-// The size of a binary file follows from its count of triangles. ASCII files begin with "solid",
-// but so do some binary files.
+// Returns whether a file is a complete binary STL, for which its size must match its count of
+// triangles. The first word does not show this: ASCII files begin with "solid", but so do some
+// binary ones.
 bool isBinaryStl(std::string_view content) {
   return content.size() >= kStlHeader &&
          content.size() == kStlHeader + kStlTriangle * littleEndian(content, 80);
@@ -196,7 +202,8 @@ Result<LoadedMesh> readBinaryStl(std::string_view content) {
   return loaded;
 }
 
-// OpenMesh merges corners at the same position, which STL repeats in each triangle.
+// Reads an STL file. OpenMesh merges corners at the same position, which STL repeats in each
+// triangle.
 Result<LoadedMesh> readStl(std::string_view content, const std::string&) {
   if (isBinaryStl(content)) return readBinaryStl(content);
   if (lowerCase(content.substr(0, 5)) != "solid")
@@ -219,7 +226,7 @@ std::optional<MeshFileSize> stlSize(std::string_view content, const std::string&
   return MeshFileSize{{3 * *facets, *facets, 0}, content.size()};  // readStl() copies the text
 }
 
-// The third byte of an OM file is the kind of mesh, the fourth the version.
+// Returns whether a file is OM. The third byte is the kind of mesh, the fourth the version.
 bool isOm(std::string_view content) {
   return content.size() >= kOmHeader && content.starts_with("OM") &&
          std::string_view("TQP").find(content[2]) != std::string_view::npos &&

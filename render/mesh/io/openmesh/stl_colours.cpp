@@ -14,7 +14,7 @@ unsigned byteAt(std::string_view bytes, std::size_t at) {
   return static_cast<unsigned char>(bytes[at]);
 }
 
-// The five bits that begin at bit `lowest`, as a share.
+// Returns the five bits from bit `lowest` on as a fraction (0..1).
 float channel(unsigned attribute, unsigned lowest) {
   return static_cast<float>((attribute >> lowest) & 31U) / 31.0F;
 }
@@ -66,7 +66,7 @@ StlColours coloursOfVisCam(std::string_view content) {
 
 StlColours stlColours(std::string_view content) {
   constexpr std::string_view kMark = "COLOR=";
-  constexpr std::size_t kTextBytes = 80;  // of the header; the number of triangles follows
+  constexpr std::size_t kTextBytes = 80;  // bytes of header text; the number of triangles follows
   const std::size_t mark = content.substr(0, kTextBytes).find(kMark);
   if (mark == std::string_view::npos || mark + kMark.size() + 4 > kTextBytes)
     return coloursOfVisCam(content);

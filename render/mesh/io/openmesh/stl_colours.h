@@ -8,15 +8,18 @@
 
 namespace merlin::render::mesh {
 
-// Sizes of the header, with the number of triangles, and of a triangle, with its two colour bytes
-// [bytes].
+// Sizes of the header including the number of triangles, and of one triangle including its two
+// colour bytes [bytes].
 inline constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
 struct StlColours {
-  std::vector<float> of_triangles;  // triangles x 3, each 0..1; empty: the file has none
-  std::size_t unread = 0;           // triangles whose two bytes are neither 0 nor a colour
+  std::vector<float> of_triangles;  // triangles x 3, each 0..1; empty: the file has no colours
+  // Number of triangles whose two bytes are neither 0 nor a colour.
+  std::size_t unread = 0;
 };
 
+// Returns the colours of the triangles of a binary STL file.
+//
 // STL has no standard for colours; two conventions are in use, each with five bits per channel.
 // Materialise Magics writes "COLOR=" and the object's red, green, blue and opacity, one byte each,
 // into the header; a triangle has its own colour, red in the lowest bits, if its highest bit is 0.

@@ -37,7 +37,7 @@ class StlText {
   }
 
  private:
-  // Returns what is wrong with the line; empty if nothing is.
+  // Returns an error message about the line, or an empty text if the line is correct.
   std::string take(const std::string& word, std::string_view line) {
     ended_ = word == "endsolid";
     if (word == "vertex") return takeVertex(line);
@@ -92,7 +92,7 @@ class StlText {
   std::string_view left_;
   std::size_t line_ = 0, facets_ = 0, loops_ = 0, vertices_ = 0;
   bool in_facet_ = false, in_loop_ = false;
-  bool ended_ = false;  // the last line that is not empty is endsolid
+  bool ended_ = false;  // whether the last non-empty line was endsolid
 };
 
 }  // namespace

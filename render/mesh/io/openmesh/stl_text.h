@@ -1,4 +1,4 @@
-// Checks ASCII STL files, since OpenMesh's reader skips what it does not understand. Private to
+// Checks ASCII STL files, since OpenMesh's reader silently skips malformed text. Private to
 // render/mesh/io.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace merlin::render::mesh {
 
-// Whether `content`, the beginning of a file, is ASCII STL. Ignores the case of letters.
+// Returns whether `content`, the beginning of a file, is ASCII STL. Ignores the case of letters.
 bool isStlText(std::string_view content);
 
 // Checks a whole file and returns its number of facets. Each facet must be one loop of three

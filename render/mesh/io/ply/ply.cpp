@@ -20,14 +20,14 @@
 namespace merlin::render::mesh::ply {
 namespace {
 
-// Where the values of one vertex property go: a column in a table of floats.
+// The destination of the values of one vertex property: a column in a table of floats.
 struct Column {
-  std::vector<float>* values = nullptr;  // null: skipped
+  std::vector<float>* values = nullptr;  // null: the property is skipped
   std::size_t stride = 1;
   std::size_t offset = 0;
   float scale = 1;
   bool whole = false;  // the property has an integer type
-  double origin = 0;   // is subtracted
+  double origin = 0;   // is subtracted from each value
 
   bool isOf(const Column& o) const { return values == o.values && offset == o.offset; }
 };
@@ -46,7 +46,8 @@ bool isKnownFeature(std::string_view name) {
                      [&](const PropertyMapping& k) { return name == k.feature; });
 }
 
-// The factor that turns integer colours into fractions of the range of their type; else 1.
+// Returns the factor that turns integer colours into fractions of the range of their type; 1 for
+// all other properties.
 float scaleOf(const PropertyMapping* known, Scalar type) {
   if (!known || std::string_view(known->feature) != "colour") return 1;
   if (type == Scalar::kUint8) return 1.0F / 255;
@@ -56,8 +57,8 @@ float scaleOf(const PropertyMapping* known, Scalar type) {
 
 constexpr std::size_t kNotNumbered = std::numeric_limits<std::size_t>::max();
 
-// Splits "heat_2" into "heat" and 2. The number is kNotNumbered for any other name, also if our
-// writer would format it differently ("heat_02").
+// Splits "heat_2" into "heat" and 2. For any other name, and if our writer would format the number
+// differently ("heat_02"), the number is kNotNumbered.
 std::pair<std::string_view, std::size_t> numbered(std::string_view name) {
   const std::size_t bar = name.rfind('_');
   if (bar == std::string_view::npos || bar == 0) return {name, kNotNumbered};
@@ -69,7 +70,8 @@ std::pair<std::string_view, std::size_t> numbered(std::string_view name) {
   return whole ? std::pair(name.substr(0, bar), number) : std::pair(name, kNotNumbered);
 }
 
-// Joins successive scalars "flow_0", "flow_1", ... to the feature "flow" that our writer split.
+// Joins successive scalars "flow_0", "flow_1", ... to the feature "flow", which our writer has
+// split into them.
 std::vector<Feature> grouped(std::vector<Feature> features, std::size_t vertices) {
   std::vector<Feature> groups;
   for (std::size_t first = 0, end = 0; first < features.size(); first = end) {
@@ -97,13 +99,13 @@ std::vector<Feature> grouped(std::vector<Feature> features, std::size_t vertices
   return groups;
 }
 
-// Texture coordinates of a corner that has none.
+// Texture coordinates that mark a corner without texture coordinates.
 constexpr std::array<float, 2> kNowhere = {std::numeric_limits<float>::quiet_NaN(),
                                            std::numeric_limits<float>::quiet_NaN()};
 
 class Reader {
  public:
-  // textures  null: the faces' properties of textures are left out
+  // `textures`: receives the faces' textures; null: they are left out.
   Reader(std::string_view bytes, Header header, FaceTextures* textures)
       : header_(std::move(header)),
         text_(bytes.substr(header_.size)),
@@ -131,8 +133,9 @@ class Reader {
  private:
   Mesh& mesh() { return loaded_.mesh; }
 
-  // Returns a message about the first ASCII row with too many numbers; empty if there is none.
-  // Without it, such a row would be noticed only later in the file, or not at all.
+  // Returns a message about the first row of an ASCII file that has too many numbers; empty if
+  // there is none. Without this check, such a row would cause an error only later in the file, or
+  // none at all.
   std::string longRowOfText() const {
     return header_.form == Form::kAscii ? longRow(text_, header_) : std::string();
   }
@@ -141,8 +144,8 @@ class Reader {
     return row.empty() ? error : Error{Errc::kMalformed, row};
   }
 
-  // Refuses a count of elements for which the rest of the file is too short, before any memory is
-  // allocated.
+  // Returns an error if the rest of the file is too short for the declared count of elements.
+  // Called before any memory is allocated.
   Result<Ok> checkRoom(const Element& e) const {
     const std::size_t least = std::max<std::size_t>(e.leastBytes(header_.form), 1);
     const std::size_t room = (body_.left() + 1) / least;
@@ -198,9 +201,10 @@ class Reader {
 
   Result<std::vector<Column>> planColumns(const Element& e) {
     constexpr std::string_view kAxes = "xyz";
-    unsigned axes = 0;  // those found, one bit each
+    unsigned axes = 0;  // coordinates that were found, one bit each
     mesh().positions.assign(e.count * 3, 0);
-    mesh().features.reserve(e.properties.size());  // columns point into it: no reallocation
+    // Prevents reallocation, since columns point into it.
+    mesh().features.reserve(e.properties.size());
     std::vector<Column> columns;
     for (const Property& p : e.properties) {
       Column c;
@@ -269,7 +273,7 @@ class Reader {
     return Ok{};
   }
 
-  // Coordinates that are doubles become relative to an origin near the first vertex. The first
+  // Makes coordinates that are doubles relative to an origin near the first vertex. The first
   // vertex has been read already, so it is moved here.
   void setOrigin(const Element& e, const std::array<double, 3>& first,
                  std::vector<Column>& columns) {
@@ -342,12 +346,12 @@ class Reader {
 
   void colourFace(std::size_t first) {
     std::vector<float>& all = loaded_.facet_colours;
-    all.resize(3 * first, kNoColour);  // for faces of another element
+    all.resize(3 * first, kNoColour);  // for triangles of an earlier element
     for (std::size_t t = first; t < mesh().triangleCount(); ++t)
       all.insert(all.end(), face_colour_.begin(), face_colour_.end());
   }
 
-  // Drops colours of faces if vertices have colours, which are finer.
+  // Completes the colours of faces, or drops them if vertices have colours, which are finer.
   void takeFacetColours() {
     std::vector<float>& all = loaded_.facet_colours;
     if (!all.empty() && mesh().find("colour")) {
@@ -369,12 +373,13 @@ class Reader {
     return Ok{};
   }
 
-  // Notes the texture of a face's triangles, which form a fan around its first corner.
+  // Stores the textures of the last face's triangles, which form a fan around its first corner.
+  // first: index of its first triangle.
   void textureFace(std::size_t first, const std::vector<FaceProperty>& uses) {
     const auto has = [&](FaceProperty u) { return std::ranges::find(uses, u) != uses.end(); };
     const std::size_t triangles = mesh().triangleCount() - first;
     if (has(FaceProperty::kTexnumber)) {
-      textures_->numbers.resize(first, -1);  // for faces of another element
+      textures_->numbers.resize(first, -1);  // for triangles of an earlier element
       const bool whole = std::abs(face_number_) < 1e9;
       textures_->numbers.resize(first + triangles,
                                 whole ? static_cast<std::int64_t>(face_number_) : -1);
@@ -457,15 +462,16 @@ class Reader {
     return Ok{};
   }
 
-  // Adds empty values for the last triangles if these are strips, or faces of an element without
-  // textures.
+  // Appends entries without texture for the last triangles, if these are strips or faces of an
+  // element without textures.
   void completeTextures() {
     if (!textures_) return;
     if (!textures_->numbers.empty()) textures_->numbers.resize(mesh().triangleCount(), -1);
     if (!textures_->corners.empty()) textures_->corners.resize(mesh().triangles.size(), kNowhere);
   }
 
-  // Cuts faces that are not convex anew; the coordinates at their corners are reordered with them.
+  // Triangulates faces that are not convex again; the texture coordinates at their corners are
+  // reordered accordingly.
   void cutFans() {
     fans_.cut(mesh(), [this](const Fan& fan, std::span<const std::uint32_t> order) {
       if (textures_ && !textures_->corners.empty()) reorder(fan, order, textures_->corners);
@@ -488,13 +494,13 @@ class Reader {
   }
 
   Header header_;
-  std::string_view text_;  // all of the body
+  std::string_view text_;  // the whole body of the file
   Body body_;
   LoadedMesh loaded_;
   Fans fans_;
   FaceTextures* textures_;
-  std::vector<float> face_texcoords_;   // of this face
-  std::array<float, 3> face_colour_{};  // of this face
+  std::vector<float> face_texcoords_;   // of the current face
+  std::array<float, 3> face_colour_{};  // of the current face
   double face_number_ = -1;
   std::string left_out_, left_out_more_;  // names of properties and elements
   std::size_t left_out_count_ = 0, rounded_ = 0;

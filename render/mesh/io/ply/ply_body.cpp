@@ -13,7 +13,8 @@ constexpr std::uint32_t kMostVertices = std::uint32_t{1} << 31;
 
 bool isSpace(char c) noexcept { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
-// The unsigned integer of 1, 2, 4 or 8 bytes at `p`.
+// Returns the unsigned integer of `size` (1, 2, 4 or 8) bytes at `p`; `big`: whether it is
+// big-endian.
 std::uint64_t load(const char* p, std::size_t size, bool big) noexcept {
   std::uint64_t v = 0;
   switch (size) {  // with a constant size, memcpy is one load instruction

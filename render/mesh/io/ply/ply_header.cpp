@@ -87,7 +87,7 @@ class HeaderParser {
 
   Result<Ok> keyword(const Words& words) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return Ok{};
-    // Names are limited, since messages quote them.
+    // The length of names is limited, since messages quote them.
     if (words.back().size() > kLongestName || (words.size() > 1 && words[1].size() > kLongestName))
       return bad(header_.lines, fmt::format("a name is longer than {} bytes", kLongestName));
     if (words[0] == "format") return format(words);

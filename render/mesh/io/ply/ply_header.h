@@ -36,22 +36,23 @@ struct Element {
   std::uint64_t count = 0;
   std::vector<Property> properties;
 
-  // Minimum size of one such element [bytes]; limits how many a file of a given size can hold.
+  // Returns the minimum size of one such element [bytes], which limits how many of them a file of a
+  // given size can hold.
   std::size_t leastBytes(Form form) const noexcept;
 };
 
 struct Header {
   Form form = Form::kAscii;
   std::vector<Element> elements;
-  std::vector<std::string> pictures;  // from MeshLab's comments "TextureFile"; each once
-  std::size_t size = 0;               // [bytes]; the body starts there
-  std::size_t lines = 0;              // lines of the header, for messages
+  std::vector<std::string> pictures;  // file names in MeshLab's comments "TextureFile", each once
+  std::size_t size = 0;               // size of the header [bytes], i.e. the offset of the body
+  std::size_t lines = 0;              // number of lines of the header, for messages
 };
 
-// Whether any vertex property is a texture coordinate (u or v).
+// Returns whether any vertex property is a texture coordinate (u or v).
 bool hasTexcoord(const Header& header);
 
-// Errors: kMalformed, kUnsupported; each with the line number in the header.
+// Parses the header at the beginning of a PLY file. Errors: kMalformed, with the line number.
 Result<Header> parseHeader(std::string_view bytes);
 
 }  // namespace merlin::render::mesh::ply

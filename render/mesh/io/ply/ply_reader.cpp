@@ -1,4 +1,4 @@
-// Reads PLY files and the texture images that a file names: a row of the table of readers.
+// Reads PLY files and the texture images that a file names; defines a row of the table of readers.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,8 @@
 namespace merlin::render::mesh {
 namespace {
 
-// Reads the texture images that the file names. One that cannot be read stays empty, with a note.
+// Reads the texture images that the file names. The entry of an image that cannot be read stays
+// empty, and a note explains why.
 std::vector<image::ImageFile> picturesOf(const std::vector<std::string>& names,
                                          const std::string& folder,
                                          std::vector<std::string>& notes) {
@@ -47,7 +48,8 @@ bool isNumber(const std::array<float, 2>& uv) {
   return std::isfinite(uv[0]) && std::isfinite(uv[1]);
 }
 
-// Returns the texture of each triangle. Without numbers of textures, all faces have the only one.
+// Returns the texture of each triangle. If the faces have no texture numbers, all of them have the
+// only texture.
 SurfaceTextures texturesOf(const ply::FaceTextures& faces,
                            const std::vector<image::ImageFile>& pictures, std::size_t triangles) {
   SurfaceTextures all;
@@ -63,7 +65,8 @@ SurfaceTextures texturesOf(const ply::FaceTextures& faces,
   return all;
 }
 
-// Corners without coordinates get (0, 0); no triangle with a texture has such a corner.
+// Sets the mesh's texture coordinates from those of the corners. Corners without coordinates get
+// (0, 0); no triangle with a texture has such a corner.
 void setCoordinates(std::vector<std::array<float, 2>> corners, Mesh& mesh) {
   for (auto& uv : corners) {
     if (!isNumber(uv)) uv = {};
@@ -71,14 +74,14 @@ void setCoordinates(std::vector<std::array<float, 2>> corners, Mesh& mesh) {
   setCornerCoordinates(mesh, corners);
 }
 
-// Coordinates of the faces' corners take precedence over those of the vertices.
+// Reads a PLY file. Texture coordinates of face corners take precedence over those of vertices.
 Result<LoadedMesh> read(std::string_view content, const std::string& folder) {
   ply::FaceTextures faces;
   auto loaded = ply::parse(content, &faces);
   if (!loaded) return loaded;
   replaceNonNumbers(*loaded);
   Mesh& mesh = loaded->mesh;
-  if (faces.pictures.empty()) {  // a picture may be given beside the file
+  if (faces.pictures.empty()) {  // the caller may provide a picture separately
     if (faces.corners.empty()) return loaded;
     if (const auto valid = validate(mesh); !valid) return valid.error();
     setCoordinates(faces.corners, mesh);
@@ -107,14 +110,14 @@ bool isNormal(const std::string& property) {
   return property == "nx" || property == "ny" || property == "nz";
 }
 
-// Estimates the triangles of faces with any number of corners, or of strips: all that the file
-// holds beside its other numbers is corners. Nothing if there are other lists, whose lengths are
-// unknown.
+// Estimates the number of triangles of faces with any number of corners, or of strips, on the
+// assumption that the file consists of corners apart from its other numbers. Returns nothing if
+// there are other lists, whose lengths are unknown.
 std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Header& header) {
   const bool ascii = header.form == ply::Form::kAscii;
   std::size_t left =
       ascii ? wordsIn(content.substr(header.size), " \t\r\n") : content.size() - header.size;
-  std::size_t faces = 0, corner = 0;  // corner: its bytes; in ASCII, one word
+  std::size_t faces = 0, corner = 0;  // corner: size of one corner [bytes; words in ASCII]
   for (const ply::Element& e : header.elements) {
     std::size_t fixed = 0;
     for (const ply::Property& p : e.properties) {
@@ -123,7 +126,7 @@ std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Head
       fixed += ascii ? 1 : ply::sizeOf(p.list ? p.count_type : p.type);
       if (!p.list) continue;
       corner = ascii ? 1 : ply::sizeOf(p.type);
-      faces = e.name == "face" ? e.count : 0;  // a list of strips has any number
+      faces = e.name == "face" ? e.count : 0;  // the number of strips in a list is unknown
     }
     if (fixed > 0 && e.count > left / fixed) return std::nullopt;  // the file is cut short
     left -= e.count * fixed;
@@ -153,7 +156,7 @@ std::optional<MeshFileSize> size(std::string_view content, const std::string& fo
   }
   const auto triangles = trianglesIn(content, *header);
   found.mesh.triangles = std::max(found.mesh.triangles, triangles.value_or(0));
-  if (hasFacetColours(*header))  // a vertex for each corner, if no two have the same colour
+  if (hasFacetColours(*header))  // worst case: one vertex per corner
     found.mesh.vertices = std::max(found.mesh.vertices, 3 * found.mesh.triangles);
   if (header->pictures.empty()) return found;
   constexpr std::size_t kTextured = 40;  // bytes per triangle: coordinates, texture number

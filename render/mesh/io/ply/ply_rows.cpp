@@ -7,7 +7,8 @@
 namespace merlin::render::mesh::ply {
 namespace {
 
-// Removes the words of a row's properties from `line`; returns how many, or 0 if it has fewer.
+// Removes the words of a row's properties from `line`. Returns their number, or 0 if the line has
+// fewer words.
 std::size_t takeRow(std::string_view& line, const Element& element) {
   std::size_t words = 0;
   for (const Property& p : element.properties) {

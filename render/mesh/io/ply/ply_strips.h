@@ -9,8 +9,8 @@
 namespace merlin::render::mesh::ply {
 
 // Converts strips to triangles: each index forms a triangle with the two before it; every second
-// triangle has two corners swapped, so that all face the same way. An index that is repeated, which
-// strips use to turn, forms no triangle.
+// triangle has two corners swapped, so that all face the same way. A repeated index, which strips
+// use to change direction, forms no triangle.
 class StripCutter {
  public:
   // Ends the strip; the next index begins a new one.
@@ -20,7 +20,7 @@ class StripCutter {
 
  private:
   std::uint32_t older_ = 0, last_ = 0;
-  std::size_t length_ = 0;  // indices in this strip
+  std::size_t length_ = 0;  // number of indices taken since the strip began
 };
 
 }  // namespace merlin::render::mesh::ply

@@ -1,5 +1,5 @@
-// PLY, binary little-endian: colours as bytes, labels as integers, coordinates with an origin as
-// doubles, all else as floats.
+// Writes binary little-endian PLY: colours as bytes, labels as integers, coordinates with an origin
+// as doubles, all else as floats.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace merlin::render::mesh {
 namespace ply {
 namespace {
 
-// Names of the PLY properties that a feature is written as, one for each dimension.
+// Returns the names of the PLY properties as which a feature is written, one per dimension.
 std::vector<std::string> propertiesOf(const Feature& f) {
   std::vector<std::string> names(f.dimension);
   for (const PropertyMapping& k : kPropertyMappings) {
@@ -32,7 +32,8 @@ std::vector<std::string> propertiesOf(const Feature& f) {
 
 enum class Form { kFloat, kByte, kInteger, kDouble };
 
-// Colours are written as bytes, labels as integers if all their values are whole numbers.
+// Returns the type as which a feature is written: colours are bytes, labels are integers if all
+// their values are whole numbers, all else are floats.
 Form formOf(const Feature& f) {
   if (f.name == "colour" && f.dimension == 3) return Form::kByte;
   const auto whole = [](float x) { return x == std::floor(x) && std::abs(x) < 2147483648.0F; };
@@ -40,7 +41,8 @@ Form formOf(const Feature& f) {
   return label ? Form::kInteger : Form::kFloat;
 }
 
-constexpr std::size_t kBlock = std::size_t{1} << 18;  // bytes that are written at once
+// Approximate number of bytes written at a time.
+constexpr std::size_t kBlock = std::size_t{1} << 18;
 
 std::size_t sizeOf(Form form) {
   constexpr std::size_t kSizes[] = {4, 1, 4, 8};
@@ -52,7 +54,7 @@ const char* nameOf(Form form) {
   return kNames[static_cast<std::size_t>(form)];
 }
 
-// Coordinates relative to an origin do not fit into floats without it.
+// Returns the type of the coordinates: if an origin is added to them, they do not fit into floats.
 Form formOf(const Origin& origin) { return origin == Origin{} ? Form::kFloat : Form::kDouble; }
 
 void store(std::uint8_t* p, float value, Form form, double origin) {
@@ -76,12 +78,12 @@ void store(std::uint8_t* p, float value, Form form, double origin) {
   }
 }
 
-// A table of the vertices' values: the positions or a feature, with its place in a row.
+// A table of values of the vertices (positions or a feature), and its place in an output row.
 struct ValueTable {
   const float* values;
   std::size_t dimension, offset;
   Form form;
-  Origin origin{};  // is added to doubles; of dimension 3
+  Origin origin{};  // added to the values if form is kDouble
 };
 
 // Writes `rows` rows of `size` bytes, each filled by `fill`, in blocks.
@@ -124,7 +126,7 @@ bool writeTriangles(const Mesh& mesh, const WriteBytes& bytes) {
   });
 }
 
-// The texture image is named in a comment, as MeshLab does it.
+// Returns the header. A comment names the texture image, as in files of MeshLab.
 std::string headerFor(const Mesh& mesh, const Origin& origin, const std::string& name,
                       const std::vector<Form>& forms) {
   std::string text = fmt::format(

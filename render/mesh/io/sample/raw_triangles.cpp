@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-// Adds the triangle of a line, which must have exactly nine numbers.
+// Adds the triangle in a line, which must have exactly nine numbers. `number`: line number.
 Result<Ok> addTriangle(std::string_view line, std::size_t number, Mesh& mesh) {
   for (int k = 0; k < 9; ++k) {
     line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));

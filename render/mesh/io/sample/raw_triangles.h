@@ -1,4 +1,4 @@
-// An example of a reader, for text files in which each line holds the nine coordinates of a
+// An example of a reader: reads text files in which each line holds the nine coordinates of a
 // triangle ("RAW triangles"). It shows what a new format needs; it is not in the table of readers.
 #pragma once
 

@@ -1,6 +1,6 @@
-// Writes binary STL: a header of 80 bytes, the count, then 50 bytes per triangle: the face's
-// normal, three corners, two bytes without a standard meaning. Vertices are not shared; the format
-// holds nothing else.
+// Writes binary STL: a header of 80 bytes, the number of triangles, then 50 bytes per triangle with
+// the face normal, three corners, and two bytes without a standard meaning. The format has neither
+// shared vertices nor features.
 #include "daemon/base/bytes.h"
 #include "render/mesh/io/writer.h"
 
