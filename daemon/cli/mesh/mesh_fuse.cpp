@@ -34,7 +34,7 @@ struct MeshFuse {
   unsigned threads = 0;
   bool lost_says_nothing = false, local = false, json = false, outwards = false;
 
-  std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
+  std::size_t limit() const { return memoryLimit(memory); }
   bool makesModel() const { return output.ends_with(".mrm"); }
 };
 

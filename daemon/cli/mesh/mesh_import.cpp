@@ -9,7 +9,6 @@
 
 #include "daemon/base/clock.h"
 #include "daemon/base/files.h"
-#include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/import_grid.h"
 #include "daemon/cli/mesh/import_model.h"
@@ -33,9 +32,7 @@ ImportNames namesOf(const MeshImport& options) {
   return {options.input(), options.output, options.json, options.local};
 }
 
-std::size_t limitOf(const MeshImport& options) {
-  return options.memory > 0 ? options.memory : freeMemory();
-}
+std::size_t limitOf(const MeshImport& options) { return memoryLimit(options.memory); }
 
 bool makesModel(const MeshImport& options) { return options.output.ends_with(".mrm"); }
 bool makesImage(const MeshImport& options) { return options.output.ends_with(".pgm"); }

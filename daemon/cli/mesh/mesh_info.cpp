@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "daemon/base/printable_text.h"
-#include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/about_text.h"
 #include "daemon/cli/mesh/import_grid.h"
@@ -32,7 +31,7 @@ struct MeshInfoOptions {
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
   bool json = false;
 
-  std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
+  std::size_t limit() const { return memoryLimit(memory); }
 };
 
 // Returns a path in the folder for temporary files; the work folder of merlin-import is made beside

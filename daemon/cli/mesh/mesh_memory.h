@@ -1,8 +1,9 @@
-// Memory checks of `merlin mesh import`, `info` and `reduce`, so that a command stays within a
-// limit.
+// Memory checks of `merlin mesh import`, `info`, `picture` and `reduce`, so that a command stays
+// within a limit.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "daemon/base/result.h"
@@ -10,6 +11,10 @@
 #include "render/reduce/reduce.h"
 
 namespace merlin::cli {
+
+// Returns the limit of a command [bytes]: the value of its option --memory, or the free memory if
+// that is 0.
+std::size_t memoryLimit(std::uint64_t option);
 
 // Returns how many bytes the reduction of a mesh of this size may use in addition to the mesh, so
 // that the command stays within `limit` bytes. Checks also that all other steps (reading a file of
@@ -37,6 +42,10 @@ Result<Ok> roomForPicture(const std::string& picture, const render::mesh::MeshSi
 // kInvalidArgument, with the required memory and the limit. A file that cannot be read or whose
 // format states no counts (an ASCII .stl) is not an error here.
 Result<Ok> roomToRead(const std::string& path, const std::string& named, std::size_t limit);
+
+// Checks that the edges of `triangles` triangles of the model `path` can be drawn within `limit`
+// bytes. Errors: kInvalidArgument, with the required memory and the limit.
+Result<Ok> roomForEdges(const std::string& path, std::size_t triangles, std::size_t limit);
 
 // Makes the checks of roomForReduction() and roomForPicture() before the mesh is read, with the
 // sizes in the file's header. Errors: kInvalidArgument, with the file's name. A header that cannot

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/base/process_memory.h"
 #include "daemon/cli/exit_status.h"
 #include "daemon/cli/mesh/edge_bands.h"
 #include "daemon/cli/mesh/mesh.h"
@@ -14,14 +13,9 @@
 #include "render/image/png_writer.h"
 #include "render/lod/finest_level.h"
 #include "render/reduce/edge_lengths.h"
-#include "render/reduce/memory.h"
 
 namespace merlin::cli {
 namespace {
-
-// Peak memory per triangle for the lengths, the bands and the drawing of its edges [bytes].
-// Measured with a million triangles: 2.1 kB.
-constexpr std::size_t kBytesPerTriangleOfEdges = 2300;
 
 struct PictureOptions {
   std::vector<std::string> models;
@@ -32,27 +26,15 @@ struct PictureOptions {
   WeightOptions weights;
   std::uint64_t memory = 0;  // limit in bytes; 0: the free memory
 
-  std::size_t limit() const { return memory > 0 ? memory : freeMemory(); }
+  std::size_t limit() const { return memoryLimit(memory); }
 };
-
-Result<Ok> roomForEdges(const PictureOptions& options, const std::string& path,
-                        std::size_t triangles) {
-  const std::size_t need = render::reduce::kProgramBytes + triangles * kBytesPerTriangleOfEdges;
-  const std::size_t limit = options.limit();
-  if (need <= limit) return Ok{};
-  return Error{Errc::kInvalidArgument,
-               fmt::format("{}: drawing the edges of {} triangles takes {}; the limit (--memory, "
-                           "by default the free memory) is {}: allow more, or draw a lower "
-                           "resolution with --percent",
-                           path, triangles, sizeText(need), sizeText(limit))};
-}
 
 // Appends to `strip` a picture of the edges of the level, coloured by their weighted lengths, at
 // the scale of the finest level.
 Result<Ok> appendEdges(const PictureOptions& options, const std::string& path,
                        const render::lod::Dendrogram& model, std::size_t level,
                        render::image::Image& strip) {
-  if (auto fits = roomForEdges(options, path, model.trianglesAt(level)); !fits) return fits;
+  if (auto fits = roomForEdges(path, model.trianglesAt(level), options.limit()); !fits) return fits;
   render::mesh::Mesh mesh = render::lod::extract(model, level);
   render::mesh::ensureNormals(mesh);
   const auto weights = options.weights.weightsFor("pattern", mesh);

@@ -139,7 +139,7 @@ int reduceMesh(const ReduceOptions& options) {
   const SystemClock clock;
   const Timestamp began = clock.now();
   Usage usage;
-  usage.limit = options.memory > 0 ? options.memory : freeMemory();
+  usage.limit = memoryLimit(options.memory);
   if (const auto fits = checkOptions(options); !fits) return fail(fits.error());
   if (const auto fits = checkRoom(options.input, options.settings, usage.limit); !fits)
     return fail(fits.error());
