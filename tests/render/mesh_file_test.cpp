@@ -19,8 +19,8 @@ using test::writeText;
 using Floats = std::vector<float>;
 using Limits = std::numeric_limits<float>;
 
-// A square with floats that only a binary format keeps exactly, and with every feature that the
-// format stores in a special way. Colours are bytes in the file: 0, 1, 254 and 255 of 255.
+// Returns a square with floats that only a binary format keeps exactly, and with every feature that
+// a format stores in a special way. In the file, colours are bytes: 0, 1, 254 and 255 of 255.
 mesh::Mesh richSquare() {
   mesh::Mesh mesh = test::grid(1, 1);
   mesh.positions = {0.1F,  -0.0F, 1e-40F, 1e18F, Limits::min(), -1.0F / 3,
@@ -154,7 +154,7 @@ TEST(ReadMesh, ColoursOfFacesBecomeThoseOfTheirCorners) {
                                       "colours)"}));
 }
 
-// The file need not name a texture, since it may be given on the command line (mesh import
+// The file need not name a texture, since the texture may be given on the command line (mesh import
 // --texture).
 TEST(ReadMesh, TextureCoordinatesOfFacesNeedNoPictureInTheFile) {
   const TempDir dir;
@@ -202,7 +202,7 @@ TEST(ReadMesh, GoesByTheEndingInSmallOrLargeLetters) {
   }
 }
 
-// Editors on Windows put EF BB BF before the text.
+// Some editors on Windows write a byte order mark, EF BB BF, before the text.
 TEST(ReadMesh, BehindAByteOrderMarkIsTheSameMesh) {
   const TempDir dir;
   const std::pair<const char*, std::string> files[] = {
@@ -248,7 +248,7 @@ TEST(ReadMesh, TwoCornersOfATriangleAtOnePlaceBecomeOne) {
   EXPECT_EQ(loaded->tidied.unused, 1u);
 }
 
-// A float keeps seven digits, the northing of a map has nine.
+// A float keeps seven digits, but the northing of a map has nine.
 TEST(ReadMesh, CoordinatesOfAMapKeepTheirDigitsByAnOrigin) {
   const TempDir dir;
   const auto ply = [&](const std::string& type) {
@@ -298,8 +298,8 @@ TEST(ReadMesh, AFeatureThatIsNoNumberBecomesZeroWithANote) {
   EXPECT_EQ(loaded->notes[0], "2 values of features were not numbers; 0 stands there");
 }
 
-// The note is for meshes that look coarse because of the floats, not for large coordinates in
-// general.
+// The note is for meshes that are visibly coarse because of the floats, not for large coordinates
+// in general.
 TEST(ReadMesh, FloatsAreSaidToBeCoarseWhereTheMeshIsSmallForItsDistance) {
   const TempDir dir;
   const auto notes = [&](double at, double size) {
@@ -346,6 +346,9 @@ TEST(MeshFileSize, CountsPolygonsAsTheTrianglesThatTheyBecome) {
   for (int face = 0; face < 20; ++face) coloured += "\xC8" + std::string(203, '\1');
   EXPECT_EQ(sizeOf("c.ply", coloured).vertices, 3U * 20 * 198)
       << "one for each corner, which are more than the file has bytes";
+  for (const char* colour : {"red", "green", "blue"})
+    coloured = test::replaced(coloured, colour, std::string("diffuse_") + colour);
+  EXPECT_EQ(sizeOf("d.ply", coloured).vertices, 3U * 20 * 198) << "the other names of colours";
 }
 
 TEST(ReadMesh, SaysWhichFileIsBrokenAndHow) {

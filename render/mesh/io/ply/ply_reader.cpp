@@ -13,6 +13,7 @@
 #include "render/mesh/io/companion_files.h"
 #include "render/mesh/io/ply/ply.h"
 #include "render/mesh/io/ply/ply_header.h"
+#include "render/mesh/io/ply_features.h"
 #include "render/mesh/io/reader.h"
 #include "render/mesh/io/texture_pictures.h"
 #include "render/mesh/io/writer.h"
@@ -137,9 +138,13 @@ std::optional<std::size_t> trianglesIn(std::string_view content, const ply::Head
 }
 
 bool hasFacetColours(const ply::Header& header) {
-  return std::ranges::any_of(header.elements, [](const ply::Element& e) {
-    return e.name == "face" &&
-           std::ranges::find(e.properties, "red", &ply::Property::name) != e.properties.end();
+  const auto isColour = [](const ply::Property& p) {
+    return std::ranges::any_of(ply::kPropertyMappings, [&](const ply::PropertyMapping& m) {
+      return p.name == m.property && std::string_view(m.feature) == "colour";
+    });
+  };
+  return std::ranges::any_of(header.elements, [&](const ply::Element& e) {
+    return e.name == "face" && std::ranges::any_of(e.properties, isColour);
   });
 }
 
