@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using Folders = std::set<std::string>;
 
 // For each folder: the folders that it may include besides itself and daemon/base. A new folder
-// needs an entry here and a review of that entry. "a/settings.h" allows this header only.
+// needs an entry here, and the entry needs a review. "a/settings.h" allows this header only.
 const std::map<std::string, Folders> kMayInclude = {
     {"daemon/base", {}},
     {"daemon/json", {}},
@@ -121,7 +121,7 @@ const std::map<std::string, Folders> kMayInclude = {
     {"drivers/emulate",
      {"drivers/port", "drivers/hand", "drivers/cyberglove", "drivers/fastrak",
       "drivers/spaceball"}},
-    // The registry: the only folder that names every driver.
+    // The registry is the only folder that names every driver.
     {"drivers",
      {"drivers/port", "drivers/cyberglove", "drivers/evdev", "drivers/fastrak", "drivers/osc",
       "drivers/spaceball", "drivers/spacenav", "drivers/sample", "drivers/touch", "drivers/tuio",
@@ -176,8 +176,8 @@ const std::map<std::string, Folders> kMayInclude = {
     {"render/out/kms", {"render/out/picture"}},
     // Pure.
     {"render/out/picture", {}},
-    // Pure, except for the threads among which it divides the rows. Of render/frame it includes the
-    // port only.
+    // Pure, except for the threads to which the rows are distributed. Of render/frame it includes
+    // only the port.
     {"render/correct", {"render/frame/correction.h"}},
     {"render/correct/gpu", {"render/correct", "render/gl"}},
     {"render/correct/io", {"render/correct", "render/image"}},
@@ -211,7 +211,7 @@ const std::map<std::string, Folders> kMayInclude = {
       "render/tiles/settings.h"}},
 };
 
-// The only folders that may include a third-party header.
+// For each third-party header: the only folders that may include it.
 const std::map<std::string, Folders> kOnlyIn = {
     {"libserialport.h", {"drivers/io"}},
     {"libevdev/libevdev.h", {"drivers/io"}},
@@ -319,9 +319,9 @@ const Folders kImpure = {"fstream",
                          "daemon/base/log.h",
                          "daemon/base/shared_memory.h"};
 
-// Folders with private subfolders: only the folder itself may include them, and folders whose row
-// above names one of them. The set is what each subfolder may include. A new subfolder needs no
-// entry.
+// Folders with private subfolders. Only the folder itself, and folders whose row above names one of
+// the subfolders, may include them. The set is what each subfolder may include. A new subfolder
+// needs no entry.
 const std::map<std::string, Folders> kPrivateTo = {
     // Pure.
     {"render/mesh/atlas", {"render/image", "render/mesh"}},
@@ -329,13 +329,13 @@ const std::map<std::string, Folders> kPrivateTo = {
     {"render/reduce", {"render/lod", "render/mesh", "render/reduce/quadric"}},
 };
 
-// The parent folder if the folder is private to it; empty if it is not private.
+// Returns the parent folder if the folder is private to it; empty if the folder is not private.
 std::string ownerOf(const std::string& folder) {
   const std::string above = fs::path(folder).parent_path().generic_string();
   return kPrivateTo.count(above) ? above : "";
 }
 
-// The folders that `folder` may include; null if there are no rules for it.
+// Returns the folders that `folder` may include; null if there are no rules for `folder`.
 const Folders* rulesOf(const std::string& folder) {
   if (const std::string owner = ownerOf(folder); !owner.empty()) return &kPrivateTo.at(owner);
   const auto found = kMayInclude.find(folder);
@@ -355,7 +355,7 @@ bool mayInclude(const std::string& from, const std::string& to, const std::strin
 
 std::string folderOf(const fs::path& header) { return header.parent_path().generic_string(); }
 
-// The header "a/b.h" of `#include "a/b.h"` or `#include <a/b.h>`; empty for any other line.
+// Returns the header "a/b.h" of `#include "a/b.h"` or `#include <a/b.h>`; empty for any other line.
 std::string included(const std::string& line) {
   constexpr std::string_view kDirective = "#include ";
   if (!line.starts_with(kDirective)) return {};
@@ -401,8 +401,8 @@ TEST(Architecture, EveryIncludeFollowsTheRules) {
   EXPECT_GT(files, 100);
 }
 
-// Whether the file names the driver: its folder, its name in the registry, or its word in CMake's
-// list.
+// Returns whether the file names the driver: its folder, its name in the registry, or its word in
+// CMake's list.
 bool namesDriver(const fs::path& file, const std::string& driver) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -417,8 +417,8 @@ bool namesDriver(const fs::path& file, const std::string& driver) {
   return false;
 }
 
-// What drivers/README.md says of a new driver of a known kind. `sample` has no settings of its own,
-// `spacenav` has some; nothing else knows either.
+// Tests what drivers/README.md says about a new driver of a known kind. `sample` has no settings of
+// its own, `spacenav` has some; no other file may name these drivers.
 TEST(Architecture, ADriverOfAKnownKindIsNamedInTwoFilesAndWithSettingsInThree) {
   const fs::path root = MERLIN_SOURCE_DIR;
   const auto namedIn = [&](const std::string& driver) {
@@ -442,7 +442,8 @@ TEST(Architecture, ADriverOfAKnownKindIsNamedInTwoFilesAndWithSettingsInThree) {
                                    "drivers/registry.h"}));
 }
 
-// Whether a file of `folder`, or of a folder that is private to it, includes what the rule names.
+// Returns whether a file of `folder`, or of a folder that is private to it, includes what the rule
+// names.
 bool isUsed(const fs::path& root, const std::string& folder, const std::string& rule) {
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const auto extension = entry.path().extension();

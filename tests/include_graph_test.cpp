@@ -1,5 +1,5 @@
 // Tests the actual includes, whereas architecture_test tests the allowed ones: no file and no
-// folder includes itself through others.
+// folder may include itself through others.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 using Graph = std::map<std::string, std::set<std::string>>;
 
-// For each file of the product: the files that it includes, as paths from the top of the tree.
+// Returns, for each file of the product, the files that it includes, as paths from the top of the
+// tree.
 Graph filesGraph() {
   const fs::path root = MERLIN_SOURCE_DIR;
   Graph graph;
@@ -39,8 +40,8 @@ Graph filesGraph() {
   return graph;
 }
 
-// For each folder: the folders that it includes. Headers that are only settings do not count:
-// config includes those of many folders.
+// Returns, for each folder, the folders that it includes. Headers that contain only settings do not
+// count, since config includes those of many folders.
 Graph foldersGraph(const Graph& files) {
   const auto folderOf = [](const std::string& file) {
     return fs::path(file).parent_path().generic_string();
@@ -55,7 +56,7 @@ Graph foldersGraph(const Graph& files) {
   return folders;
 }
 
-// A path from a node back to itself, "a > b > a"; empty if there is none.
+// Returns a path from a node back to itself, "a > b > a"; empty if there is none.
 std::string cycleIn(const Graph& graph) {
   std::set<std::string> done;
   std::vector<std::string> path;

@@ -1,11 +1,11 @@
-// ./dev bench checks: the cost of reading back what outputs show: of each frame's digest, of each
-// check, and whether frames are late because of them.
+// ./dev bench checks: the cost of reading back what outputs show. Measures the digest of each
+// frame, each check, and whether checks make frames late.
 //
-// The frames are those of the demo's wall, 1920 x 480, moved by one row from frame to frame. They
-// are presented to an output in shared memory after a wait that is as long as the demo's drawing.
-// Runs without checks, with one every 5 s (the default) and with one every 20 ms take turns in one
-// process with the same output. The cost for an output of a graphics card depends on the card's
-// memory; `picture_ms` of its status shows it.
+// The frames are those of the demo's wall, 1920 x 480 pixels; each is the frame before, moved by
+// one row. They are presented to an output in shared memory after a wait that is as long as the
+// demo's drawing. Runs without checks, with one check every 5 s (the default) and with one every 20
+// ms take turns in one process with the same output. The cost for an output of a graphics card
+// depends on the card's memory; the member `picture_ms` of the output's status shows it.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -55,7 +55,7 @@ class Wall {
   }
   const Picture& picture() const { return picture_; }
 
-  // Presents frames on a grid, with a check every `every`; 0: no checks.
+  // Presents frames on a grid of periods, with a check every `every`; 0: no checks.
   void run(Duration every, double seconds, Counts& counts) {
     out::PictureChecks checks({{&outputs_->output(0), every}}, clock_);
     outputs_->checkWith(&checks);
@@ -85,7 +85,8 @@ class Wall {
  private:
   SystemClock clock_;
   Picture picture_;
-  std::array<std::vector<std::uint8_t>, 8> moved_;  // each moved by one more row; made beforehand
+  // the picture, moved by one more row each; made before the measurement
+  std::array<std::vector<std::uint8_t>, 8> moved_;
   render::tiles::TilePlan plan_;
   std::uint64_t sequence_ = 0;
   std::optional<out::OutputSet> outputs_;

@@ -14,10 +14,11 @@ namespace merlin::bench {
 
 class CommandLine {
  public:
-  explicit CommandLine(const std::string& about);  // what the benchmark measures, for its help
+  // `about`: what the benchmark measures, for its help text
+  explicit CommandLine(const std::string& about);
   ~CommandLine();
 
-  // Adds an option or a flag, as cli::Command does.
+  // Adds an option or a flag; same arguments as cli::Command::option().
   template <typename T>
   cli::Argument option(const std::string& names, T& value, const std::string& help = "") {
     return command().option(names, value, help);
@@ -26,11 +27,12 @@ class CommandLine {
     return command().flag(names, value, help);
   }
 
-  // Returns nothing if the program is to run. Otherwise, after --help or an invalid argument,
-  // prints the text and returns the exit status.
+  // Returns nothing if the benchmark is to run. After --help or an invalid argument, prints the
+  // text for it and returns the exit status.
   std::optional<int> parse(int argc, char** argv);
 
-  // Adds --json, parses, and runs the benchmark `name` with runBench(); returns the exit status.
+  // Adds --json, parses the options, and runs the benchmark `name` with runBench(); returns the
+  // exit status.
   int run(const std::string& name, int argc, char** argv,
           const std::function<bool(Report&)>& measure);
 

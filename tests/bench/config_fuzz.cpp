@@ -80,7 +80,7 @@ Json strangeValue(Random& r) {
   return oneOf(kValues, r);
 }
 
-// Returns a key that differs a little from this one.
+// Returns a key that differs slightly from this one.
 std::string nearKey(std::string key, Random& r) {
   const auto at = static_cast<std::size_t>(r.below(key.size() + 1));
   switch (r.below(5)) {
@@ -186,7 +186,7 @@ void mutateText(std::string& text, Random& r) {
 
 // ---- judgement
 
-// Notes keys that occur twice in one object while nlohmann-json parses.
+// Notes keys that occur twice in one object while nlohmann-json parses the text.
 class KeysTwice {
  public:
   bool operator()(int, Json::parse_event_t event, const Json& value) {
@@ -213,13 +213,15 @@ bool isSame(const Json& written, const Json& used) {
   return used == (kFolder / path).lexically_normal().string();
 }
 
-// Whether the value stands for the driver's own default, as the setting's help describes it.
+// Returns whether the value stands for the driver's own default, as the setting's help describes
+// it: baud 0 or an empty name.
 bool isTheDriversOwn(const Pointer& at, const Json& written) {
   if (!at.to_string().starts_with("/devices/")) return false;
   return (at.back() == "baud" && written == 0) || (at.back() == "name" && written == "");
 }
 
-// Pointer to the first value of the text that the settings lack; empty if they have all values.
+// Returns the pointer to the first value of the text that the settings lack; empty if they have all
+// values.
 std::string ignoredIn(const Json& written, const Json& used, const LoadedSettings& loaded,
                       const Pointer& at = Pointer()) {
   const auto adjusted = [&](const Finding& f) { return f.pointer == at.to_string(); };
@@ -244,7 +246,7 @@ std::string ignoredIn(const Json& written, const Json& used, const LoadedSetting
   return known ? "" : at.to_string();
 }
 
-// The difference between the accepted settings and the text; empty if there is none.
+// Returns the difference between the accepted settings and the text; empty if there is none.
 std::string faultOf(const std::string& text, const LoadedSettings& loaded) {
   KeysTwice keys;
   const Json written = Json::parse(text, std::ref(keys), false);

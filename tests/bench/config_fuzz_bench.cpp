@@ -1,5 +1,5 @@
-// ./dev bench fuzz-config [N]: mutated configurations through the loader. For each kind of fault it
-// prints the first seed, with which the fault can be reproduced.
+// ./dev bench fuzz-config [N]: gives mutated configurations to the loader. For each kind of fault
+// it prints the first seed, with which the fault can be reproduced.
 #include <array>
 #include <csignal>
 #include <cstring>
@@ -22,7 +22,8 @@ namespace {
 
 volatile std::uint64_t current_seed = 0;
 
-// A crash is a fault too, so its seed has to be printed. A signal handler may call few functions.
+// Prints the seed at a crash, since a crash is a fault too. A signal handler may call few
+// functions.
 void sayWhere(int signal) {
   char text[96] = "\nfault: a crash; again: --count 1 --seed ";
   char* end = text + std::strlen(text);
@@ -53,7 +54,7 @@ std::vector<std::string> examples(const std::string& folder) {
 
 struct Options {
   std::uint64_t seed = 1, count = 100'000;
-  std::string configurations;  // folder; empty: that of the source tree
+  std::string configurations;  // folder; empty: the folder of the source tree
 };
 
 struct Faults {
@@ -86,7 +87,7 @@ bool fuzz(const Options& options, Report& report) {
     constexpr std::array kFigures = {"no_json", "invalid", "adjusted", "valid"};
     report.figure(kFigures[i], shareOf(outcomes[i], options.count, "configurations"), "1");
   }
-  // If all are refused, no accepted configuration was compared.
+  // If the loader refused all configurations, the check of accepted ones did not run.
   if (options.count >= 1000 && outcomes[3] == 0)
     didNotRun("the loader", "it accepted none of the configurations",
               "see tests/bench/config_fuzz.h");

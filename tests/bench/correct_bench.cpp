@@ -1,9 +1,10 @@
 // ./dev bench correct: the cost of an output's correction for each frame, compared with a memcpy of
-// as many bytes and as a share of a frame's period. Measures each part of the correction alone and
-// all together, on all processors, on one, and by a shader.
+// as many bytes and as a share of a frame's period. Measures the parts of the correction alone and
+// together, on all processors, on one processor, and by a shader.
 //
-// The picture is noise of 1280 x 960 pixels, the size of the demo's frame. Nothing but the loop
-// runs, so the tables come from memory, as in a wall, where a whole frame lies between two passes.
+// The picture is noise of 1280 x 960 pixels, the size of the demo's frame. Nothing else runs. As
+// all subjects take turns, the tables of a correction come from memory, as in a wall, where a whole
+// frame lies between two passes.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -30,13 +31,13 @@ using Steady = std::chrono::steady_clock;
 using render::correct::CorrectionSettings;
 
 constexpr int kWidth = 1280, kHeight = 960;
-constexpr double kRate_hz = render::governor::GovernorSettings{}.rate_hz;  // the demo's too
+constexpr double kRate_hz = render::governor::GovernorSettings{}.rate_hz;  // also the demo's rate
 
 double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
 }
 
-// Settings by name; each has more parts to compute than the one before.
+// Returns settings by name; each has more parts to compute than the one before.
 std::vector<std::pair<std::string, CorrectionSettings>> cases() {
   CorrectionSettings pin, mesh, blend, all;
   pin.corners = {24, 12, -31, 7, 9, -20, -14, -33};
@@ -79,7 +80,7 @@ struct Subject {
   std::vector<double> passes{};  // [ms]
 };
 
-// Makes all subjects; adds the times of computing maps of meshes to `maps` [ms].
+// Makes all subjects; adds the times of computing maps of meshes [ms] to `maps`.
 std::vector<Subject> subjectsOf(unsigned processors, ThreadTeam& team, Shader& shader,
                                 std::vector<double>& maps) {
   std::vector<Subject> subjects;
@@ -97,8 +98,8 @@ std::vector<Subject> subjectsOf(unsigned processors, ThreadTeam& team, Shader& s
   return subjects;
 }
 
-// Measures all in turns, so that other work of the machine affects all alike. Returns the times of
-// copying the picture [ms].
+// Measures all subjects in turns, so that other work of the machine affects all equally. Returns
+// the times of copying the picture [ms].
 std::vector<double> measureInTurn(int frames, std::vector<Subject>& subjects) {
   std::mt19937 random(1);
   std::vector<std::uint8_t> picture(std::size_t{4} * kWidth * kHeight), copy(picture.size());
@@ -148,7 +149,8 @@ bool measure(int frames, const std::string& gpu, Report& report) {
   const Measured map_ms = medianOf(maps, "maps of meshes");
   report.text("  {:<22} {:7.2f} ms, once\n", "map of a mesh", map_ms.value());
   report.figure("map_ms", map_ms, "ms");
-  const std::size_t of_a_case = processors > 1 ? 3 : 2;  // each case's last one is the shader
+  // the last subject of each case is the shader
+  const std::size_t of_a_case = processors > 1 ? 3 : 2;
   for (std::size_t i = 0; i < subjects.size(); ++i) {
     printSubject(subjects[i], memcpy_ms, report);
     if (i % of_a_case != of_a_case - 1) continue;

@@ -1,11 +1,12 @@
-// ./dev bench cut: cuts with any number of triangles of a large model. Measures the time of a cut
+// ./dev bench cut: cuts of a large model with any number of triangles. Measures the time of a cut
 // compared with a memcpy of its result, the memory, the time to the first picture from a file that
-// is not cached, and the gain in pixels from spending the budget where the tiles look, also with
-// tiles that have cameras of their own.
+// is not cached, and how much the picture improves if triangles are spent where the tiles look,
+// also with tiles that have their own cameras.
 //
-// The model: --hgt FILE, an elevation tile of 1201 x 1201 big-endian heights (SRTM 3), as it is
-// (2.9 million triangles) or mirrored 2 x 2 (11.5 million; synthetic in that), reduced once and
-// kept under --out; without the file, synthetic hills of the same size.
+// The model is made from --hgt FILE, an elevation tile of 1201 x 1201 big-endian heights (SRTM 3):
+// as it is (2.9 million triangles), or mirrored 2 x 2 (11.5 million; to that extent synthetic). It
+// is reduced once and kept under --out. Without the file, the model is synthetic hills of the same
+// size.
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -39,7 +40,7 @@ double msSince(Steady::time_point then) {
   return std::chrono::duration<double, std::milli>(Steady::now() - then).count();
 }
 
-// Heights in metres, row by row; empty if there is no such file.
+// Returns the heights in metres, row by row; empty if there is no such file.
 std::vector<float> readHeights(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<unsigned char> bytes(2 * kSide * kSide);
@@ -48,7 +49,7 @@ std::vector<float> readHeights(const std::string& path) {
   std::vector<float> heights;
   for (std::size_t i = 0; i < bytes.size(); i += 2) {
     const auto raw = static_cast<std::int16_t>(bytes[i] << 8 | bytes[i + 1]);
-    heights.push_back(raw == -32768 ? 0 : raw);  // no data
+    heights.push_back(raw == -32768 ? 0 : raw);  // -32768 means no data
   }
   return heights;
 }
@@ -64,7 +65,8 @@ std::vector<float> hills() {
   return heights;
 }
 
-// The heights, mirrored `times` x `times`. Samples are 66 m by 92.6 m apart (at 44 degrees north).
+// Returns a mesh of the heights, mirrored `times` x `times`. Samples are 66 m by 92.6 m apart (at
+// 44 degrees north).
 Mesh heightField(const std::vector<float>& heights, std::size_t times) {
   const std::size_t side = (kSide - 1) * times + 1;
   const auto mirrored = [&](std::size_t i) {
@@ -91,7 +93,7 @@ Mesh heightField(const std::vector<float>& heights, std::size_t times) {
   return mesh;
 }
 
-// Returns the value, or ends the benchmark.
+// Returns the value, or ends the benchmark if there is an error.
 template <typename T>
 T expect(Result<T> result, const std::string& subject) {
   if (!result) didNotRun(subject, result.error().what, "--out names the folder of the models");
@@ -108,7 +110,7 @@ void makeModel(const std::vector<float>& heights, std::size_t times, const std::
 
 // --- cuts ----------------------------------------------------------------------------------------
 
-// Makes cuts for budgets in random order; each is compared with a memcpy of its result.
+// Makes cuts for budgets in random order, and compares each with a memcpy of its result.
 void timeCuts(const Dendrogram& model, const std::string& name, Report& report) {
   const auto began = Steady::now();
   const Clusters clusters(model, {});
@@ -154,13 +156,14 @@ void timeCuts(const Dendrogram& model, const std::string& name, Report& report) 
 
 // --- pictures ------------------------------------------------------------------------------------
 
-// Three tiles that touch each other and the operator's tile, 640 x 480 pixels each.
+// Returns a plan of three tiles that touch each other and the operator's tile, 640 x 480 pixels
+// each.
 render::tiles::TilePlan plan() {
   auto made = render::tiles::planTiles({});
   return *std::move(made);
 }
 
-// A view from low over the middle of the field along the ground.
+// Returns a view from low over the middle of the field along the ground.
 Eigen::Isometry3f closeUp() {
   Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
   view.translate(Eigen::Vector3f(0.1F, -0.08F, 0.25F));
@@ -179,7 +182,7 @@ std::unique_ptr<render::frame::FrameRenderer> rendererOf(const Dendrogram& model
   return *std::move(made);
 }
 
-// Root mean square difference, 0..255, over the wall's tiles.
+// Returns the root mean square difference, 0..255, over the wall's tiles.
 double difference(render::frame::FrameRenderer& renderer, const std::vector<std::uint8_t>& full) {
   double sum = 0, count = 0;
   const render::tiles::TilePlan p = plan();
@@ -233,8 +236,8 @@ void comparePictures(const Dendrogram& model, const std::string& prefix, const s
   report.text("  pictures: {0}-full.png, {0}-even.png, {0}-view.png\n", prefix);
 }
 
-// Tiles with cameras of their own, beside the wall's three tiles. Compares one cut for all of them,
-// in which each view requests what it would request alone, with cuts of the same size for the wall
+// Tiles with their own cameras, beside the wall's three tiles. One cut for all tiles, in which each
+// view requests what it would request alone, is compared with cuts of the same size for the wall
 // alone and for each view alone.
 struct ViewGroup {
   const char* name;
@@ -312,7 +315,7 @@ void compareViews(const Dendrogram& model, const std::string& name, Report& repo
   report.figure(name + ".views_one_cut_by_each", ratio, "1");
 }
 
-// Time from a file that is in no cache to the first picture in memory.
+// Measures the time from a file that is in no cache to the first picture in memory.
 void firstPicture(const std::string& path, const std::string& name, Report& report) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   ::fsync(fd);
@@ -333,7 +336,7 @@ void firstPicture(const std::string& path, const std::string& name, Report& repo
 }
 
 struct Options {
-  std::string hgt;  // empty: the tile beside the repository or, without it, synthetic hills
+  std::string hgt;  // file; empty: the tile beside the repository or, without that, synthetic hills
   std::string out = "build/bench/cut";
   bool small = false;
 };

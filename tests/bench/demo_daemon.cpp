@@ -31,7 +31,7 @@ nlohmann::json demoConfig(const DemoOptions& options, const std::string& instanc
   return config;
 }
 
-// The last part of a program's output, which has the message of a failure.
+// Returns the last part of a program's output, which has the message of a failure.
 std::string endOf(const std::string& output) {
   constexpr std::size_t kMost = 400;
   const std::size_t end = output.find_last_not_of('\n');
@@ -40,7 +40,8 @@ std::string endOf(const std::string& output) {
   return "it said: " + output.substr(begin, end + 1 - begin);
 }
 
-// The first line that contains `words`, or an empty text. What follows it differs from run to run.
+// Returns the first line that contains `words`, or an empty text. The rest of the output differs
+// from run to run.
 std::string lineWith(const std::string& output, std::string_view words) {
   const std::size_t found = output.find(words);
   if (found == std::string::npos) return {};
@@ -76,7 +77,7 @@ nlohmann::json& deviceOf(nlohmann::json& config, const std::string& name) {
 DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
                        const std::string& role, const Change& change)
     : subject_(options.bin + "/merlind --role " + role) {
-  // Each start has a new name, since a process that is ending may still hold its name.
+  // Each start has a new instance name, since a process that is ending may still hold its own.
   static int started = 0;
   instance_ = test::privateName(fmt::format("bench{}", ++started));
   if (::access((options.bin + "/merlind").c_str(), X_OK) != 0) fail("there is no such program");
@@ -90,7 +91,7 @@ DemoDaemon::DemoDaemon(const DemoOptions& options, const test::TempDir& dir,
     fail((process_->ended() ? "it ended before it was ready; " : "it was not ready within 30 s; ") +
          endOf(process_->output()));
   }
-  // merlind runs without contents too, but then there is nothing to measure.
+  // merlind also runs without contents, but then there is nothing to measure.
   const std::string left_out = lineWith(process_->output(), "is left out until it can be read");
   if (!left_out.empty()) fail("it shows none of its contents; it said: " + left_out);
   std::string fault = open(devices_, instance_, "devices");

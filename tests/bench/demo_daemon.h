@@ -1,4 +1,4 @@
-// The demo's merlind as the subject of a benchmark. If it does not run and deliver, the benchmark
+// The demo's merlind as the subject of a benchmark. If it does not run or deliver, the benchmark
 // ends.
 #pragma once
 
@@ -20,8 +20,8 @@ struct DemoOptions {
   std::string config;  // the demo's configuration
 };
 
-// The entry with this name in the configuration's list of devices. If the configuration has no
-// list, it is the default one, whose names are "glove", "tracker" and "ball".
+// Returns the entry with this name in the configuration's list of devices. If the configuration has
+// no list, the default list is added, whose names are "glove", "tracker" and "ball".
 nlohmann::json& deviceOf(nlohmann::json& config, const std::string& name);
 
 // Thread-bound. Every function throws DidNotRun if merlind does not run or deliver as expected.
@@ -30,30 +30,30 @@ class DemoDaemon {
   using Change = std::function<void(nlohmann::json& config)>;
 
   // Starts merlind on emulated devices, waits until it is ready, and opens its segments. The
-  // configuration is the demo's with a name and a folder of its own, after `change`. `role`: "all"
-  // or "devices".
+  // configuration is the demo's, with its own instance name and folder, after `change`. `role`:
+  // "all" or "devices".
   DemoDaemon(const DemoOptions& options, const test::TempDir& dir, const std::string& role,
              const Change& change);
 
   pid_t pid() const { return process_->pid(); }
   const std::string& instance() const { return instance_; }
-  // The address at which its wall takes commands. Not for the role "devices".
+  // Returns the address at which the wall accepts commands. REQUIRES: the role is not "devices".
   std::string commandEndpoint() const { return (*wall_)->header.command_endpoint; }
 
-  // Throws if merlind has ended; to be called after the measurement.
+  // Throws DidNotRun if merlind has ended; to be called after the measurement.
   void expectRunning();
 
-  // The latest statistics of its wall. Not for the role "devices".
+  // Returns the wall's latest statistics. REQUIRES: the role is not "devices".
   shm::WallStats wall();
   const shm::DeviceSlots& devices() const { return **devices_; }
-  // The latest health of the device with this name; nothing before the first report.
+  // Returns the latest health of the device with this name; nothing before the first report.
   std::optional<DeviceHealth> health(const std::string& device) const;
 
-  // How its wall draws, as merlind reports it: "EGL, llvmpipe (...), two contexts". Not for the
-  // role "devices".
+  // Returns how the wall draws, as merlind reports it: "EGL, llvmpipe (...), two contexts".
+  // REQUIRES: the role is not "devices".
   std::string renderer() const;
 
-  // Kills it and waits for its end.
+  // Sends merlind SIGTERM and waits until it has ended.
   void stop() { process_->kill(SIGTERM); }
 
  private:

@@ -1,4 +1,4 @@
-// The demo's wall as frames for benchmarks of outputs: its picture, plan and rate.
+// The picture, tile plan and frame rate of the demo's wall, for benchmarks of outputs.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,9 @@
 
 namespace merlin::bench {
 
-inline constexpr double kRate_hz = 30;         // the demo's
-inline constexpr double kDrawingShare = 0.65;  // share of the period: the demo's median
+inline constexpr double kRate_hz = 30;  // frame rate of the demo
+// median drawing time of the demo, as a share of the period
+inline constexpr double kDrawingShare = 0.65;
 
 inline double msOf(Duration d) { return 1000 * toSeconds(d); }
 
@@ -22,7 +23,7 @@ struct Picture {
   std::vector<std::uint8_t> pixels;  // RGBA
 };
 
-// Ends the benchmark if the picture cannot be read.
+// Returns the demo's picture; ends the benchmark if it cannot be read.
 inline Picture demoPicture() {
   const auto read = render::image::readImage(MERLIN_SOURCE_DIR "/config/wall.png");
   if (!read) didNotRun("the picture", read.error().what, "run it in a source tree");
@@ -34,7 +35,7 @@ inline Picture demoPicture() {
   return picture;
 }
 
-// A plan with one tile that covers the whole picture.
+// Returns a plan with one tile that covers the whole picture.
 inline render::tiles::TilePlan planOf(const Picture& picture) {
   render::tiles::TilesSettings settings;
   settings.frame_width = settings.tile_width = picture.width;

@@ -1,8 +1,8 @@
-// ./dev bench posture: recall compared with FANN with the same weights; a pass in double precision
-// is the reference for both.
+// ./dev bench posture: recall of MERLIN's network compared with FANN with the same weights. For
+// both, a pass in double precision is the reference.
 //
-// Built twice, once with FANN's floats and once with its doubles, since the two libraries use the
-// same names.
+// The program is built twice, once with FANN's floats and once with FANN's doubles, since the two
+// FANN libraries use the same names.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ struct FannDeleter {
 };
 using FannNetwork = std::unique_ptr<fann, FannDeleter>;
 
-// The same network in FANN: its sigmoid is 1 / (1 + e^(-2 s t)), so s = 1/2.
+// Returns the same network in FANN, whose sigmoid is 1 / (1 + e^(-2 s t)); hence s = 1/2.
 FannNetwork toFann(const nn::Weights& weights) {
   constexpr unsigned kHidden0 = nn::kInputs + 1, kOutput0 = kHidden0 + nn::kHidden + 1;
   FannNetwork net(fann_create_standard(3, nn::kInputs, nn::kHidden, nn::kOutputs));
@@ -66,7 +66,8 @@ nn::TrainingWeights widen(const nn::Weights& weights) {
 using FannInput = std::array<fann_type, nn::kInputs>;
 
 struct Differences {
-  double between = 0, ours = 0, theirs = 0;  // `ours` and `theirs`: from the pass in double
+  // `ours` and `theirs`: differences from the pass in double precision
+  double between = 0, ours = 0, theirs = 0;
 };
 
 Differences differencesOf(const nn::PostureNetwork& network, const std::vector<nn::Input>& inputs) {

@@ -58,7 +58,7 @@ Measured scaled(const Measured& measured, double factor) {
   return Measured::of(factor * measured, measured.count(), "measurements");
 }
 
-// The same method as in soak/measures.py; both pass the same tests.
+// Uses the same method as soak/measures.py; both pass the same tests.
 Slope slopeOf(const std::vector<std::pair<double, double>>& points, std::string_view what) {
   if (points.size() < 10)
     throw DidNotRun(fmt::format("{} {} are too few for a slope", points.size(), what));
@@ -83,7 +83,7 @@ Slope slopeOf(const std::vector<std::pair<double, double>>& points, std::string_
   const double alike = square > 0 ? std::clamp(product / square, 0.0, 0.999) : 0;
   const double degrees = std::max(n * (1 - alike) / (1 + alike) - 2, 1.0);
   constexpr double kNormal = 1.96;
-  // Student's t, within 3 % from 3 degrees of freedom on.
+  // quantile of Student's t distribution, accurate to 3 % from 3 degrees of freedom on
   const double t =
       kNormal * (1 + (kNormal * kNormal + 1) / (4 * degrees) + 2.5 / (degrees * degrees));
   return {Measured::of(slope, points.size(), what),
@@ -117,8 +117,8 @@ void note(std::string_view what) {
 }
 
 int runBench(const std::string& bench, bool json, const std::function<bool(Report&)>& measure) {
-  // No figure must be printed after an unexpected exception either (an invalid configuration, a
-  // folder that cannot be made).
+  // After an unexpected exception (an invalid configuration, a folder that cannot be made), no
+  // figure must be printed either.
   try {
     Report report(bench);
     const bool kept = measure(report);

@@ -1,4 +1,5 @@
-// The rule for every benchmark: if its subject did not run, it prints no figure and fails.
+// The rule for every benchmark: if its subject did not run, the benchmark prints no figure and
+// fails.
 #include "tests/bench/figures.h"
 
 #include <cmath>
@@ -68,7 +69,7 @@ TEST(Figures, TextIsForPeopleAndOneObjectForPrograms) {
 TEST(Figures, WhoseSubjectDidNotRunPrintsNoFigureAndFails) {
   for (const bool json : {false, true}) {
     const Said s = said(json, [](Report& report) {
-      measureTwo(report);  // this part has run
+      measureTwo(report);  // this part of the measurement has run
       didNotRun("merlind", "it ended", "build it");
       return true;
     });

@@ -1,6 +1,6 @@
-// ./dev bench frames: hashes of a fixed script of frames of each model. Equal hashes before and
-// after a change of the drawing code mean equal pixels. Not for comparing machines, since drivers
-// differ.
+// ./dev bench frames: hashes of a fixed sequence of frames of each model. Equal hashes before and
+// after a change of the drawing code mean equal pixels. The hashes of different machines cannot be
+// compared, since drivers differ.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -21,13 +21,14 @@ using Eigen::Isometry3f;
 
 constexpr int kPoses = 6;
 
-// FNV-1a, 64 bits.
+// Returns the 64-bit FNV-1a hash of the bytes; `h`: the hash so far.
 std::uint64_t hash(std::span<const std::uint8_t> bytes, std::uint64_t h = 0xcbf29ce484222325U) {
   for (const std::uint8_t b : bytes) h = (h ^ b) * 0x100000001b3U;
   return h;
 }
 
-// The poses turn the model and move it past the viewer; the first one is the usual start.
+// Returns the i-th pose. The poses turn the model and move it past the viewer; the first one is the
+// usual start.
 Isometry3f pose(int i) {
   Isometry3f T_eye_model(Eigen::Translation3f(0.12F * static_cast<float>(i), 0.05F, -2.5F));
   T_eye_model.rotate(Eigen::AngleAxisf(0.5F * static_cast<float>(i), Eigen::Vector3f::UnitY()));

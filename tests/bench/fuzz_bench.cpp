@@ -1,9 +1,10 @@
-// ./dev bench fuzz: random and mutated bytes through every parser and driver, in a build with
-// AddressSanitizer and UBSan: a fault ends it. Prints how many packets each recovered.
+// ./dev bench fuzz: sends random and mutated bytes through every parser and driver, in a build with
+// AddressSanitizer and UBSan, which end the program at a fault. Prints how many packets each parser
+// recovered.
 //
-// Half of the bytes are random. The other half is a good stream with occasional damage: a byte is
+// Half of the bytes are random. The other half is a valid stream with occasional damage: a byte is
 // flipped, lost, doubled or replaced by a burst, or four bytes are replaced by an extreme length.
-// So parsers are hit in the middle of their work.
+// The damage therefore reaches parsers in the middle of a message.
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -117,8 +118,9 @@ std::string vrpnMessage(Random& r) {
   return bytes;
 }
 
-// The format has no marks by which a reader finds the beginning of a message, so the driver closes
-// a connection with a fault. A new one begins with the next piece, and with every sixteenth one.
+// A VRPN stream has no marks by which a reader finds the beginning of a message, so the driver
+// closes a connection with a fault. Here a new connection begins with the next piece after a fault,
+// and with every sixteenth piece.
 Feed vrpnFeed() {
   auto parser = std::make_shared<vrpn::Parser>();
   return [parser, pieces = 0](const std::string& bytes) mutable {
@@ -136,7 +138,7 @@ Feed vrpnFeed() {
   };
 }
 
-// Reads the datagrams of a line; a datagram counts as a packet if `taken` says so.
+// Reads the datagrams of a line; a datagram counts as a packet if `taken` returns true.
 template <typename Sink>
 Feed datagramFeed(std::shared_ptr<Sink> sink,
                   std::function<bool(Sink&, OscReader&, const Datagram&)> taken) {
@@ -286,7 +288,7 @@ const FuzzTarget kParsers[] = {
      transcriptLine},
 };
 
-// The packet, sometimes damaged.
+// Returns the packet, sometimes damaged.
 std::string mutated(std::string bytes, Random& r) {
   if (bytes.empty()) return bytes;
   const std::size_t at = r.below(bytes.size());
@@ -308,7 +310,8 @@ struct Count {
   std::uint64_t bytes = 0, sent = 0, recovered = 0, from_noise = 0;
 };
 
-// Packets beyond those that were sent whole are chance: random bytes that form a packet.
+// Fuzzes one target. Packets that are recovered beyond those sent undamaged are chance: random
+// bytes that form a packet.
 void fuzz(const FuzzTarget& target, double most, std::uint64_t seed, Report& report) {
   note(fmt::format("{} ...", target.name));
   Random random(seed);

@@ -47,23 +47,25 @@ class JudgingSink final : public SampleSink {
   std::uint64_t samples_ = 0;
 };
 
-// The number of pieces after which a connection begins again: damage may change what all later
-// bytes mean. VRPN's messages have no marks at which they begin, so one wrong length is enough.
+// A connection is restarted after this number of pieces, since damage may change what all later
+// bytes mean. In VRPN one wrong length does that, since its messages have no marks at which they
+// begin.
 constexpr std::uint64_t kPieces = 64, kVrpnPieces = 8;
 
-// A driver and its line. It is connected again when it has given up, and after a number of pieces.
+// A driver and its line. The line is connected again when the driver has given up, and after a
+// number of pieces.
 class FuzzedDriver {
  public:
   using Make = std::unique_ptr<Device> (*)(const Clock&, SampleSink&);
 
-  // `hello`: what the other end says when it is connected.
+  // `hello`: the bytes that the other end sends when it is connected.
   FuzzedDriver(const char* name, Make make, std::string hello, std::uint64_t most_pieces)
       : sink_(name),
         device_(make(clock_, sink_)),
         hello_(std::move(hello)),
         most_pieces_(most_pieces) {}
 
-  // Returns how many samples came of the piece.
+  // Feeds the piece to the driver; returns how many samples it published.
   std::uint64_t take(const std::string& piece) {
     clock_.advance(std::chrono::milliseconds(1));
     if (!works_ || ++pieces_ % most_pieces_ == 0) connect();
@@ -97,7 +99,7 @@ FuzzFeed driverFeed(const char* name, FuzzedDriver::Make make, std::string hello
 
 std::int32_t anyInt(Random& r) { return static_cast<std::int32_t>(r.next()); }
 
-// A position, beyond its range of 0 to 1000 at times.
+// Returns a position that is sometimes outside its range of 0 to 1000.
 std::int32_t anyPlace(Random& r) { return static_cast<std::int32_t>(r.below(1100)) - 50; }
 
 FuzzFeed gamepadFeed() {
@@ -137,7 +139,7 @@ FuzzFeed frameFeed() {
 }
 
 std::string frameReport(Random& r) {
-  const auto slot = static_cast<std::int32_t>(r.below(12));  // two more than there are
+  const auto slot = static_cast<std::int32_t>(r.below(12));  // two more slots than the device has
   const auto finger = r.below(4) == 0 ? -1 : static_cast<std::int32_t>(r.below(65536));
   return evdevRecord(EvdevRecord::kMoved, ABS_MT_SLOT, slot) +
          evdevRecord(EvdevRecord::kMoved, ABS_MT_TRACKING_ID, finger) +
@@ -161,7 +163,7 @@ std::string mouseReport(Random& r) {
          evdevRecord(EvdevRecord::kReport);
 }
 
-// The numbers by which the server of these rows describes its device and its types.
+// The numbers with which the emulated VRPN server describes its device and its types.
 enum ServerNumbers : std::int32_t { kDevice = 1, kPoses = 2, kButton = 3, kButtons = 4, kChannels };
 
 std::string serverHello(std::string_view device) {
@@ -207,7 +209,8 @@ std::string padMessage(Random& r) {
   }
 }
 
-// What `merlin devices` learns of a server; a piece counts if the server's devices are still known.
+// Feeds the catalogue that `merlin devices` makes of a server; a piece counts if the server's
+// devices are still known after it.
 FuzzFeed catalogFeed() {
   const auto catalog = std::make_shared<std::optional<vrpn::Catalog>>();
   return [catalog, pieces = std::uint64_t{0}](const std::string& piece) mutable -> std::uint64_t {
@@ -226,7 +229,7 @@ std::string anyDescription(Random& r) {
 }
 
 FuzzFeed spaceMouseFeed() {
-  constexpr std::int32_t kShort = 5;  // bytes of the name
+  constexpr std::int32_t kShort = 5;  // length of the name [bytes]
   spacenav::Frame name{spacenav::kDeviceName, 0x73756F6D, 0x65, 0, 0, 0, 0, kShort};
   return driverFeed(
       "spacenav",

@@ -1,5 +1,5 @@
-// Whole drivers that ./dev bench fuzz sends bytes through: what their parsers make of bytes is
-// carried on to samples.
+// Whole drivers for ./dev bench fuzz: the benchmark sends bytes through them, from their parsers to
+// the samples that they publish.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace merlin::bench {
 
-// Takes a piece of the stream; returns how many packets it completed.
+// Processes a piece of the stream; returns how many packets the piece completed.
 using FuzzFeed = std::function<std::uint64_t(const std::string&)>;
 
 struct FuzzTarget {
   const char* name;
   std::function<FuzzFeed()> make;
-  std::function<std::string(Random&)> packet;  // a good one
+  std::function<std::string(Random&)> packet;  // makes a valid packet
 };
 
-// A packet of these counts if the driver has published a sample. Each sample has to be plausible
-// (drivers/port/plausible.h); if one is not, the program aborts and names the driver.
+// Returns the fuzzed drivers. A packet counts if the driver publishes a sample. Each sample has to
+// be plausible (drivers/port/plausible.h); otherwise the program aborts and names the driver.
 std::span<const FuzzTarget> fuzzedDrivers();
 
 }  // namespace merlin::bench

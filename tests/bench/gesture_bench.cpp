@@ -1,9 +1,10 @@
-// ./dev bench gesture: the shipped gestures on people who influenced neither the training nor any
-// other choice. Measures rates and confusions, gestures that are reported in hours of ordinary
-// motion (compared with the nearest template without rejection), a training from few takes of one
-// person, and the cost for a pose.
+// ./dev bench gesture: the shipped gestures, tested on people who influenced neither the training
+// nor any other choice. Measures rates and confusions, gestures that are reported in hours of
+// ordinary motion (compared with the nearest template without rejection), a training from few takes
+// of one person, and the cost for a pose.
 //
-// All people are synthetic. Absolute times differ between machines; ratios are within one run.
+// All people are synthetic. Absolute times differ between machines; the ratios are between times of
+// one run.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,12 +22,13 @@
 namespace merlin::bench {
 namespace {
 
-constexpr std::uint64_t kFirst = 7001;  // people from this number on influenced no choice
+constexpr std::uint64_t kFirst = 7001;  // people from this number on have influenced no choice
 constexpr std::size_t kPeople = 60, kTimes = 5, kOrdinaryPeople = 60, kKindPeople = 20;
 constexpr double kOrdinary_s = 1200, kKind_s = 600, kAfterTake_s = 0.8;
 constexpr std::uint64_t kSeed = 77;
 
-// Evaluates one person after another, so that no recording of many hours is in memory.
+// Evaluates one person after another, so that recordings of many hours are never in memory
+// together.
 template <typename Record>
 nn::GestureEvaluation evaluateAll(const nn::GestureModel& model, std::size_t people,
                                   Record record) {
@@ -64,7 +66,7 @@ Measured perTenMinutes(const nn::GestureEvaluation& e) {
                       "seconds");
 }
 
-// Returns whether the figures keep what MERLIN promises.
+// Returns whether the figures are within the limits that MERLIN promises.
 bool held(const nn::GestureModel& model, Report& report) {
   const auto gestures = evaluateAll(
       model, kPeople, [](std::uint64_t n) { return nn::test::gesturesOf(n, 1, kTimes, kSeed); });
@@ -101,7 +103,8 @@ void kinds(const nn::GestureModel& model, Report& report) {
   report.text("\n");
 }
 
-// The path of a stroke, resampled at equal lengths, moved to its middle, and scaled to size 1.
+// The path of a stroke, resampled at equal lengths, moved so that its middle is the origin, and
+// scaled to size 1.
 constexpr std::size_t kTemplatePoints = 16;
 using Template = std::array<float, 4 * kTemplatePoints>;
 
@@ -143,7 +146,7 @@ struct LabelledTemplate {
 };
 
 // Calls use(stroke, take) for each stroke of the recording. `take`: the take that contains most of
-// it, or null.
+// the stroke, or null.
 template <typename Use>
 void eachStroke(const nn::PathRecording& recording, Use use) {
   for (const auto session : nn::sessionsOf(recording)) {
@@ -161,7 +164,8 @@ void eachStroke(const nn::PathRecording& recording, Use use) {
   }
 }
 
-// The simplest method: each stroke is taken for the gesture of the nearest of 600 templates.
+// Evaluates the simplest method: each stroke is taken for the gesture of the nearest of 600
+// templates.
 void nearestTemplate(Report& report) {
   std::vector<LabelledTemplate> templates;
   const nn::PathRecording train = nn::test::gesturesOf(1, 20, 3, 1);
@@ -200,7 +204,7 @@ void nearestTemplate(Report& report) {
   report.figure("nearest_template.invented_per_10_min", ten, "1");
 }
 
-// Evaluates the limits of distance alone, without the discriminants.
+// Evaluates rejection by the limits of distance alone, without the discriminants.
 void withoutDiscriminant(nn::GestureModel model, Report& report) {
   for (nn::TrainedGesture& gesture : model.gestures) gesture.discriminant.reset();
   nn::GestureEvaluation e;
@@ -216,7 +220,8 @@ void withoutDiscriminant(nn::GestureModel model, Report& report) {
   report.figure("without_discriminant.invented_per_10_min", invented, "1");
 }
 
-// One person records five takes of each gesture; ordinary motion of 20 other people is added.
+// Evaluates a training in which one person records five takes of each gesture; ordinary motion of
+// 20 other people is added.
 void fewTakes(Report& report) {
   std::size_t lost = 0;
   std::vector<nn::LabelledStroke> ordinary;
@@ -261,7 +266,7 @@ void cost(const nn::GestureModel& model, Report& report) {
     next = 0;
     shift_ns += poses.back().pose.at_ns - poses.front().pose.at_ns + 10'000'000;
   });
-  // The longest possible stroke, which needs the most work for a single pose.
+  // The longest possible stroke needs the most work for a single pose.
   std::vector<nn::PathPoint> longest(600);
   for (std::size_t n = 0; n < longest.size(); ++n) {
     const auto t = static_cast<float>(n) * 0.01F;

@@ -1,11 +1,11 @@
 // ./dev bench governor: MERLIN's control law compared with those of other systems, on a virtual
-// clock; takes under a minute.
+// clock. Takes less than a minute.
 //
-// Every law sees the same renderer (tests/support/governor_plant.h) with the same noise and the
-// same hiccups: 20 seeds of 1,200 frames each. MERLIN's frames begin on the wall's grid, where a
-// frame that overruns takes time from the next one and counts as late for every deadline that
-// passes. The others' frames are each judged alone, which is milder. The first second is not
-// counted.
+// Every law controls the same renderer (tests/support/governor_plant.h) with the same noise and the
+// same hiccups: 20 seeds of 1,200 frames each. MERLIN's frames begin on the wall's grid of periods,
+// where a frame that overruns takes time from the next one and counts as late for every deadline
+// that passes. The frames of the other laws are judged one by one, which is milder. The first
+// second is not counted.
 #include <cstdlib>
 #include <fstream>
 
@@ -66,7 +66,8 @@ struct Scenario {
   enum Kind { kSteady, kSteps, kRamp, kRecorded } kind;
 };
 
-// A trace of the real renderer with its own noise and hiccups; the file says how it was recorded.
+// Reads a trace of the real renderer, with its own noise and hiccups; the file says how it was
+// recorded.
 Trace recordedTrace(const std::string& path) {
   constexpr const char* kWayOut = "--trace names tests/data/governor_demo.txt";
   std::ifstream in(path);
@@ -119,7 +120,8 @@ Figures figuresOf(const RunLaw& run, const Scenario& scenario, std::size_t seeds
   return f;
 }
 
-// Requirements for MERLIN; the other laws' rows show where they stand.
+// Requirements for MERLIN's law. They are not applied to the other laws, whose rows are for
+// comparison.
 class Verdicts {
  public:
   const char* of(bool met) {
@@ -132,7 +134,7 @@ class Verdicts {
   int short_ = 0;
 };
 
-// A figure as text; empty if the scenario has none.
+// Returns a figure as text; empty if the scenario does not have this figure (`there` is false).
 std::string meanAndWorst(bool there, const Figure& x) {
   return there ? fmt::format("{:.1f} ({:.0f})", x.mean(), x.worst) : "";
 }
@@ -163,8 +165,8 @@ void judge(const Scenario& s, const Figures& f, Verdicts& v, Report& report) {
   const bool steps = s.kind == Scenario::kSteps, made = s.kind != Scenario::kRecorded;
   const bool varies = s.kind == Scenario::kRamp || !made;
   const double within = std::string_view(s.name).find("x 4") != std::string_view::npos ? 5 : 3;
-  // With hiccups the mean counts, since a hiccup on the frame of the step makes a run longer by
-  // itself.
+  // With hiccups the mean is judged, since a hiccup in the very frame of the step lengthens a run
+  // of late frames.
   report.text(kRow, "  MERLIN's limits", verdict(true, f.late_with.mean() <= 0.015),
               verdict(made, f.late_without.mean() <= 0.005),
               verdict(true, f.used.mean() >= (varies ? 0.80 : 0.85)),

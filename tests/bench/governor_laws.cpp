@@ -11,9 +11,9 @@ namespace {
 
 using test::kPeriod_s;
 
-// [GOURLEY98] figure 5.36: the triangles drawn within a second are the triangles/s. Divided by the
-// desired rate they give the next resolution, unless the change is within a tolerance (5 per cent
-// here; the text gives none).
+// [GOURLEY98] figure 5.36: the law counts the triangles drawn within a second. Divided by the
+// desired rate, this number is the next resolution, unless the change is within a tolerance (5 per
+// cent here; the text gives none).
 class Law1998 final : public Law {
  public:
   void observe(double work_s) override {
@@ -30,7 +30,7 @@ class Law1998 final : public Law {
 };
 
 // Equalizer, eq/server/equalizers/dfrEqualizer.cpp: each axis of the image is scaled by the square
-// root of actual / desired rate, damped by a half. Here triangles stand for pixels.
+// root of actual / desired rate, damped by a half. Here triangles take the place of pixels.
 class Equalizer final : public Law {
  public:
   void observe(double work_s) override {
@@ -41,7 +41,7 @@ class Equalizer final : public Law {
 
 // Unreal Engine's dynamic resolution, as its console variables document it: 10 per cent of head
 // room, a weighted history of 16 frames, 8 frames between changes, only changes of more than 2 per
-// cent; two frames over budget in a row act at once.
+// cent. Two frames over budget in a row cause a change at once.
 class Unreal final : public Law {
  public:
   void observe(double work_s) override {
@@ -73,8 +73,8 @@ class Unreal final : public Law {
   int since_ = 99, over_ = 0;
 };
 
-// ParaView: while the model moves, it shows a decimated copy of a fixed size that a user chose:
-// here the size that fits 4/5 of the period of this machine without load.
+// ParaView: while the model moves, it shows a decimated copy of a fixed size that a user chose;
+// here the size that takes 4/5 of the period on this machine without load.
 class TwoLevels final : public Law {
  public:
   TwoLevels() { set(4e6 * std::pow((0.8 * kPeriod_s - 0.004) / 0.232, 1 / 0.62)); }

@@ -1,6 +1,6 @@
-// How other systems hold a frame rate, for comparison: their published control laws, implemented
-// anew; the vendors' own code may do better. Each law observes the time of a frame and returns the
-// number of triangles for the next one.
+// Control laws of other systems that hold a frame rate, for comparison. The published laws are
+// implemented anew; the vendors' own code may do better. Each law observes the time of a frame and
+// returns the number of triangles for the next one.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ class Law {
   double triangles() const noexcept { return triangles_; }
 
  protected:
-  // Clamps to the range that MERLIN's governor also has.
+  // Sets the number of triangles, clamped to the range that MERLIN's governor also has.
   void set(double triangles);
   double triangles_ = 10'000;
 };
@@ -28,7 +28,8 @@ struct NamedLaw {
   std::function<std::unique_ptr<Law>()> make;
 };
 
-// MERLIN's law of 1998, Equalizer's DFR, Unreal's dynamic resolution, ParaView's two levels.
+// Returns MERLIN's law of 1998, Equalizer's DFR, Unreal's dynamic resolution and ParaView's two
+// levels.
 std::vector<NamedLaw> otherLaws();
 
 }  // namespace merlin::bench

@@ -1,5 +1,6 @@
-// ./dev bench hostile: shapes with many triangles at one vertex or edge, reduced as by merlin mesh
-// reduce, compared with a regular mesh of the same number of triangles, in turns.
+// ./dev bench hostile: reduces shapes with many triangles at one vertex or edge, as merlin mesh
+// reduce does, in turns with a regular mesh of the same number of triangles, and compares the
+// times.
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -21,7 +22,7 @@ struct Options {
   int turns = 3;
 };
 
-// Seconds of everything that a reduction does after it has read a mesh.
+// Returns the seconds of everything that a reduction does after it has read a mesh.
 double secondsOf(const test::HostileShape& shape, std::size_t triangles) {
   render::mesh::Mesh mesh = shape.make(triangles);
   const auto began = std::chrono::steady_clock::now();
@@ -36,7 +37,8 @@ double secondsOf(const test::HostileShape& shape, std::size_t triangles) {
 }
 
 bool run(const Options& options, Report& report) {
-  const std::vector<test::HostileShape> shapes = test::hostileShapes();  // the first one is regular
+  // the first shape is the regular one
+  const std::vector<test::HostileShape> shapes = test::hostileShapes();
   std::vector<std::vector<double>> seconds(shapes.size());
   for (int turn = 0; turn < options.turns; ++turn) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -20,7 +20,7 @@ class Maker {
 
   Mesh make() {
     switch (random_.below(8)) {
-      case 0: break;  // empty
+      case 0: break;  // an empty mesh
       case 1: patch(1, 1); break;
       case 2: addVertices(3 + random_.below(4)), soup(1 + random_.below(3)); break;
       case 3: addVertices(3 + size(8)), soup(1 + size(12)); break;
@@ -38,8 +38,8 @@ class Maker {
 
  private:
   bool chance(std::uint64_t of) { return random_.below(of) == 0; }
-  // Usually below `n`, sometimes up to five times that: most faults show in small meshes, which are
-  // quick to test.
+  // Returns a number that is usually below `n`, sometimes up to five times as large: most faults
+  // show in small meshes, which are quick to test.
   std::uint64_t size(std::uint64_t n) { return random_.below(chance(16) ? 5 * n : n); }
   std::uint32_t anyVertex() {
     return static_cast<std::uint32_t>(
@@ -106,7 +106,8 @@ class Maker {
     for (std::uint32_t& v : mesh_.triangles) v = v == from ? to : v;
   }
 
-  // Makes vertices coincident or collinear, or scales the mesh to extreme or flat shapes.
+  // Moves vertices: makes them coincident or collinear, or scales the mesh to extreme or flat
+  // shapes.
   void place() {
     if (mesh_.positions.empty()) return;
     auto& p = mesh_.positions;

@@ -7,7 +7,7 @@
 
 namespace merlin::bench {
 
-// The mesh for this seed, the same on every machine. Some meshes are invalid on purpose.
+// Returns the mesh for this seed, the same on every machine. Some meshes are invalid on purpose.
 render::mesh::Mesh hostileMesh(std::uint64_t seed);
 
 }  // namespace merlin::bench

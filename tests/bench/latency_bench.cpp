@@ -1,13 +1,14 @@
-// ./dev bench latency: time from a byte on a line to a client of the shared memory. Compares
-// MERLIN's reader, the same with idle cores kept awake (cpu_latency_us = 0), the same on a line
-// that is polled once a millisecond, on a line that is polled without a pause, and a bare blocking
-// loop without a driver. They take turns in one run, over a pseudo-terminal and over a socket pair,
-// idle and with all cores loaded. The device is a glove; each other kind of device is measured
-// beside a bare loop of its own: those of 1998 with their dialogue, present-day ones in the form in
-// which their ports deliver data (records of an input device, a VRPN server's messages, datagrams).
+// ./dev bench latency: time from a byte on a line to a client of the shared memory. The readers
+// that take turns in one run are MERLIN's; the same with idle cores kept awake (cpu_latency_us =
+// 0); the same on a line that is polled once a millisecond; the same on a line that is polled
+// without a pause; and a bare blocking loop without a driver. They read over a pseudo-terminal and
+// over a socket pair, idle and with all cores loaded. The device is a glove. Each other kind of
+// device is compared with a bare loop of its own: devices of 1998 with their dialogue, present-day
+// ones in the form in which their ports deliver data (records of an input device, a VRPN server's
+// messages, datagrams).
 //
-// Absolute times are those of this machine at this minute; only ratios can be compared. The bytes
-// of a pty pass through a kernel worker, those of a socket pair do not.
+// Absolute times are valid only for this machine and this minute; only ratios can be compared. The
+// bytes of a pseudo-terminal pass through a kernel worker, those of a socket pair do not.
 #include <functional>
 #include <map>
 #include <thread>
@@ -124,8 +125,8 @@ void judge(Reader kind, const Rows& pair_idle, const Rows& pty_idle, const Rows&
   report.figure(name + ".sleeping_by_it_on_pty", pty, "1");
 }
 
-// All readers, except for the one with awake cores if this machine does not allow it, which is
-// reported.
+// Returns all readers. The reader with awake cores is left out, with a note, if this machine does
+// not allow it.
 std::vector<Reader> readersHere(Report& report) {
   std::vector<Reader> readers;
   for (int kind = 0; kind < kReaders; ++kind) readers.push_back(static_cast<Reader>(kind));
@@ -160,8 +161,8 @@ void benchReaders(const Options& options, Report& report) {
   report.figure("pty.by_bare_p99", bare99, "1");
 }
 
-// The other kinds of devices, compared with a bare loop that publishes a sample for the bytes of
-// each record without parsing them. The rounds of both are interleaved.
+// Measures the other kinds of devices, compared with a bare loop that publishes a sample for the
+// bytes of each record without parsing them. The rounds of both are interleaved.
 void benchKinds(const Options& options, Report& report) {
   report.text("\nkind      line  MERLIN [us]  bare [us]   median by bare (limit 1.2)\n");
   Times& times = makeTimes();

@@ -26,7 +26,7 @@ void atHighestRates(nlohmann::json& config) {
   config["script"] = "turning";
 }
 
-// The smallest number of samples among the three devices.
+// Returns the smallest number of samples among the three devices.
 std::uint64_t fewestSamples(const shm::DeviceSlots& devices) {
   return std::min({devices.glove()->samples->count(), devices.tracker()->stations[0]->count(),
                    devices.ball()->samples->count()});

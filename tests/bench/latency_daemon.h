@@ -10,8 +10,8 @@ namespace merlin::bench {
 // Measures the CPU time of all three devices at their highest rates. Takes 13 s.
 void benchCpu(const DemoOptions& options, const test::TempDir& dir, Report& report);
 
-// Measures L = wire + parse and publish + age at pick-up + wait for the frame + draw and present.
-// Takes 10 s.
+// Measures the terms of L = wire + parse and publish + age at pick-up + wait for the frame + draw
+// and present. Takes 10 s.
 void benchEquation(const DemoOptions& options, const test::TempDir& dir, Report& report);
 
 }  // namespace merlin::bench

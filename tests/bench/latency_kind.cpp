@@ -22,7 +22,7 @@ std::string trackerRecord(std::uint32_t n) {
   return fastrak::encode(r, fastrak::kDriverList, {});
 }
 
-// A record of the ball, with counts whose bytes need no escape.
+// Returns a record of the ball whose counts have no bytes that need an escape.
 std::string ballRecord(std::uint32_t n) {
   spaceball::Displacement d;
   d.axes = {static_cast<std::int16_t>(0x0420 + n % 16), 0x0121, 0x0122, 0x0123, 0x0124, 0x0125};

@@ -22,7 +22,7 @@ std::string evdev(Evdev kind, int code = 0, std::int32_t value = 0) {
   return test::evdevRecord(kind, code, value, 0, 1000);
 }
 
-// Positions; each differs from the one before.
+// Returns a position that differs from the one before.
 std::int32_t place(std::uint32_t n) { return static_cast<std::int32_t>(100 + n % 800); }
 float share(std::uint32_t n) { return static_cast<float>(place(n)) / 1000; }
 
@@ -52,7 +52,7 @@ std::string vrpnTrackerRecord(std::uint32_t n) {
       kDevice, kMessage,
       merlin::vrpnPose(0, std::array{share(n), 0.F, 0.F}, std::array{1.F, 0.F, 0.F, 0.F}));
 }
-// Ends with a first pose, for which the driver waits.
+// The greeting ends with a first pose, for which the driver waits.
 std::string vrpnTracker() { return vrpnServer("Tracker0", kVrpnPoseType) + vrpnTrackerRecord(0); }
 std::string vrpnPad() { return vrpnServer("Joystick0", kVrpnChannelsType); }
 std::string vrpnPadRecord(std::uint32_t n) {
@@ -64,7 +64,7 @@ std::string oscRecord(std::uint32_t n) {
   return test::datagram(
       test::oscMessage("/tracker/1/pose", {share(n), 0.F, 0.F, 0.F, 0.F, 0.F, 1.F}));
 }
-std::string oscSender() { return oscRecord(0); }  // ends with a first pose, as above
+std::string oscSender() { return oscRecord(0); }  // a first pose, for which the driver waits
 std::string nothing() { return {}; }
 std::string tuioRecord(std::uint32_t n) {
   return test::datagram(test::tuioCursors(static_cast<int>(n), {{1, share(n), 0.5F}}));

@@ -31,7 +31,7 @@
 
 namespace merlin::bench {
 
-// Shared between the processes of a round; indexed by sample number, each entry written once.
+// Times that the processes of a round share; indexed by sample number. Each entry is written once.
 struct Times {
   static constexpr std::size_t kMost = 1 << 16;
   std::atomic<std::uint32_t> received;
@@ -59,7 +59,7 @@ using Segment = shm::DevicesSegment;
 
 std::int64_t now() { return toNanoseconds(SystemClock().now()); }
 
-// Waits for the channel's next sample and stores its time of arrival, repeatedly.
+// Repeatedly waits for the channel's next sample and stores its time of arrival.
 template <typename Sample>
 void noteArrivals(const shm::Channel<Sample>& channel, Times& times) {
   times.received = 0;
@@ -76,7 +76,7 @@ void noteArrivals(const shm::Channel<Sample>& channel, Times& times) {
   }
 }
 
-// A usual client, which maps the segment.
+// Runs a usual client, which maps the segment.
 void runClient(const std::string& name, const Kind& kind, Times& times) {
   askForRealTime();
   const auto reader = shm::SegmentReader<Segment>::open(name);
@@ -111,7 +111,7 @@ class AskedStream final : public ByteStream {
   std::atomic<bool> stop_{false};
 };
 
-// Both ends of a line, the device's and the reader's; both are non-blocking.
+// Both ends of a line, the device's and the reader's. Both are non-blocking.
 struct Ends {
   UniqueFd device, reader;
   std::optional<io::PtyMaster> pty;
@@ -135,7 +135,7 @@ Ends makeLine(Line kind) {
   return ends;
 }
 
-// Reads, publishes and wakes the client, and nothing else: the minimum work of any blocking reader.
+// Only reads, publishes and wakes the client: the minimum work of any blocking reader.
 template <typename Sample>
 void bareLoop(int fd, std::size_t length, shm::Channel<Sample>& channel,
               const std::atomic<bool>& stop) {
@@ -155,8 +155,8 @@ void bareLoop(int fd, std::size_t length, shm::Channel<Sample>& channel,
   }
 }
 
-// The reader's thread: opens the line as the driver does, sets `streaming`, reads until it is
-// stopped.
+// The reader's thread: opens the line as the driver does, sets `streaming`, and reads until `stop`
+// is set.
 struct ReaderThread {
   std::atomic<bool> streaming{false}, stop{false}, ended{false}, real_time{false};
   std::atomic<double> cpu_s{0};
@@ -202,8 +202,8 @@ void sendRecords(int fd, const RoundSize& size, const Kind& kind, std::uint32_t 
   });
 }
 
-// The dialogue with which the driver begins. A bare loop has none, and must not count a greeting as
-// a record.
+// Serves the dialogue with which the driver begins. A bare loop has no dialogue, and would count a
+// greeting as a record, so it gets none.
 void beginDialogue(int fd, const Kind& kind, Reader reader, const std::function<bool()>& done) {
   if (!kind.emulator) return serveGreeting(fd, reader == kBare ? "" : kind.greeting(), done);
   const auto emulator = emulate::findEmulator(kind.emulator)
@@ -211,7 +211,7 @@ void beginDialogue(int fd, const Kind& kind, Reader reader, const std::function<
   serveDialogue(fd, *emulator, done);
 }
 
-// Latency of each record from the line to the client, in microseconds.
+// Returns the latency of each record from the line to the client [us].
 std::vector<double> latencies(const Times& times, std::uint32_t first, std::uint32_t last) {
   std::vector<double> all_us;
   for (std::uint32_t n = first; n < last; ++n) {

@@ -1,4 +1,5 @@
-// One round of ./dev bench latency: one reader on one line, and one client of its shared memory.
+// One round of ./dev bench latency: one reader on one line, and one client of the shared memory
+// into which the reader publishes.
 #pragma once
 
 #include <functional>
@@ -26,13 +27,13 @@ struct Times;
 Times& makeTimes();
 
 struct Round {
-  std::vector<double> latency_us;  // for each record that the client saw or missed
+  std::vector<double> latency_us;  // latency of each record, whether the client saw or missed it
   double cpu_share = 0;            // CPU time of the reader's thread / wall time
-  bool real_time = false;          // whether that thread got real-time priority
+  bool real_time = false;          // whether the reader's thread got real-time priority
 };
 
-// Throws DidNotRun if the line, the segment, the client or the reader does not run to the end.
-// kAwake is allowed only if io::limitCpuLatency(0) succeeds.
+// Runs one round. Errors: throws DidNotRun if the line, the segment, the client or the reader does
+// not run to the end. REQUIRES: the reader kAwake only if io::limitCpuLatency(0) succeeds.
 Round runRound(const RoundSize& size, Reader reader, Line line, Times& times,
                const Kind& kind = kGloveKind);
 

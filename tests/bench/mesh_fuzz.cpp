@@ -18,7 +18,7 @@ namespace {
 using render::lod::Dendrogram;
 using render::mesh::Mesh;
 
-// The message about an invalid mesh; empty if the mesh is valid.
+// Returns the message about an invalid mesh; empty if the mesh is valid.
 std::string faultOf(const Mesh& mesh) {
   const auto valid = validate(mesh);
   return valid ? "" : valid.error().what;

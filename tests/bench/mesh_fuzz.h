@@ -12,12 +12,13 @@ struct MeshFuzz {
   std::map<std::string, std::uint64_t> counts;
   std::string fault;  // of the last mesh; empty if there was no fault
 
-  // Runs validate, tidy, splitNonManifold, reduce with each cost, the dendrogram and cuts. False if
-  // there was a fault.
+  // Makes the mesh for this seed and runs validate, tidy, splitNonManifold, reduce with each cost,
+  // the dendrogram and cuts. Returns false if there was a fault.
   bool run(std::uint64_t seed);
 };
 
-// The part of a message that all faults or refusals of its kind share, without names and figures.
+// Returns the part of a message that all faults or refusals of its kind share, without names and
+// figures.
 std::string kindOf(const std::string& what);
 
 }  // namespace merlin::bench

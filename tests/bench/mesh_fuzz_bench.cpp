@@ -1,6 +1,6 @@
-// ./dev bench fuzz-meshes [N]: hostile meshes through the repairs of reading, both costs and the
-// dendrogram. For each kind of fault it prints the first seed, with which the fault can be
-// reproduced.
+// ./dev bench fuzz-meshes [N]: runs hostile meshes through the repairs after reading, the reduction
+// with both costs, and the dendrogram. For each kind of fault it prints the first seed, with which
+// the fault can be reproduced.
 #include <csignal>
 #include <cstring>
 #include <map>
@@ -20,7 +20,8 @@ namespace {
 
 volatile std::uint64_t current_seed = 0;
 
-// A crash is a fault too, so its seed has to be printed. A signal handler may call few functions.
+// Prints the seed at a crash, since a crash is a fault too. A signal handler may call few
+// functions.
 void sayWhere(int signal) {
   char text[96] = "\nfault: a crash; again: --count 1 --seed ";
   char* end = text + std::strlen(text);

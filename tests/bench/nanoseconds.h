@@ -9,7 +9,8 @@
 
 namespace merlin::bench {
 
-// Nanoseconds of one call of f(n): the minimum of many rounds, so that interruptions do not count.
+// Returns the time of one call of f(n) [ns]: the minimum of many rounds, so that interruptions do
+// not count.
 template <typename F>
 Measured nanoseconds(F f) {
   constexpr int kCalls = 2000, kRounds = 500;

@@ -1,5 +1,5 @@
-// ./dev bench operator: the cost for each frame of the plates and the panel over the operator's
-// tile, compared with a memcpy of the tile.
+// ./dev bench operator: the cost for each frame of drawing the plates and the panel over the
+// operator's tile, compared with a memcpy of the tile.
 #include <chrono>
 #include <cstring>
 #include <memory>
@@ -63,7 +63,8 @@ render::tiles::TilePlan planOf(int width, int height) {
   return *plan;
 }
 
-// Every third frame draws anew; before() is called before each frame with its number.
+// Measures the overlay, which draws anew in every third frame; calls before() before each frame
+// with the frame's number.
 template <typename Before>
 Times measureOverlay(render::frame::Overlay& overlay, std::size_t bytes, int frames,
                      const Before& before) {

@@ -1,11 +1,11 @@
 // ./dev bench outputs: the cost of an output of each kind for a frame of the demo's wall, compared
-// with a memcpy of it; and whether frames of the other outputs are late while one output is slow or
-// stuck.
+// with a memcpy of the frame. Also measures whether frames of the other outputs are late while one
+// output is slow or stuck.
 //
-// All frames are the same picture of the demo's wall, 1920 x 480. It is presented after a wait that
-// is as long as the demo's drawing, so that a frame is late if an output blocks the wall's thread,
-// and not because the machine has other work. The window is that of merlin-window at an Xvfb.
-// Disturbed and undisturbed runs take turns in one process with the same outputs.
+// All frames are the same picture of the demo's wall, 1920 x 480 pixels. Each is presented after a
+// wait that is as long as the demo's drawing; a frame is therefore late if an output blocks the
+// wall's thread, and not because the machine has other work. The window is that of merlin-window at
+// an Xvfb. Disturbed and undisturbed runs take turns in one process with the same outputs.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -48,7 +48,7 @@ struct Options {
   int rounds = 5;
 };
 
-// Plays a file system: it writes at once, half a second late, or not before it is released.
+// Simulates a file system that writes at once, half a second late, or not before it is released.
 class Disk {
  public:
   enum class State { kFast, kSlow, kStuck };
@@ -159,7 +159,7 @@ class Wall {
   std::optional<out::OutputSet> outputs_;
 };
 
-// Processor time that a process has used [ms].
+// Returns the processor time that a process has used [ms].
 double cpuMs(pid_t pid) {
   double ns = 0;
   for (const auto& thread :
@@ -292,7 +292,7 @@ Counts run(Wall& wall, double seconds) {
 
 struct Disturbance {
   const char* name;
-  Kind of;  // the disturbed output; the others are judged
+  Kind of;  // the disturbed output; the other outputs are judged
   std::function<void()> begin, end;
 };
 
@@ -312,11 +312,13 @@ std::vector<Disturbance> disturbances(Wall& wall, std::optional<StoppedReader>& 
            [&] { reader.reset(); }}};
 }
 
-// Judges one of the other outputs by its late frames beyond those of the undisturbed runs.
+// Judges an output that was not disturbed, by its late frames in disturbed runs beyond those in
+// undisturbed runs.
 bool judge(Report& report, const std::string& name, std::size_t i, const Counts& disturbed,
            const Counts& undisturbed) {
-  constexpr double kMostMoreLate = 0.02;  // limit, as a share of its frames
-  constexpr double kChance = 3;           // number of frames that may be late for other reasons
+  // limit of further late frames, as a share of the output's frames
+  constexpr double kMostMoreLate = 0.02;
+  constexpr double kChance = 3;  // number of frames that may be late for other reasons
   const std::string what = fmt::format("frames of {} in {}", kNames[i], name);
   const Measured late = shareOf(disturbed.late[i], disturbed.due[i], what);
   const Measured before = shareOf(undisturbed.late[i], undisturbed.due[i], what);

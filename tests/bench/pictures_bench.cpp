@@ -1,8 +1,9 @@
 // ./dev bench pictures: a picture of 20000 x 10000 pixels that is panned and zoomed without a
 // pause, and a panorama that is turned: late frames, rate and memory. Also the time from `merlin
-// show` to the first picture of a file that the wall has not seen before, including one of 10^11
-// pixels, and the late frames while contents change: by commands on the socket, and by programs
-// that start on the same processors, beside the same wall while nothing is asked of it.
+// show` to the first picture of a file that the wall has not shown before, including a file of
+// 10^11 pixels. Also the late frames while contents change, by commands on the socket and by
+// programs that start on the same processors, compared with the same wall while it gets no
+// commands.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -33,7 +34,7 @@ struct Options : DemoOptions {
   int shows = 10;
 };
 
-// The picture has structures of every size, so that no tile compresses to almost nothing.
+// Writes a picture that has structures of every size, so that no tile compresses to almost nothing.
 void writePpm(const std::string& path, int width, int height) {
   std::ofstream out(path, std::ios::binary);
   out << "P6\n" << width << " " << height << "\n255\n";
@@ -68,7 +69,7 @@ std::string pyramid(const Options& options, int width, int height, bool panorama
   return fs::absolute(name + ".tif").string();
 }
 
-// A picture of 10^11 pixels in a sparse file.
+// Makes a picture of 10^11 pixels in a sparse file; returns its path.
 std::string gigapixels(const Options& options) {
   fs::create_directories(options.work);
   const std::string name = options.work + "/400000x250000.tif";
@@ -79,14 +80,14 @@ std::string gigapixels(const Options& options) {
   return fs::absolute(name).string();
 }
 
-// The disk space that a file takes [kB].
+// Returns the disk space that a file occupies [kB].
 double diskOf(const std::string& file) {
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0) didNotRun(file, "it is not there", "make it again");
   return static_cast<double>(s.st_blocks) * 512 / 1000;
 }
 
-// Resident memory of a process [MB]: its maximum, or its present value.
+// Returns the resident memory of a process [MB]; `field` selects its maximum or its present value.
 double memoryOf(pid_t pid, const std::string& field) {
   std::ifstream status(fmt::format("/proc/{}/status", pid));
   for (std::string line; std::getline(status, line);) {
@@ -95,8 +96,9 @@ double memoryOf(pid_t pid, const std::string& field) {
   didNotRun("merlind", "/proc has no " + field + " of it", "is /proc there?");
 }
 
-// Times of copying a frame of the demo's wall, which the wall does three times for each frame.
-// While memory is slow, because another machine on the same hardware uses it, frames take longer.
+// Returns the times of copying a frame of the demo's wall, which the wall does three times for each
+// frame. While memory is slow, because another machine on the same hardware uses it, frames take
+// longer.
 std::string frameCopies() {
   std::vector<char> from(std::size_t{4} * 640 * 480 * 4, 1), to(from.size());
   SystemClock clock;
@@ -118,7 +120,7 @@ struct Motion {
   std::string renderer;
 };
 
-// The motion of a person at the wall, 30 steps a second: circles and zooms.
+// Returns the motion of a person at the wall at time `t`, for 30 steps a second: circles and zooms.
 std::string stepAt(double t, bool panorama) {
   if (panorama) return fmt::format("0 0 0 {:.4f} {:.4f} 0", 0.6 * std::sin(t), -1.5);
   const double zoom = 0.06 * std::sin(2 * std::numbers::pi * t / 12);
@@ -134,7 +136,8 @@ Motion move(const Options& options, const test::TempDir& dir, const std::string&
     config["wall"]["contents"] = {{{"picture", file}}};
   });
   SystemClock clock;
-  clock.sleepUntil(clock.now() + std::chrono::seconds(3), {});  // until all is sharp and at rest
+  // until the picture has full detail and is at rest
+  clock.sleepUntil(clock.now() + std::chrono::seconds(3), {});
   status::CommandSender sender;
   const std::string endpoint = daemon.commandEndpoint();
   const shm::WallStats from = daemon.wall();
@@ -190,7 +193,7 @@ class LateFrames {
   std::uint64_t late_ = 0, deadlines_ = 0;
 };
 
-// Sends a command on the socket and waits until it is answered; no program starts for it.
+// Sends a command on the socket and waits for the answer, without starting a program.
 void command(const DemoDaemon& daemon, status::CommandSender& sender, const std::string& name,
              const std::string& argument = "") {
   SystemClock clock;
@@ -203,9 +206,9 @@ void command(const DemoDaemon& daemon, status::CommandSender& sender, const std:
   }
 }
 
-// Shows a picture and the model in turns on a wall that the demo's script moves: in each round by
+// On a wall that the demo's script moves, shows a picture and the model in turns: in each round by
 // `merlin show` and `merlin next_content`, then by the same commands on the socket, with a second
-// in between in which nothing is asked of the wall.
+// in between in which the wall gets no commands.
 Shown show(const Options& options, const test::TempDir& dir, const std::string& file) {
   DemoDaemon daemon(options, dir, "all",
                     [&](nlohmann::json& config) { config["script"] = "turning"; });
@@ -259,7 +262,8 @@ void print(Report& report, const std::string& name, const Motion& m, bool panora
   report.figure(key + ".work", m.work_ms, "ms");
 }
 
-// Whether a figure is within the limit that MERLIN states; prints a line if it is not.
+// Returns 1 if a figure is within the limit that MERLIN states; otherwise prints a line and returns
+// 0.
 int keeps(Report& report, const char* what, double value, double most, const char* unit) {
   if (value <= most) return 1;
   report.text("beyond its limit: {} {:.2f} {}, the limit is {} {}\n", what, value, unit, most,

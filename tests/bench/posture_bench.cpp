@@ -1,8 +1,9 @@
-// ./dev bench posture: training compared with the simplest classifiers on unseen people, adapting
-// to one more person, gloves that drift, flicker of the reported postures, and recall. The
-// comparison with FANN is in fann_bench.cpp.
+// ./dev bench posture: training compared with the simplest classifiers on people not used for
+// training, adaptation to one more person, gloves that drift, flicker of the reported postures, and
+// recall. The comparison with FANN is in fann_bench.cpp.
 //
-// All hands are synthetic. Absolute times differ between machines; ratios are within one run.
+// All hands are synthetic. Absolute times differ between machines; the ratios are between times of
+// one run.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -35,7 +36,7 @@ DataSet people(std::size_t first, std::size_t count, std::size_t per_take, std::
   return nn::test::people(hand::allShapes(), first, count, per_take, seed);
 }
 
-// The value of a training that succeeded; ends the benchmark if it failed.
+// Returns the value of a training that succeeded; ends the benchmark if it failed.
 template <typename T>
 const T& expect(const Result<T>& result, const char* subject) {
   if (!result) didNotRun(subject, result.error().what, "see nn/README.md");
@@ -55,8 +56,8 @@ void recall(const nn::PostureNetwork& network, const DataSet& hands, Report& rep
   report.figure("recall", ns, "ns");
 }
 
-// The method of 1998 in its simplest form: consecutive numbers as codes, the glove's fixed ranges,
-// gradient descent over all examples.
+// Measures the accuracy of the method of 1998 in its simplest form: consecutive numbers as codes,
+// the glove's fixed ranges, gradient descent over all examples.
 Measured plainAccuracy(const DataSet& train, const DataSet& test) {
   nn::PostureNetwork network;
   std::vector<std::size_t> posture;
@@ -119,8 +120,8 @@ void adapting(const nn::Fitted& fitted, Report& report) {
   }
 }
 
-// The first half of each person's session is for training, the second half for the test. These
-// people influenced no choice of the training method.
+// Trains with the first half of each person's session and tests with the second half. These people
+// influenced no choice of the training method.
 void drifts(Report& report) {
   constexpr std::uint64_t kFirst = 4001, kPeople = 20;
   std::size_t hands = 0, faults = 0, followed = 0;
@@ -158,7 +159,7 @@ struct Flicker {
 };
 
 // Compares the reported names with the intended ones, in order. A name out of order counts as
-// wrong, unless only the next intended one was missed.
+// wrong, unless only the intended name before it was missed.
 Flicker countOf(const std::vector<std::string>& reported, std::span<const hand::Shape> meant) {
   Flicker f;
   f.reported = reported.size();
@@ -182,7 +183,8 @@ Flicker countOf(const std::vector<std::string>& reported, std::span<const hand::
 }
 
 struct Reported {
-  std::vector<std::string> held, plain;  // with hold time and hysteresis, and without them
+  // names reported with hold time and hysteresis, and without them
+  std::vector<std::string> held, plain;
 };
 
 Reported reportedBy(const nn::PostureNetwork& network, std::span<const hand::Shot> shots) {

@@ -1,7 +1,6 @@
-// ./dev bench range: a range image of 1024 x 1024 pixels with colours is read, filtered,
-// triangulated and written as binary PLY; compared with reading and writing the same bytes alone.
-// Both use the same file system with warm caches. Fails if MERLIN takes more than five times as
-// long.
+// ./dev bench range: reads a range image of 1024 x 1024 pixels with colours, filters, triangulates
+// and writes it as binary PLY, and compares this with only reading and writing the same bytes. Both
+// use the same file system with warm caches. Fails if MERLIN takes more than five times as long.
 //
 // The image is synthetic: a wavy surface with noise, spikes and pixels without a return.
 #include <chrono>
@@ -69,7 +68,7 @@ void makeInput(const Files& files) {
   orEnd(writeFile(files.colour, colours), files.colour);
 }
 
-// The seconds of each step.
+// Seconds of each step, one value for each round.
 struct Steps {
   std::vector<double> reading{}, filtering{}, meshing{}, writing{}, all{}, alone{};
   std::uint64_t triangles = 0;
@@ -111,7 +110,7 @@ void copyOnce(const Files& files, const std::string& mesh, Steps& steps) {
   steps.alone.push_back(secondsSince(began));
 }
 
-// The same image as the organised cloud that peers read: binary PCD.
+// Writes the same image as the organised cloud that peers read: binary PCD.
 void writeCloud(const Files& files) {
   const auto image = orEnd(range::readRange(files.range, {}), files.range).image;
   const std::vector<float> points = range::pointsOf(image, range::Work{threadsOr(0)});
@@ -136,13 +135,14 @@ void writeCloud(const Files& files) {
   orEnd(writeFile(files.cloud, bytes), files.cloud);
 }
 
-// Runs a peer's program, which does the same from its cloud to a mesh of triangles, and compares
-// its times.
+// Runs a peer's program, which makes a mesh of triangles from the same image as a cloud, and
+// compares its times.
 void comparePeer(const std::string& program, int rounds, const Files& files, const Measured& all,
                  Report& report) {
   writeCloud(files);
   const auto image = orEnd(range::readRange(files.range, {}), files.range).image;
-  const double edge_m = 10 * range::stepOf(image) * 2;  // at the mean range of 2 m
+  // ten steps between pixels, at the mean range of 2 m
+  const double edge_m = 10 * range::stepOf(image) * 2;
   const test::Outcome said = test::run(
       {program, files.cloud, files.mesh, fmt::format("{:.6f}", edge_m), std::to_string(rounds)});
   const auto object = nlohmann::json::parse(said.output, nullptr, false);

@@ -1,10 +1,10 @@
-// ./dev bench fuzz-ranges: damaged range files and point clouds of every kind through MERLIN's own
+// ./dev bench fuzz-ranges: gives damaged range files and point clouds of every kind to MERLIN's own
 // readers; ranges that are read also go through the filters and the triangulation. Each input has
-// to end with a valid mesh, a valid cloud, or one sentence that names the file. Built with the
-// sanitizers.
+// to end with a valid mesh, a valid cloud, or one sentence that names the file. The program is
+// built with the sanitizers.
 //
 // The files are synthetic and small. Each gets one to four changes: bytes or digits are changed,
-// pieces cut out or doubled, numbers made too large.
+// pieces are removed or doubled, numbers are made too large.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -53,8 +53,8 @@ std::string pcdPoints() {
   return bytes;
 }
 
-// Compresses to literal runs only. A file that is ordered by fields would have the same bytes in
-// another order.
+// Compresses to literal runs only. For a file that is ordered by fields, the bytes would be the
+// same in another order.
 std::string packed(const std::string& bytes) {
   std::string runs;
   for (std::size_t at = 0; at < bytes.size(); at += 32) {
@@ -95,7 +95,7 @@ std::string gridPoints() {
   return bytes;
 }
 
-// A file in the format that merlin-import writes.
+// Returns a file in the format that merlin-import writes.
 std::string importedGrid() {
   std::string bytes =
       "MERLIN grid 1\nsize: 3 2\nformat: FITS\ngeometry: elevation\ncell: 0.5 0.25\nprojection: "
@@ -144,7 +144,7 @@ void change(std::string& bytes, Random& random) {
   }
 }
 
-// A file in memory, without a place on a disk.
+// A file that exists in memory only.
 class MemoryFile {
  public:
   MemoryFile() : fd_(::memfd_create("range", MFD_CLOEXEC)) {
@@ -164,7 +164,7 @@ class MemoryFile {
 
 class RangeFuzz {
  public:
-  // Runs the input of this seed. Returns its fault; empty if it ended well.
+  // Runs the input of this seed. Returns its fault; empty if the input was handled correctly.
   std::string run(std::uint64_t seed) {
     Random random(seed);
     const bool is_cloud = random.below(4) == 0;

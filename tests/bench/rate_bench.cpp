@@ -1,11 +1,12 @@
 // ./dev bench rates: triangles that the wall draws in a second, compared with the table of 1998
-// ([GOURLEY98] 2.5). Also the share of the time that is drawing (a loop that only drew and read
+// ([GOURLEY98] 2.5). Also the share of the time in which it draws (a loop that only drew and read
 // back would be faster by no more than the rest), and the gain from a second context on a second
 // core.
 //
 // As in 1998, the triangles are textured and at full resolution, before reduction, and the
-// operator's view is a fourth one. Each model is complete: two copies of the demo's scan side by
-// side with a made-up texture of 1024 x 1024, reduced to that many triangles and drawn whole.
+// operator's view is a fourth one. The models are made of two copies of the demo's scan side by
+// side, with a synthetic texture of 1024 x 1024 pixels. For each row of the table they are reduced
+// to its number of triangles and drawn whole.
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -77,7 +78,7 @@ Result<Ok> dress(render::mesh::Mesh& mesh) {
   return Ok{};
 }
 
-// The model in front of the viewer, turned a little further at each step.
+// Returns the pose of the model in front of the viewer, turned a little further at each step.
 Eigen::Isometry3f pose(int k) {
   Eigen::Isometry3f view = Eigen::Isometry3f::Identity();
   view.translate(Eigen::Vector3f(0, 0, -2.05F));
@@ -91,8 +92,8 @@ struct Times {
   double frame_s = 0, drawing_s = 0;
 };
 
-// Only the steps that draw and read back count as drawing, but not the cut, the upload and the time
-// between.
+// Measures one frame. Only the steps that draw and read back count as drawing, not the cut, the
+// upload and the time between the steps.
 Times timeOf(render::frame::FrameRenderer& renderer, const Eigen::Isometry3f& T_eye_model,
              std::size_t level, const Clock& clock) {
   const Timestamp began = clock.now();
@@ -116,7 +117,7 @@ class Rate {
     const Measured frame_s = medianOf(frame_s_, "frames");
     return Measured::of(1 / frame_s, frame_s.count(), "frames");
   }
-  // Throws if nothing was drawn.
+  // Returns the median share; throws DidNotRun if nothing was drawn.
   Measured drawingShare() const {
     const Measured share = medianOf(share_, "frames");
     if (share <= 0)
@@ -166,7 +167,7 @@ struct Options {
   bool textured = true;
 };
 
-// Returns the value, or ends the benchmark.
+// Returns the value, or ends the benchmark if there is an error.
 template <typename T>
 T expect(Result<T> result, const char* subject) {
   if (!result) didNotRun(subject, result.error().what, "see --scan");
@@ -184,7 +185,7 @@ render::lod::Dendrogram makeModel(const Options& options) {
 bool run(const Options& options, Report& report) {
   render::gl::prepareSoftwareGl(options.raster_threads);
   const render::lod::Dendrogram model = makeModel(options);
-  // With fewer triangles, the rate would be that of another model.
+  // With fewer triangles, the measured rate would be that of another model.
   if (model.triangleCount() < kRows1998[std::size(kRows1998) - 1].triangles) {
     didNotRun("the scan",
               fmt::format("twice {} has {} triangles", options.scan, model.triangleCount()),

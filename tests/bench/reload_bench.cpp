@@ -28,7 +28,7 @@ struct Options : DemoOptions {
 // The resources that a process holds.
 struct Held {
   std::size_t descriptors, threads;
-  double memory_mb;  // resident
+  double memory_mb;  // resident memory [MB]
 };
 
 std::size_t entriesOf(pid_t pid, const char* folder) {
@@ -48,8 +48,8 @@ Measured lateShare(const shm::WallStats& from, const shm::WallStats& to) {
                  "deadlines of the wall, which did not move,");
 }
 
-// The configurations in turn: changes of bindings, of postures, of a device's line, of the wall;
-// every fourth is bad.
+// Returns the i-th configuration: changes of bindings, of postures, of a device's line and of the
+// wall take turns; every fourth one is invalid.
 json variantOf(const json& demo, int i) {
   json config = demo;
   switch (i % 8) {

@@ -1,6 +1,7 @@
 // ./dev bench soak: a day of the wall on a virtual clock, with scripted people, faults and reloads,
-// in minutes: memory, descriptors, late frames, and whether every event is explained. The same seed
-// is the same day. In real time, on the real programs: ./dev soak.
+// in minutes. Measures memory, descriptors and late frames, and checks whether every event is
+// explained. The same seed gives the same day. The same in real time with the real programs is
+// ./dev soak.
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
@@ -88,7 +89,7 @@ double memoryNow_mb() {
   return static_cast<double>(resident) * 4096 / (1 << 20);
 }
 
-// One simulated lab, from start to end.
+// One simulated lab, from its start to its end.
 class Lab {
  public:
   Lab(const Options& options, const test::TempDir& dir)
@@ -134,7 +135,7 @@ class Lab {
   std::uint64_t measured() const { return measured_; }
 
  private:
-  // A minute in which the renderer was slow on purpose is counted separately.
+  // Takes a sample. A minute in which the renderer was slow on purpose is counted separately.
   void sample(double at_h) {
     const shm::WallStats now = wall_.stats();
     const std::uint64_t deadlines = now.deadlines - last_.deadlines, late = now.late - last_.late;
@@ -203,7 +204,7 @@ void reportEvents(const DayCounts& counts, Report& report) {
   report.figure("digest", fmt::format("{:016x}", counts.digest), all);
 }
 
-// Whether memory and descriptors have not grown.
+// Reports memory and descriptors; returns whether they have not grown.
 bool reportHeld(const Options& options, const std::vector<Sample>& samples, Report& report) {
   std::vector<std::pair<double, double>> memory;
   std::vector<double> descriptors;
@@ -229,7 +230,8 @@ bool reportHeld(const Options& options, const std::vector<Sample>& samples, Repo
   return slope.value - slope.half_width <= 0 && after <= before;
 }
 
-// A day in which nobody came or nothing happened says nothing. Minutes may be so.
+// Ends the benchmark if on a whole day nobody came or nothing happened, since it then shows
+// nothing. Runs of less than a day are not checked.
 void expectLived(const Options& options, const DayCounts& counts,
                  const std::vector<Sample>& samples) {
   if (options.hours < 24) return;
@@ -243,7 +245,7 @@ void expectLived(const Options& options, const DayCounts& counts,
 }
 
 bool bench(const Options& options, Report& report) {
-  // With a single heap for the one thread, memory of samples can be compared.
+  // With a single heap for the one thread, the memory sizes of samples can be compared.
   ::mallopt(M_ARENA_MAX, 1);
   const test::TempDir dir;
   Lab lab(options, dir);

@@ -1,10 +1,10 @@
 // ./dev bench spnav: time from the last byte of a ball's record on its line to a client of the
-// space-mouse socket, for merlind and for spacenavd on the same emulated Spaceball, in turns. They
+// space-mouse socket, for merlind and for spacenavd on the same emulated Spaceball, in turns. Both
 // are compared with a bare loop, which reads the line and writes to the client: the minimum for one
-// process between the two.
+// process between line and client.
 //
 // The client implements the socket's protocol itself, so that one process can have several
-// connections; libspnav adds the same time to all three.
+// connections; libspnav would add the same time to all three subjects.
 #include <array>
 #include <atomic>
 #include <filesystem>
@@ -46,10 +46,10 @@ constexpr const char* kNames[] = {"merlind", "spacenavd", "bare loop"};
 
 std::int64_t now() { return toNanoseconds(SystemClock().now()); }
 
-// Version 0 of the protocol: type, six axes or a button, time in ms.
+// An event of version 0 of the protocol: type, six axes or a button, time [ms].
 using Event = std::array<std::int32_t, 8>;
 
-// Connects to the socket of a server as soon as it exists.
+// Connects to a server's socket as soon as it exists.
 UniqueFd connectTo(const std::string& path, const std::function<bool()>& ended) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
@@ -63,7 +63,7 @@ UniqueFd connectTo(const std::string& path, const std::function<bool()>& ended) 
   return fd;
 }
 
-// A client of the socket on a thread of its own; stores the time of each motion and its first axis.
+// A client of the socket, with its own thread; stores the time of each motion and its first axis.
 class Client {
  public:
   explicit Client(UniqueFd socket) : socket_(std::move(socket)) {
@@ -100,8 +100,8 @@ class Client {
   std::thread thread_;
 };
 
-// The bare loop, in a process of its own: it counts whole records and sends a motion with the first
-// axis of each.
+// The bare loop, in its own process: it counts whole records and sends a motion with the first axis
+// of each record.
 class BareServer {
  public:
   BareServer(const std::string& line, const std::string& path) {
@@ -173,7 +173,7 @@ class Subject {
     }
   }
 
-  // From the record's last byte to the client, in microseconds, for each of `samples` records.
+  // Measures the time from a record's last byte to the client [us], for each of `samples` records.
   std::vector<double> measure(const Options& options);
 
  private:
@@ -207,7 +207,7 @@ class Subject {
     const std::uint32_t first = client.count();
     std::vector<std::int64_t> sent_ns(options.samples);
     std::thread device([&] {
-      askForRealTime();  // this thread plays the hardware, so nothing may delay it
+      askForRealTime();  // this thread takes the place of the hardware, so nothing may delay it
       atIrregularTimes(options.samples, options.rate_hz, [&](std::uint32_t n) {
         sent_ns[n] = now();
         send(n);
@@ -233,8 +233,8 @@ class Subject {
 
 std::vector<double> Subject::measure(const Options& options) {
   std::atomic<bool> streams{server_ == kBare};
-  // The emulator answers from the start: spacenavd gives up on a ball that does not answer, and
-  // then has no socket.
+  // The emulator has to answer from the start: spacenavd gives up on a ball that does not answer,
+  // and then makes no socket.
   std::thread ball([&] {
     const auto emulator = emulate::findEmulator("spaceball")
                               ->make({}, *emulate::findMotionScript("still"), SystemClock().now());
@@ -252,7 +252,7 @@ std::vector<double> Subject::measure(const Options& options) {
   const bool told = streams.exchange(true);
   ball.join();
   if (!told) fail("it told nothing of the emulated ball");
-  // Until then, everything that is on its way has arrived.
+  // After this time, everything that was on its way has arrived.
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   return exchange(options, *client);
 }

@@ -1,8 +1,8 @@
-// Meshes of any size for ./dev bench size: copies of one scan, laid out as a square of tiles.
+// Makes meshes of any size for ./dev bench size: copies of one scan, laid out as a square of tiles.
 //
 // The copies are not identical: waves that run over the whole square raise and lower them, so that
-// no two have equal costs. Every tile is a component of its own, as the scan is. The last tile is
-// cut along its x axis, so that the number of triangles is exact.
+// no two copies have equal costs. Every tile is a component of its own, as the scan is. The last
+// tile is cut along its x axis, so that the number of triangles is exact.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -107,11 +107,12 @@ class Tiling {
 
   float step(std::size_t k) const { return (1 + kGap) * (box_.high[k] - box_.low[k]); }
 
-  static constexpr std::size_t kFace = 13;  // bytes
+  static constexpr std::size_t kFace = 13;  // [bytes]
   const render::mesh::Mesh& tile_;
   render::mesh::Box box_;
   std::size_t triangles_, across_ = 1, whole_ = 0;
-  std::vector<std::uint32_t> used_, place_, last_;  // of the last tile, which is cut
+  // vertices and triangles of the last tile, which is cut
+  std::vector<std::uint32_t> used_, place_, last_;
 };
 
 int run(const std::string& scan, double triangles, const std::string& output) {

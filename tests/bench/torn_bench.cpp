@@ -1,8 +1,9 @@
 // ./dev bench torn: torn reads of the shared memory, and the state in which a killed writer leaves
-// it.
+// the shared memory.
 //
-// One process writes samples with a checksum as fast as it can, others read them; no sample may be
-// a mix of two. Then writers are killed with -9, most of them in the middle of a write: a reader
+// One process writes samples with a checksum as fast as it can, and others read them; no sample may
+// be a mix of two. Then writers are killed with SIGKILL, most of them in the middle of a write: a
+// reader must neither hang nor accept an incomplete value. Exits with 1 if either happened.
 // must neither hang nor accept an incomplete value. Exits with 1 if either happened.
 #include <atomic>
 #include <cstring>
@@ -51,7 +52,8 @@ GloveSample sampleOf(std::uint32_t n) {
   return s;
 }
 
-// The same for the largest value of the segment; a writer spends most of its time writing it.
+// Returns the value number n of the largest slot of the segment, computed from n; a writer spends
+// most of its time writing this value.
 DeviceHealth healthOf(std::uint64_t n) {
   DeviceHealth h{};
   h.samples = n;
@@ -101,8 +103,8 @@ void readUntil(const std::string& name, std::uint64_t reads, Shared& shared) {
   if (!reader) return;
   std::uint64_t torn = 0, empty = 0, done = 0;
   for (; done < reads; ++done) {
-    // Three of four reads are of the newest sample; one is of that in the ring which is overwritten
-    // next.
+    // Of four reads, three are of the newest sample, and one is of the sample in the ring that will
+    // be overwritten next.
     const std::uint64_t count = (*reader)->glove[0].samples.count();
     const bool oldest = (done & 3) == 3 && count > shm::kHistory;
     const auto s = oldest ? (*reader)->glove[0].samples.at(count - shm::kHistory + 1)
@@ -118,7 +120,7 @@ void readUntil(const std::string& name, std::uint64_t reads, Shared& shared) {
   shared.empty += empty;
 }
 
-// Ends the benchmark if the segment, which is its subject, was not made.
+// Ends the benchmark if the shared memory segment could not be made.
 const Writer& expectMade(const Result<Writer>& segment) {
   if (!segment) didNotRun("the shared memory", segment.error().what, "see /dev/shm");
   return *segment;
@@ -156,12 +158,12 @@ bool benchTorn(const Options& options, Report& report) {
 }
 
 struct Wreck {
-  int middle = 0;             // number of writers that died in the middle of a value
-  std::uint64_t rubbish = 0;  // number of values that read as complete and are wrong
+  int middle = 0;             // number of writers that died in the middle of a write
+  std::uint64_t rubbish = 0;  // number of values that seem complete but are wrong
   double slowest_s = 0;
 };
 
-// Reads every slot that a dead writer left.
+// Reads every slot of a dead writer's segment.
 void inspect(const DevicesSegment& segment, const Clock& clock, Wreck& wreck) {
   const Timestamp start = clock.now();
   const std::uint64_t count = segment.glove[0].samples.count();
@@ -177,7 +179,7 @@ void inspect(const DevicesSegment& segment, const Clock& clock, Wreck& wreck) {
   wreck.slowest_s = std::max(wreck.slowest_s, toSeconds(clock.now() - start));
 }
 
-// The life of a daemon: makes the segment, as merlind does, and writes until it is killed.
+// Lives as a daemon does: makes the segment, as merlind does, and writes until it is killed.
 void liveAndWrite(const std::string& name, std::uint64_t generation, int ready) {
   const SystemClock clock;
   const auto segment = Writer::make(name, shm::devicesFields({{{"glove", SampleKind::kGlove}}, {}}),
@@ -221,7 +223,7 @@ bool benchKills(const Options& options, Report& report) {
       inspect(**reader, clock, wreck);
     }
   }
-  (void)SharedMemory::create(name, 4096);  // removes the segment of the last writer
+  (void)SharedMemory::create(name, 4096);  // removes the last writer's segment
   const auto middle = static_cast<std::uint64_t>(wreck.middle);
   if (wreck.middle < options.kills) {
     throw DidNotRun(fmt::format("of {} killed writers {} were in the middle of a value, not {}",

@@ -1,9 +1,9 @@
-// ./dev bench wall: late frames of the demo's wall, compared with a bare loop that does the same
-// median work at the same rate while the same devices run, in turns; and the effect of a dead
-// device on the others.
+// ./dev bench wall: late frames of the demo's wall, in turns with a bare loop that does the same
+// median work at the same rate while the same devices run. Also the effect of a dead device on the
+// others.
 //
-// Absolute times differ from machine to machine and from second to second. What counts is the last
-// column: how much later the wall is than the bare loop.
+// Absolute times differ from machine to machine and from second to second. The last column is what
+// matters: how much later the wall is than the bare loop.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -36,7 +36,7 @@ void sleepSeconds(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
-// The same amount of arithmetic each time that it runs.
+// Does the same amount of arithmetic at each call.
 class FixedWork {
  public:
   void run() {
@@ -52,7 +52,7 @@ struct BareRun {
   Measured late, work_s;
 };
 
-// A loop that does this work and nothing else, on the same grid.
+// Runs a loop that does only this work, on the same grid of periods.
 BareRun bareLoop(FixedWork& fixed, double rate_hz, double seconds) {
   SystemClock clock;
   const Duration period = fromSeconds(1 / rate_hz);
@@ -74,7 +74,7 @@ BareRun bareLoop(FixedWork& fixed, double rate_hz, double seconds) {
           medianOf(work, kWhat)};
 }
 
-// Chooses the amount of work with which the median turn of such a loop takes `work_s`.
+// Chooses the amount of work with which a turn of such a loop has the median time `work_s`.
 FixedWork workThatTakes(double work_s, double rate_hz) {
   FixedWork fixed;
   for (int i = 0; i < 6; ++i) {
@@ -116,7 +116,7 @@ WallRun runWall(const Options& options, const test::TempDir& dir, const std::str
           renderer};
 }
 
-// The bare loop runs beside the same devices, which a merlind without a wall reads.
+// Runs the bare loop beside the same devices, which a merlind without a wall reads.
 BareRun runBare(const Options& options, const test::TempDir& dir, const std::string& script,
                 double work_s, double rate_hz) {
   DemoDaemon devices(options, dir, "devices", withScript(script));
@@ -223,7 +223,7 @@ Intervals intervalsOf(const shm::Channel<T>& channel, std::uint64_t from, const 
 }
 
 struct Victim {
-  std::string name, driver;  // of the device
+  std::string name, driver;  // of the device that is killed
 };
 
 void killEmulator(const DemoDaemon& wall, const std::string& driver) {
@@ -239,7 +239,7 @@ void killEmulator(const DemoDaemon& wall, const std::string& driver) {
     didNotRun("the fault of " + driver, "merlind has no emulator of it to kill", "see --emulate");
 }
 
-// Time until merlind reads the emulator that replaces the killed one.
+// Returns the time until merlind reads the emulator that replaces the killed one.
 Measured secondsUntilBack(const DemoDaemon& wall, const Victim& victim, Process& emulator) {
   if (!emulator.saysEventually(" on pty:"))
     didNotRun(fmt::format("merlin emulate {}", victim.driver), emulator.output(), "see --bin");
@@ -254,7 +254,8 @@ Measured secondsUntilBack(const DemoDaemon& wall, const Victim& victim, Process&
   return Measured::of(toSeconds(clock.now() - answered), 1, "reconnections");
 }
 
-// Samples of glove and tracker since the last call, except for those of the device that is killed.
+// Samples of glove and tracker since the last call of begin(), except for those of the killed
+// device.
 class Others {
  public:
   Others(const shm::DeviceSlots& devices, std::string victim)
@@ -284,8 +285,8 @@ class Others {
 
 using Emulators = std::vector<std::unique_ptr<Process>>;
 
-// Kills the emulator of one device for a second; reports the effect on the other two, and whether
-// the wall went on.
+// Kills the emulator of one device for a second; reports the effect on the other two devices, and
+// whether the wall went on.
 bool killOne(const Victim& victim, const std::function<Process&()>& restart, DemoDaemon& wall,
              Report& report) {
   const std::string driver = victim.driver;

@@ -1,4 +1,4 @@
-// conf.d: files beside a configuration that are merged over it.
+// conf.d: a folder beside a configuration; its files are merged over the configuration.
 #include <filesystem>
 #include <string>
 
@@ -20,7 +20,7 @@ class ConfD : public testing::Test {
   ConfD() { std::filesystem::create_directory(dir_ / "conf.d"); }
   void put(const std::string& name, const std::string& text) const { writeText(dir_ / name, text); }
   LoadedSettings load() const { return loadSettingsFile(dir_ / "merlin.json"); }
-  // All findings, with names of files relative to the folder.
+  // Returns all findings, with names of files relative to the folder.
   std::string findings() const {
     std::string text;
     const LoadedSettings loaded = load();

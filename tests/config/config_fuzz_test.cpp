@@ -1,5 +1,5 @@
 // Mutated configurations: none crashes the loader, and none is accepted with a key that is ignored.
-// ./dev bench fuzz-config does the same with a hundred thousand.
+// ./dev bench fuzz-config does the same with a hundred thousand configurations.
 #include "tests/bench/config_fuzz.h"
 
 #include <array>

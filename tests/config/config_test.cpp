@@ -205,7 +205,7 @@ TEST(Config, WritingAndReadingGivesTheSame) {
             settings.devices.list[0].own.cyberglove.gain);
 }
 
-// The schema describes the items also of a list that is empty by default.
+// The schema has to describe the items also of a list that is empty by default.
 TEST(Config, TheSchemaDescribesTheItemsOfEveryList) {
   const std::string schema = settingsSchema();
   const std::size_t contents = schema.find("\"contents\"");
@@ -215,7 +215,8 @@ TEST(Config, TheSchemaDescribesTheItemsOfEveryList) {
   EXPECT_EQ(schema.find("\"properties\": {}"), std::string::npos);
 }
 
-// A room and these settings exclude each other, but a file need not have a room.
+// A room and these settings exclude each other, but a file need not have a room, so the schema must
+// not require one.
 TEST(Config, TheSchemaDescribesTilesWithoutARoom) {
   const std::string schema = settingsSchema();
   for (const char* key : {"\"frame_width\"", "\"frame_height\"", "\"frustum_deg\""})

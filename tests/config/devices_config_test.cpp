@@ -179,7 +179,7 @@ TEST(DevicesConfig, APortIsTheSameHoweverItIsSpelt) {
   EXPECT_EQ(both("sample", "replay:a", "replay:a"), "");
 }
 
-// A VRPN server has several devices, and accepts a connection of its own for each reader.
+// A VRPN server has several devices, and accepts a separate connection for each reader.
 TEST(DevicesConfig, DevicesOfOneServerShareItsPort) {
   const auto with = [](const std::string& second, const char* port = "tcp://lab:3883") {
     return devicesAre(fmt::format(R"({{"name": "a", "driver": "vrpn", "port": "{0}"}},
@@ -214,7 +214,7 @@ TEST(DevicesConfig, AHandsGloveAndTrackerAreThere) {
             "no glove: add one\n");
 }
 
-// The names of devices belong to the other machine's configuration, so they are not looked up in
+// The devices of the other machine are named in its own configuration, so they are not looked up in
 // this one.
 TEST(DevicesConfig, NamesOfAnotherMachinesDevicesAreNotLookedFor) {
   const std::string far = R"(, "wall": {"input": {"endpoint": "tcp://far:7401", "keys": "k",
@@ -411,8 +411,8 @@ TEST(DevicesConfig, TheSchemaAndTheManualDescribeEveryDriver) {
   EXPECT_EQ(schema.substr(driver, port - driver).find("\"default\""), std::string::npos);
 }
 
-// The default configuration's list may have fewer devices; a further device's settings are compared
-// with the defaults of its driver.
+// The default configuration's list may have fewer devices. The settings of a further device are
+// then compared with the defaults of its driver.
 TEST(DevicesConfig, SettingsOfAFurtherDeviceHaveTheirDriversDefaults) {
   const auto loaded = loadSettings(R"({"devices": [{"driver": "cyberglove"},
       {"name": "pad", "driver": "evdev", "evdev": {"curve": 3}}]})",

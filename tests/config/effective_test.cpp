@@ -1,5 +1,5 @@
 // The settings in effect: which of them differ from the defaults or between two configurations, and
-// which are hidden from strangers.
+// which are secret.
 #include "config/effective.h"
 
 #include <algorithm>

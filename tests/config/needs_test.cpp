@@ -1,4 +1,4 @@
-// Settings that have no effect without another one are findings.
+// Settings that have no effect because another setting is missing are findings.
 #include "config/needs.h"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST(Needs, WhatIsNeededIsThere) {
     EXPECT_EQ(found(json), "") << json;
 }
 
-// As merlind --print-config does, also for settings whose default depends on the driver's speed.
+// merlind --print-config writes defaults out, also those that depend on the driver's speed.
 TEST(Needs, ADefaultThatIsWrittenOutIsValid) {
   for (const char* json :
        {"{}", R"({"devices": [{"driver": "cyberglove", "port": "tcp://lab:4001"}]})"}) {

@@ -88,8 +88,8 @@ TEST(WallConfig, WhatIsWrongWithARoomIsSaidOnce) {
       "\"flat\", \"three_160\", \"three_120\", \"six\", \"hexagon\", \"arc_160\", \"arc_120\"\n");
 }
 
-// Three projectors on a hinged screen. The measured figures are rounded, so left and right are
-// symmetric only up to the rounding.
+// The wall has three projectors on a hinged screen. The measured figures are rounded, so left and
+// right are symmetric only up to the rounding.
 TEST(WallConfig, TheShippedRoomIsThreePanelsAroundTheViewer) {
   const auto loaded = loadSettingsFile(MERLIN_SOURCE_DIR "/config/wall-three-160.json");
   ASSERT_EQ(loaded.verdict(), Verdict::kValid) << findingsOf(loaded);
@@ -207,7 +207,7 @@ TEST(WallConfig, StereoIsCheckedWithTheRestOfTheWall) {
             "/hands/0 too; the head needs its own station\n");
 }
 
-// The nearest allowed value would mean something else (0: no stereo, or the distance of the wall),
+// The nearest allowed value would have another meaning (0: no stereo, or the distance of the wall),
 // so the value is refused instead of adjusted.
 TEST(WallConfig, StereoDistancesOutOfRangeAreRefused) {
   EXPECT_EQ(wallIs(R"("stereo": {"mode": "anaglyph", "eye_separation_m": -0.063})"),

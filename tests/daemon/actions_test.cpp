@@ -1,5 +1,5 @@
-// Bindings turn inputs of the devices into actions in shared memory; each reader sees each action
-// once.
+// Bindings turn inputs of the devices into actions in shared memory; each reader receives each
+// action once.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ constexpr std::size_t kGrab = actionIndex("grab"), kNextMode = actionIndex("next
 
 class ActionsTest : public testing::Test {
  protected:
-  // `source`: index of the device in the segment.
+  // Returns a writer for one device. `source`: index of the device in the segment.
   ActionWriter writer(const std::vector<Binding>& bindings, std::size_t source,
                       std::uint64_t generation = 1) {
     const auto devices = test::defaultSlotNames().devices;
@@ -78,7 +78,8 @@ TEST_F(ActionsTest, OnLeaveAnActionBeginsWhenTheInputEnds) {
   EXPECT_EQ(read().in_order, std::vector<std::size_t>{kLampOff});
 }
 
-// Both actions begin between two reads; the reader gets them in the order in which they began.
+// Both actions begin between two reads; the reader must receive them in the order in which they
+// began.
 TEST_F(ActionsTest, TheirOrderIsKept) {
   ActionWriter w = writer(
       {{"ball.button.1", "lamp_on"}, {"ball.button.1", "lamp_off", When::kLeave}}, test::kBall);
@@ -197,8 +198,8 @@ TEST_F(ActionsTest, WhatStaysBoundGoesOnAndWhatIsNoMoreEnds) {
   EXPECT_TRUE(pressed.all.held[kGrab]);
 }
 
-// An input that is pressed while its binding changes triggers nothing, neither when the press is
-// seen nor when it ends.
+// An input that is pressed while its binding changes must trigger nothing, neither when the press
+// is seen nor when it ends.
 TEST_F(ActionsTest, ANewBindingWaitsForTheNextPress) {
   ActionWriter w = writer({{"ball.button.1", "next_mode"}}, test::kBall);
   w.update(ball(1));
@@ -463,7 +464,7 @@ TEST_F(ActionsTest, AGestureIsThatOfItsHandOrOfAny) {
   EXPECT_EQ(state(test::kGlove).changed_ns, 6);
 }
 
-// Codes that the kernel might have for these names.
+// Returns the code that a kernel might have for this name; nothing for any other name.
 std::optional<std::uint16_t> keyCode(std::string_view name) {
   if (name == "key_space") return 57;
   if (name == "key_tab") return 15;
@@ -543,8 +544,8 @@ TEST_F(ActionsTest, ADeviceThatLacksABoundKeySaysSoOnceItWorks) {
   EXPECT_EQ(reason(HealthState::kOk), "") << "key.tab may be that of another device";
 }
 
-// A sample of two fingers at the same height and this far apart, on a surface twice as wide as
-// high.
+// Returns a sample of two fingers at the same height and `apart` from each other, on a surface
+// twice as wide as high.
 TouchSample fingers(float apart, std::uint32_t second = 2) {
   TouchSample sample{};
   sample.fingers = 2;

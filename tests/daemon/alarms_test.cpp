@@ -196,8 +196,8 @@ TEST(ChildProgram, SaysHowItFailed) {
   EXPECT_EQ(missing.error().code, Errc::kNotFound);
 }
 
-// Runs in a child, so that the limit on descriptors affects the child alone: of the five files that
-// are needed, none to three can be opened.
+// Runs in a child process, so that the limit on descriptors affects only the child: of the five
+// files that the start needs, none to three can be opened.
 TEST(ChildProgram, IsNamedWhereDescriptorsRanOut) {
   const auto child = startChild();
   ASSERT_TRUE(child);
@@ -235,7 +235,7 @@ TEST(ChildProgram, OfWhatItWritesTheBeginningIsKept) {
   EXPECT_EQ(lines.back(), "... and 2997952 bytes more, left out");
 }
 
-// The check has to report the same reason as the start.
+// The check of a program has to report the same reason as its start.
 TEST(ChildProgram, SaysWhyAScriptCannotBeExecuted) {
   const TempDir dir;
   const std::string script = dir / "script";
@@ -281,7 +281,7 @@ TEST(ChildProgram, IsEndedWithAllThatItStartedWhenItsTimeIsOver) {
   EXPECT_FALSE(program->ended(SystemClock().now()));
   EXPECT_EQ(outcome(*program, 7200), "took longer than its time limit, and was ended");
   const pid_t sleeper = std::stoi(test::readText(dir / "pid"));
-  // The process is gone, or is a zombie that init has not collected yet.
+  // The process is gone, or it is a zombie that init has not collected yet.
   EXPECT_TRUE(test::eventually([&] {
     const std::string stat = test::readText("/proc/" + std::to_string(sleeper) + "/stat");
     return stat.empty() || stat.find(") Z") != std::string::npos;

@@ -1,5 +1,5 @@
-// merlin wall align with keys: what each key means, what it asks the wall for, and what the screen
-// shows.
+// merlin wall align with keys: what each key means, what the session asks the wall for, and what
+// the screen shows.
 #include "daemon/cli/wall/align_session.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Aligner: which corrections it builds, what it refuses, and what is still there after a restart.
+// Aligner: which corrections it builds, what it refuses, and what it keeps over a restart.
 #include "daemon/wall/aligner.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// A correction whose result shows the settings by which it was built.
+// A correction that keeps the settings from which it was built, so that a test can read them.
 struct FakeCorrection final : render::frame::Correction {
   explicit FakeCorrection(const render::correct::CorrectionSettings& s) : settings(s) {}
   render::out::Signal apply(const render::out::Signal&) override {
@@ -26,7 +26,7 @@ class AlignerTest : public testing::Test {
     base_.corners = {4, 8, 0, 0, 0, 0, 0, 0};
     start();
   }
-  // Restarts the aligner with the state that the last one kept.
+  // Restarts the aligner with the state that the previous one kept.
   void start() {
     aligner_.reset();
     std::vector<AlignedOutput> outputs;
@@ -64,7 +64,8 @@ class AlignerTest : public testing::Test {
   json moved(const std::string& corner, std::size_t output = 0) {
     return ask("list")["outputs"][output]["corners"][corner]["moved"];
   }
-  // The present place of the first corner of the left output.
+  // Returns the present place of the first corner of the left output, once no correction is
+  // pending.
   std::pair<int, int> shown() {
     EXPECT_TRUE(test::eventually([&] { return ask("list")["outputs"][0]["pending"] == false; }));
     const render::out::Signal signal = left_->apply({});
@@ -223,7 +224,8 @@ TEST_F(AlignerTest, AnOutputWithBothEyesPicturesIsNotMoved) {
   EXPECT_EQ(moved("top_left"), json({3, 2}));
 }
 
-// The projector hangs upside down: what is left to a person before the wall is right in its signal.
+// The projector hangs upside down: what is on the left for a person before the wall is on the right
+// in its signal.
 TEST_F(AlignerTest, BoundInputsMoveCornersAsTheyAreSeen) {
   axes_ = {{-1, 0}, {0, -1}};
   start();
@@ -338,7 +340,8 @@ TEST_F(AlignerTest, AReloadThatTakesTheCornersBackBringsTheAlignmentBack) {
   EXPECT_EQ(keeper_.state().alignment.offset("left", state::cornerAt(0)), (state::Offset{3, 1}));
 }
 
-// The outputs' alignments have a common limit. When one is reset, the next that fits uses the room.
+// The alignments of all outputs share one limit. When one is reset, the next that fits uses the
+// free room.
 TEST_F(AlignerTest, AnAlignmentThatComesBackToAnotherOutputThanTheConfiguredOneIsShown) {
   base_.mesh.columns = base_.mesh.rows = 64;
   for (int i = 0; i < 64 * 64; ++i) base_.mesh.points.push_back({i % 64 / 63.0, i / 64 / 63.0});

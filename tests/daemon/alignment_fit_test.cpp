@@ -1,4 +1,4 @@
-// Which alignments are set aside when an output changes, and which of them return.
+// Which alignments are set aside when an output changes, and which of them are used again later.
 #include "daemon/wall/alignment_fit.h"
 
 #include <string>
@@ -28,7 +28,7 @@ class AlignmentFit : public testing::Test {
   render::out::PictureSize size_;
 };
 
-// The announcement of a reload before it is carried out.
+// A reload has to announce this before it is carried out.
 TEST_F(AlignmentFit, NamesTheOutputsWhoseAlignmentsDoNotFitOrFitAgain) {
   state::Alignment alignment, earlier;
   alignment.move(form("left", size_.width), state::cornerAt(0), {1, 1});

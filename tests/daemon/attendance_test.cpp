@@ -1,4 +1,4 @@
-// What counts as a touch by a visitor, and which states of the wall a touch ends.
+// What counts as a touch by a visitor, and which states of the wall end at a touch.
 #include "daemon/wall/attendance.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ using Shown = Attendance::Shown;
 
 class AttendanceTest : public testing::Test {
  protected:
-  // Simulates a frame 20 ms after the last one with `input_`, whose one-time events are removed
-  // afterwards.
+  // Simulates a frame with `input_`, 20 ms after the previous frame; afterwards removes one-time
+  // events from the input.
   Shown frame() {
     now_ += milliseconds(20);
     WallInput input = input_;
@@ -39,7 +39,7 @@ class AttendanceTest : public testing::Test {
     input_.scene.hand.emplace();
     input_.scene.hand->position_m[0] = x_m;
   }
-  // Makes the wall black; nobody has touched anything for some time.
+  // Makes the wall black, at a time when nobody has touched anything for some time.
   void black() {
     input_ = {};
     attendance_.touch();
@@ -97,8 +97,8 @@ TEST_F(AttendanceTest, NothingElseDoes) {
   EXPECT_EQ(frame(), Shown::kBlank);
 }
 
-// A forgotten glass, or a marked object that stands on the surface permanently. The surface reports
-// its position with some noise.
+// Examples are a forgotten glass, or a marked object that stands on the surface permanently. The
+// surface reports its position with some noise.
 TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesOrMoves) {
   black();
   input_.scene.touch.fingers = 1;
@@ -121,8 +121,8 @@ TEST_F(AttendanceTest, AFingerThatRestsIsATouchOnlyWhenItComesOrMoves) {
   EXPECT_EQ(frame(), Shown::kPicture) << "it comes again";
 }
 
-// A pinch is bound to blank or freeze. The fingers are lifted long afterwards, one after the other,
-// and move meanwhile.
+// A pinch is bound to blank or freeze. Long after the action, the fingers are lifted one after the
+// other, and move meanwhile.
 TEST_F(AttendanceTest, TheFingersThatMakeItBlackOrFrozenDoNotUndoItWhenTheyAreLifted) {
   for (const auto& [action, shown] : {std::pair(&WallInput::blank, Shown::kBlank),
                                       std::pair(&WallInput::freeze, Shown::kFrozen)}) {
@@ -166,7 +166,7 @@ TEST_F(AttendanceTest, AFingerThatComesBesideThoseOfTheGestureUndoesIt) {
   EXPECT_EQ(frame(), Shown::kPicture);
 }
 
-// Fingers that touch the surface while a button makes the wall black do not belong to that action.
+// Fingers that are on the surface while a button makes the wall black do not belong to that action.
 TEST_F(AttendanceTest, WhatStandsOnTheSurfaceWhenAButtonMakesItBlackUndoesItWhenItMoves) {
   input_.scene.touch.fingers = 1;
   pass(milliseconds(600));
@@ -177,7 +177,8 @@ TEST_F(AttendanceTest, WhatStandsOnTheSurfaceWhenAButtonMakesItBlackUndoesItWhen
   EXPECT_EQ(frame(), Shown::kPicture);
 }
 
-// The first finger ends the black state; the gesture is complete a second later.
+// The first finger ends the black state; the gesture, complete a second later, must not make the
+// wall black again.
 TEST_F(AttendanceTest, TheGestureThatMadeItBlackMakesItLight) {
   const auto gesture = [&] {
     input_.scene.touch.fingers = 3;
@@ -272,8 +273,8 @@ TEST_F(AttendanceTest, BlackIsAboveFrozen) {
   EXPECT_FALSE(attendance_.isFrozen());
 }
 
-// A visitor who turns the ball while the operator makes the wall black does not end that by turning
-// on.
+// If a visitor is turning the ball when the operator makes the wall black, going on with that turn
+// must not end the black state.
 TEST_F(AttendanceTest, AMotionThatGoesOnIsNoNewTouch) {
   push(1);
   pass(milliseconds(100));
@@ -289,7 +290,7 @@ TEST_F(AttendanceTest, AMotionThatGoesOnIsNoNewTouch) {
   EXPECT_EQ(frame(), Shown::kPicture);
 }
 
-// The button arrives together with its action, the ball trembles, and the button is released.
+// The button is reported together with its action, the ball trembles, and the button is released.
 TEST_F(AttendanceTest, TheButtonThatMakesItBlackDoesNotUndoIt) {
   for (const Shown expected : {Shown::kBlank, Shown::kPicture}) {
     pass(milliseconds(600));
@@ -303,7 +304,7 @@ TEST_F(AttendanceTest, TheButtonThatMakesItBlackDoesNotUndoIt) {
   }
 }
 
-// A long press: the hand that releases the button shakes the ball, however late that is.
+// At a long press, the hand that releases the button shakes the ball, however late that is.
 TEST_F(AttendanceTest, TheReleaseOfTheButtonThatMakesItBlackDoesNotUndoIt) {
   input_.scene.ball.emplace().buttons = 1;
   pass(milliseconds(1500));

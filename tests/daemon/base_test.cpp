@@ -305,7 +305,7 @@ TEST(ChildWork, AnEndOfTheChildIsAnError) {
   EXPECT_EQ(endless.error().what, "takes too long");
 }
 
-// That the nodes of one GPU have one folder is tested in the virtual machine, which has a GPU's.
+// That all nodes of one GPU have one folder is tested in the virtual machine, which has a GPU.
 TEST(DeviceFolderTest, WhatBelongsToNoDeviceHasNone) {
   EXPECT_EQ(deviceFolder("/dev/null"), "") << "memory, not a device";
   EXPECT_EQ(deviceFolder("/dev/dri/no such card"), "");

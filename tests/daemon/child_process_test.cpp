@@ -37,7 +37,7 @@ TEST(ChildProcess, NeitherEndOfAPipeReachesAnotherProgram) {
 
 int signalled = -1;  // write end of a pipe: the handler tells the child that a signal has arrived
 
-// The child sends one signal after another, each when the last one has arrived, and then ends.
+// The child sends signals one by one, each when the previous one has arrived, and then ends.
 TEST(ChildProcess, ASignalDoesNotEndTheWait) {
   auto pipe = makePipe();
   ASSERT_TRUE(pipe);
@@ -63,7 +63,7 @@ TEST(ChildProcess, ASignalDoesNotEndTheWait) {
   ::sigaction(SIGUSR1, &before, nullptr);
 }
 
-// Runs in a child, so that the limit on descriptors affects the child alone.
+// Runs in a child process, so that the limit on descriptors affects only the child.
 TEST(ChildProcess, WithoutDescriptorsThePipeIsSaidToBeMissing) {
   auto pipe = makePipe();
   ASSERT_TRUE(pipe);

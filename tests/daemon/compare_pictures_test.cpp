@@ -1,4 +1,4 @@
-// The images of `merlin mesh compare`: the parts that need no OpenGL.
+// The images of `merlin mesh compare`: the parts that do not need OpenGL.
 #include <gtest/gtest.h>
 
 #include "daemon/cli/mesh/edge_bands.h"
@@ -75,7 +75,8 @@ TEST(EdgeBands, GiveEqualEdgesOneColour) {
   }
 }
 
-// The place of every band's edge on the scale, by its colour: 0 red, 1 blue, else 0.5.
+// Returns the place of every band's edge on the scale, from the band's colour: 0 red, 1 blue,
+// otherwise 0.5.
 std::vector<double> placesOf(const render::mesh::Mesh& bands) {
   const std::vector<float>& colours = bands.find("colour")->values;
   std::vector<double> places;
@@ -91,8 +92,8 @@ std::vector<double> placesOf(const render::mesh::Mesh& bands) {
 }
 
 // [GOURLEY98] 5.1 and figure 5.1, (4) and (1): with the boundary's weight alone, edges inside are
-// red, and those that lead to the border, which are reduced last, are blue; the same edges in space
-// are of two lengths.
+// red, and edges that lead to the border, which are reduced last, are blue. With the weight of
+// geometry alone, the same edges have two lengths.
 TEST(EdgeBands, ShowWhatAWeightDoes) {
   render::mesh::Mesh grid = test::grid(4, 4);
   render::mesh::ensureNormals(grid);

@@ -1,6 +1,6 @@
 // A day of a wall on a virtual clock, with the classes that merlind runs: visitors and an operator,
 // the playlist, the projectors' schedule, PJLink, and two restarts. The table lists what happened
-// when.
+// and when.
 #include <map>
 #include <optional>
 #include <set>
@@ -25,8 +25,8 @@ constexpr pjlink::LocalMinute kMonday = 20605 * 24 * 60;  // 2026-06-01 00:00
 
 constexpr int at(int hour, int minute) { return 60 * (60 * hour + minute); }
 
-// A clock that performs the acts of each second, whoever advances it. So a projector that answers
-// slowly delays nothing else, as in merlind, where each projector has a thread.
+// A clock that performs the acts of each second, whoever advances it. A projector that answers
+// slowly therefore delays nothing else, as in merlind, where each projector has its own thread.
 class DayClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return now_; }
@@ -42,7 +42,7 @@ class DayClock final : public Clock {
     }
     now_ = end;
   }
-  // Seconds since the day's midnight.
+  // Returns the seconds since the day's midnight.
   int second() const {
     return static_cast<int>(std::chrono::duration_cast<seconds>(now_ - kMidnight).count());
   }
@@ -126,7 +126,8 @@ class Day : public testing::Test {
       kept_.projectors = {person.on, person.at};
     });
   }
-  // The settings that people changed are restored from the text of the state file.
+  // Simulates a restart: the settings that people changed are restored from the text of the state
+  // file.
   void restart() {
     say("merlind is restarted");
     const auto read = state::parseState(state::stateText(kept_), "state");

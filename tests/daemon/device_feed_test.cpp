@@ -22,7 +22,7 @@ constexpr Duration kStaleAfter = milliseconds(500);
 class DeviceFeedTest : public testing::Test {
  protected:
   void SetUp() override { start(test::defaultSlotNames(), 1); }
-  // Starts a devices' process with these devices, all of which work.
+  // Simulates the start of a devices' process with these devices, all of which work.
   void start(const shm::SlotNames& names, std::uint64_t generation) {
     segment_.reset();
     auto made = shm::SegmentWriter<shm::DevicesSegment>::make(name_, shm::devicesFields(names),
@@ -61,8 +61,8 @@ class DeviceFeedTest : public testing::Test {
   DeviceFeed feed_{name_, settings()};
 };
 
-// A hand that moves at 1 m/s, measured 3 ms ago, predicted to the end of the next frame, 33 ms
-// ahead.
+// A hand that moves at 1 m/s was measured 3 ms ago, and has to be predicted to the end of the next
+// frame, 33 ms ahead.
 TEST_F(DeviceFeedTest, PredictsTheHandToTheDisplayTime) {
   DeviceFeed feed(name_, settings());
   feed.lookAhead(milliseconds(33));
@@ -303,8 +303,8 @@ TEST_F(DeviceFeedTest, ThePushOfTheBallIsTheCornersWhileThatIsHeld) {
   EXPECT_NEAR(input.align.push.y, -60 * 0.1 * 0.125, 1e-9) << "up, gently, and no jump";
 }
 
-// As after an update of only one of the two processes. The reason is logged once, not at each
-// attempt.
+// Only one of the two processes was updated, for example. The reason must be logged once, not at
+// each attempt.
 TEST_F(DeviceFeedTest, ASegmentWhoseSlotsAreNotOursIsNoDeviceAndIsReportedOnce) {
   initLog(LogLevel::kWarning);
   push();
@@ -340,7 +340,8 @@ TEST_F(DeviceFeedTest, AlignActionsArriveInTheirOrder) {
   for (std::size_t i = 0; i < kAlignActionCount; ++i) EXPECT_EQ(input.align.actions[i], i);
 }
 
-// While the ball works the operator's panel, the actions bound to its buttons are not carried out.
+// While the ball controls the operator's panel, actions that are bound to the ball's buttons are
+// not carried out.
 TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
   const auto begin = [&](std::size_t source, std::uint32_t times) {
     shm::ActionState state{};
@@ -366,7 +367,7 @@ TEST_F(DeviceFeedTest, ActionsOfTheBallAreLeftOutExceptThePanels) {
   EXPECT_FALSE(input.scene.fly);
 }
 
-// The gestures of a hand belong to the hand's person, whoever has the tracker.
+// The gestures of a hand belong to the hand's person, whichever person the tracker has.
 TEST_F(DeviceFeedTest, AGesturesActionIsItsPersons) {
   FeedSettings two = settings();
   two.hands = {{"hand", "ben", "", {"", 2}}};

@@ -1,4 +1,4 @@
-// The page's list of events: their numbers, its limits, its memory.
+// The page's list of events: the numbers of events, its limits, its memory.
 #include "daemon/page/event_log.h"
 
 #include <cstdint>
@@ -29,7 +29,8 @@ TEST(PageEvents, AreNumberedAndBounded) {
   EXPECT_LT(log.since(0).size(), 300'000U);
 }
 
-// A browser's number is higher than all of this run if the clock was set back before the start.
+// If the clock was set back before the start, a browser's last number is higher than all numbers of
+// this run.
 TEST(PageEvents, AreAllNewToAClientWithANumberThatNoEventHasHad) {
   EventLog log(1000);
   EXPECT_EQ(log.since(5000), "{\"next\":1000,\"events\":[]}\n");

@@ -1,4 +1,4 @@
-// Which events are logged, and with which words.
+// Which events are logged, and in which words.
 #include "daemon/base/event_logger.h"
 
 #include <gtest/gtest.h>

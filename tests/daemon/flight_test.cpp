@@ -117,7 +117,7 @@ TEST(FlightRing, MayBeTakenWhileItIsWritten) {
   }
 }
 
-// A dump of an emulated glove, replayed through the driver, gives the samples that the daemon
+// The dump of an emulated glove, replayed through the driver, must give the samples that the daemon
 // received.
 TEST(FlightRecorder, WhatItDumpsReplays) {
   const test::TempDir dir;
@@ -166,7 +166,7 @@ TEST(FlightRecorder, AFaultThatRecursIsDumpedOnce) {
   FlightRecorder recorder(*segment, dir / "flight", "lab");
   (void)recorder.ringOf(test::kBall, "ball", "spaceball", 9600);
   std::int64_t now_ns = 1'000'000'000'000;
-  // The number of dumps after a device has worked for `works` and then failed.
+  // Returns the number of dumps after a device has worked for `works` and then failed.
   const auto dumpsOf = [&](Duration works, const char* reason) {
     DeviceHealth health{};
     health.state = HealthState::kOk;
@@ -201,10 +201,11 @@ TEST(FlightRecorder, KeepsEightDumpsOfADevice) {
   EXPECT_EQ(files, 8u);
 }
 
-// A process with a recorder, followed by another one of the same name.
+// A process with a recorder, followed by another process with the same instance name.
 class FlightOfACrash : public testing::Test {
  protected:
-  // Records in a process of its own, which ends without closing the recorder unless `in_order`.
+  // Records in a process of its own. Unless `in_order`, the process ends without closing the
+  // recorder.
   void record(bool in_order) {
     const pid_t child = ::fork();
     if (child == 0) {
@@ -259,8 +260,8 @@ TEST_F(FlightOfACrash, ARunThatEndsInOrderLeavesNothing) {
   EXPECT_TRUE(nextRun().empty());
 }
 
-// Damaged files: one that is cut, one of another format, one with a name that leads to another
-// folder.
+// The files are damaged: one is cut, one has another format, and one has a name that leads to
+// another folder.
 TEST_F(FlightOfACrash, WhatIsDamagedIsLeftOut) {
   const auto damaged = [&](std::size_t at, const std::string& bytes, std::uintmax_t size) {
     record(false);

@@ -51,7 +51,8 @@ TEST(FrameStats, WorkIsTheMedianAndTheMeanShareOfTheLastSecond) {
   EXPECT_DOUBLE_EQ(stats.utilisation(), 1.0);
 }
 
-// Two late frames, one in time, one late, then five in time: the step settled after four frames.
+// Two late frames, one in time, one late, then five in time: the step has settled after four
+// frames.
 TEST(FrameStats, AStepHasSettledWhenFiveInARowAreInTime) {
   FrameStats stats;
   int k = 0;

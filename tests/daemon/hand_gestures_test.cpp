@@ -32,7 +32,8 @@ class HandGesturesTest : public testing::Test {
                                   {"hand", std::nullopt, true}, 1, actions_),
             state_};
   }
-  // The poses of a synthetic person who makes each gesture once, with the intended gestures.
+  // Returns the poses of a synthetic person who makes each gesture once, with the intended
+  // gestures.
   static hand::Performance performance() {
     return hand::makeGestures(hand::MovingPerson(7003), 1, 11);
   }

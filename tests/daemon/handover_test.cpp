@@ -21,7 +21,8 @@ TEST(Handover, TheNewestOfferIsTakenOnce) {
   EXPECT_FALSE(handover.take(mine));
 }
 
-// The offering thread frees the values that were returned. The leak sanitizer detects a lost one.
+// The offering thread frees the values that were returned; the leak sanitizer would detect a lost
+// value.
 TEST(Handover, BetweenThreadsNothingIsTornOrLost) {
   constexpr int kOffers = 20'000;
   Handover<std::vector<int>> handover;

@@ -20,7 +20,7 @@
 namespace merlin {
 namespace {
 
-// Plays systemd: the receiving end of NOTIFY_SOCKET.
+// Takes the place of systemd: the receiving end of NOTIFY_SOCKET.
 class Systemd {
  public:
   Systemd() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -35,7 +35,7 @@ class Systemd {
   Systemd(const Systemd&) = delete;
   Systemd& operator=(const Systemd&) = delete;
 
-  // The next message and the file that came with it; empty if there is no message.
+  // Returns the next message and the file that came with it; empty if there is no message.
   std::pair<std::string, UniqueFd> heard() const {
     char text[512] = {};
     alignas(cmsghdr) char control[CMSG_SPACE(8 * sizeof(int))] = {};
@@ -91,7 +91,7 @@ TEST(KeptBySystemd, WithoutSystemdNothingIsKept) {
   EXPECT_FALSE(kept.take("card0").valid());
 }
 
-// Runs in a child, in which the files can have the numbers that systemd gives them.
+// Runs in a child process, in which the files can have the numbers that systemd gives them.
 TEST(KeptBySystemd, TakesOverWhatTheProcessBeforeItKeptAndForgetsTheRest) {
   const Systemd systemd;
   const test::TempDir dir;

@@ -1,4 +1,4 @@
-// Which content the wall begins with: the last one that was shown, however its path was spelled.
+// Which content the wall begins with: the one that was shown last, however its path was spelled.
 #include "daemon/wall/last_content.h"
 
 #include <filesystem>
@@ -10,7 +10,8 @@
 namespace merlin::wall {
 namespace {
 
-// The folder of the contents is spelled as in the option --config: "c.json", "folder/c.json".
+// The folder of the contents is spelled as in the option --config, for example "c.json" or
+// "folder/c.json".
 TEST(LastContent, IsFoundHoweverItsPathIsSpelled) {
   const std::string here = std::filesystem::current_path().string();
   const auto entries = [](const std::string& folder) {

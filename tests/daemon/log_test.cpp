@@ -1,4 +1,4 @@
-// Lines of the log: with fields if standard error is the journal, as text otherwise.
+// Lines of the log: with fields if standard error is the journal, otherwise as text.
 #include "daemon/base/log.h"
 
 #include <array>

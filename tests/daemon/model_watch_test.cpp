@@ -1,4 +1,4 @@
-// When the wall reads a model file again that is replaced while it runs.
+// When the wall reads a model file again that was replaced while the wall runs.
 #include "daemon/wall/model_watch.h"
 
 #include <filesystem>
@@ -81,8 +81,8 @@ TEST(ModelWatch, OffersTheNewestOfAPlaceAndSaysWhyOneIsRefused) {
   EXPECT_NE(events.front().find("is there again"), std::string::npos) << events.front();
 }
 
-// The folder is read for each slide. A file in it that cannot be shown is reported once for as long
-// as that lasts.
+// The folder is read for each slide. A file in the folder that cannot be shown is reported only
+// once while that lasts.
 TEST(ModelWatch, SaysOnceWhatAFolderOfSlidesHasThatIsNotShown) {
   ThreadWatch watch;
   const SystemClock clock;
@@ -108,7 +108,7 @@ TEST(ModelWatch, SaysOnceWhatAFolderOfSlidesHasThatIsNotShown) {
   EXPECT_EQ(offer("/talk/b.tif", "z.jpg is no pyramid").size(), 1U) << "it is there again";
 }
 
-// A damaged slide is skipped each time that it is its turn.
+// A damaged slide is skipped each time that its turn comes, but reported at most once an hour.
 TEST(ModelWatch, SaysOnceAnHourThatASlideIsLeftOut) {
   ThreadWatch watch;
   test::FakeClock clock;
@@ -137,8 +137,8 @@ TEST(ModelWatch, ReadsWhatWasMissingAsSoonAsItIsThere) {
   const SystemClock clock;
   int tries = 0;
   const auto make = [&](std::size_t place, const std::string& path) -> Result<ReadyModel> {
-    // As while a file is being written, after the folder's time stamp has changed for the last
-    // time.
+    // This simulates a file that is still being written after the folder's time stamp has changed
+    // for the last time.
     if (path == folder && ++tries == 1) return Error{Errc::kMalformed, "is cut"};
     if (path == folder) return ReadyModel{place, folder + "/first", nullptr, nullptr};
     if (test::readText(path) == "good") {

@@ -134,7 +134,7 @@ class Lines final : public Session {
 
 class Server : public testing::Test {
  protected:
-  // Connects to the server; returns the client's end.
+  // Connects a client to the server; returns the client's end of the connection.
   UniqueFd connect(const Peer& peer, bool* admitted = nullptr) {
     int ends[2];
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
@@ -147,7 +147,7 @@ class Server : public testing::Test {
     ASSERT_EQ(::send(fd.get(), text.data(), text.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(text.size()));
   }
-  // The bytes received so far, followed by "(closed)" if the server closed the connection.
+  // Returns the bytes received so far, followed by "(closed)" if the server closed the connection.
   static std::string received(const UniqueFd& fd) {
     std::string all;
     char bytes[4096];
@@ -370,7 +370,7 @@ TEST_F(Listening, WhoConnectsAllTheTimeIsAcceptedAtARate) {
   EXPECT_EQ(came(), 50U) << "a burst again";
 }
 
-// Runs in a child, so that the limit on descriptors affects the child alone.
+// Runs in a child process, so that the limit on descriptors affects only the child.
 TEST_F(Listening, WithoutDescriptorsNobodyIsNamedAsRefused) {
   const std::string path = dir_ / "s";
   const SystemClock clock;

@@ -13,12 +13,12 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Uses a wall's segment without a daemon; there are no devices.
+// Uses a wall's segment without a daemon and without devices.
 class OperatorFactsTest : public testing::Test {
  protected:
   render::text::OperatorFacts read() { return reader_.read(clock_.now()); }
 
-  // A frame of the rate 30 Hz that is done `work` after its begin.
+  // Adds a frame of a wall with 30 Hz that is complete `work` after its begin.
   void addFrame(Duration work, bool moving = true) {
     const Duration period = fromSeconds(1.0 / 30);
     shm::FrameTrace frame{};
@@ -69,7 +69,8 @@ TEST_F(OperatorFactsTest, RateDetailContentModeAndPostureComeFromTheSlots) {
   EXPECT_EQ(facts.slide, "03.tif");
 }
 
-// The governor's budget is what the machine can draw, which may be more than the picture has.
+// The governor's budget is what the machine can draw, which may be more detail than the picture
+// has.
 TEST_F(OperatorFactsTest, OfASmallPictureTheBudgetIsAllOfItAndTheBallMovesThePicture) {
   shm::WallStats stats{};
   stats.cost = stats.full_cost = 2'400, stats.budget = 933'359;
@@ -85,7 +86,8 @@ TEST_F(OperatorFactsTest, OfASmallPictureTheBudgetIsAllOfItAndTheBallMovesThePic
   EXPECT_EQ(read().mode, "turns the view");
 }
 
-// The devices' role may not be running; a wall without devices does not miss them.
+// The devices' role may not be running, but a wall that is to have no devices must not report them
+// as missing.
 TEST_F(OperatorFactsTest, DevicesAreMissingOnlyWhereThereAreToBeSome) {
   EXPECT_FALSE(read().devices_missing);
   OperatorFactsReader expecting(*wall_, "/merlin-test-no-such-devices", true, board_);

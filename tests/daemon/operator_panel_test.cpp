@@ -26,8 +26,7 @@ PanelOptions options() {
 
 PanelPlace place() { return {{640, 480, 640, 480}, *layOutPanel(640, 480, 13, options())}; }
 
-// A panel at the lower right of a frame; it uses a wall's segment without a daemon, and there are
-// no devices.
+// A panel at the lower right of a frame, with a wall's segment but without a daemon and devices.
 class OperatorPanelTest : public testing::Test {
  protected:
   OperatorPanelTest() {
@@ -41,7 +40,8 @@ class OperatorPanelTest : public testing::Test {
     std::strcpy(content.kind, "model");
     wall_->content.publish(content);
   }
-  // Simulates a frame 20 ms after the last one; returns the part of the input that the scene gets.
+  // Simulates a frame 20 ms after the last one; returns the part of the input that the scene
+  // receives.
   WallInput frame() {
     clock_.advance(milliseconds(20));
     WallInput input = input_;

@@ -11,7 +11,7 @@
 namespace merlin::page {
 namespace {
 
-// The result of a function of the page, computed by node.js; nothing where node.js is not
+// Returns the result of a function of the page, computed by node.js; nothing where node.js is not
 // installed.
 std::optional<std::string> runScript(const char* file, const std::string& expression) {
   const test::TempDir dir;
@@ -25,7 +25,7 @@ std::optional<std::string> runScript(const char* file, const std::string& expres
   return test::readText(result);
 }
 
-// The values that `statements` pass to said(), as an array.
+// Returns the values that `statements` pass to said(), as an array.
 std::optional<std::string> saidBy(const char* file, const std::string& statements) {
   return runScript(file, "(() => { const all = [], said = v => all.push(v); " + statements +
                              " return all; })()");
@@ -45,7 +45,7 @@ TEST(PageScripts, SayEachServiceThatHasFailedOnce) {
   EXPECT_NE(page.find("of failedServices(roles)) banners.push("), std::string_view::npos);
 }
 
-// On a phone, a wide wall is a low strip. A thumb's swipe over it once turned a model by 127
+// On a phone, a wide wall is a low strip, and a thumb's swipe over it once turned a model by 127
 // degrees.
 TEST(PageScripts, ADragTurnsAModelSanelyOnAPhoneAndMovesAPictureWithTheFinger) {
   const auto said = saidBy("/motion.js", R"(
@@ -101,7 +101,7 @@ TEST(PageScripts, SayWhatADragDoesToTheContent) {
                    R"("Unlock to move the picture."])");
 }
 
-// The same rules as in PanelPointer of daemon/base.
+// The page has to use the same rules as PanelPointer of daemon/base.
 TEST(PageScripts, WhatIsPressedOnTheOperatorsPanelIsToldInPixelsOfTheFrame) {
   const auto said = saidBy("/panel.js", R"(
     const panel = new PanelPointer(), all_told = now => {

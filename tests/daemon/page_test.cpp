@@ -59,7 +59,7 @@ Request post(const std::string& body) {
   return request;
 }
 
-// The status of a request that is answered at once; 200 if the request is passed on.
+// Returns the status of a request that is answered at once; 200 if the request is passed on.
 unsigned statusOf(const Request& request, const RouteSettings& s = settings()) {
   const Route found = route(request, s);
   const Answer* const answer = std::get_if<Answer>(&found);
@@ -77,7 +77,7 @@ TEST(PageHosts, OnlyAddressesLocalhostAndConfiguredNamesAreTheOwnOnes) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:7480", "localhost", "LocalHost:99", "[::1]",
                            "[::1]:7480", "127.9.9.9"})
     EXPECT_EQ(status(host), 200U) << host;
-  // Names that another site may resolve to this machine's address.
+  // Another site may resolve these names to this machine's address.
   for (const char* host : {"evil.example", "evil.example:7480", "127.0.0.1.evil.example",
                            "localhost.evil.example", "wall.lab.example.evil.example"})
     EXPECT_EQ(status(host), 403U) << host;
@@ -103,8 +103,8 @@ TEST(PageHosts, ReadingIsFreeOnlyUnderANameOfThisMachineAtALoopbackAddress) {
       << "the page itself, in which the token is entered";
 }
 
-// nginx and Apache send the address of the server behind them as the host name, unless they are
-// configured not to.
+// Unless they are configured otherwise, nginx and Apache send the address of the server behind them
+// as the host name.
 TEST(PageHosts, WhatAProxyPassesOnNeedsTheTokenUnderALoopbackNameToo) {
   Request request = get("/api/status");
   request.passed_on = true;
@@ -530,7 +530,7 @@ TEST(PageContents, AModelsPictureIsKeptOnceEachTimeThatItComesUp) {
   constexpr auto kStep = std::chrono::milliseconds(250);
   ShowingWatch watch;
   Timestamp now{};
-  // Number of steps until the picture is kept, at most 40.
+  // Returns the number of steps until the picture is kept, at most 40.
   const auto stepsUntilKept = [&](const Showing& showing) {
     int steps = 0;
     do now += kStep;
@@ -591,8 +591,8 @@ TEST(PagePhone, GoesTheWayThatTheBrowserWent) {
   }
 }
 
-// Whether the code has its three finder patterns: a ring of 7 modules around a square of 3 in three
-// corners.
+// Returns whether the code has its three finder patterns: in three corners, a ring of 7 modules
+// around a square of 3.
 bool hasFinders(const QrCode& code) {
   for (const auto& [left, top] :
        {std::pair(0, 0), std::pair(code.side - 7, 0), std::pair(0, code.side - 7)}) {

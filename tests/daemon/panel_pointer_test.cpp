@@ -1,4 +1,4 @@
-// Which pointer events belong to the operator's panel, and what merlind learns of them.
+// Which pointer events belong to the operator's panel, and what merlind is sent of them.
 #include "daemon/base/panel_pointer.h"
 
 #include <string>

@@ -1,4 +1,4 @@
-// A day of a wall, in seconds of a virtual clock: when people touch it, and what it shows.
+// A day of a wall, in seconds of a virtual clock: when people touch the wall, and what it shows.
 #include "daemon/wall/playlist.h"
 
 #include <array>
@@ -33,12 +33,13 @@ constexpr int at(int hour, int minute) { return 60 * (60 * hour + minute); }
 
 class Day : public testing::Test {
  protected:
-  // Commands by the second of the day in which they are sent; `pushed`: whether somebody pushes the
-  // ball in that second.
+  // Commands by the second of the day in which they are sent. `pushed`: returns whether somebody
+  // pushes the ball in that second.
   using Act = std::function<void(Attendance&)>;
   std::map<int, Act> commands;
   std::function<bool(int)> pushed = [](int) { return false; };
-  std::function<std::uint32_t(int)> fingers = [](int) { return 0U; };  // on a touch surface
+  // number of fingers on a touch surface
+  std::function<std::uint32_t(int)> fingers = [](int) { return 0U; };
 
   // Runs the day; returns each change as "HH:MM:SS CHANGE".
   std::vector<std::string> run(const PlaylistSettings& playlist, int until = at(24, 0)) {

@@ -1,4 +1,5 @@
-// The devices that `merlin devices` finds in a made-up /dev and /sys, and its table of live values.
+// The devices that `merlin devices` finds in a synthetic /dev and /sys, and its table of live
+// values.
 #include "daemon/cli/devices/plugged.h"
 
 #include <filesystem>
@@ -20,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As the kernel prints a bitmap: words of 64 bits, the highest first.
+// Returns the bits in the form in which the kernel prints a bitmap: words of 64 bits, the highest
+// first.
 std::string bitmap(std::initializer_list<int> bits) {
   std::array<std::uint64_t, 12> words{};
   for (const int bit : bits) words[static_cast<std::size_t>(bit) / 64] |= 1ULL << bit % 64;
@@ -106,7 +108,7 @@ TEST_F(PluggedTest, AnInputDevicesEntryHasItsDriverAndALastingName) {
   EXPECT_TRUE(found[0].readable);
 }
 
-// /sys may have named a device a moment ago whose file is gone.
+// A device that /sys still lists may have lost its file in /dev a moment ago.
 TEST_F(PluggedTest, AnInputDeviceThatIsGoneIsNotListedAndTheOthersAre) {
   addInput(1, "gone", {{BTN_SOUTH}, {ABS_X}});
   addInput(2, "pad", {{BTN_SOUTH}, {ABS_X}});

@@ -98,7 +98,7 @@ TEST_F(PostureSinkTest, WithoutANetworkNoPostureIsSeen) {
   EXPECT_EQ(next_.glove.size(), 4u);
 }
 
-// The newest sample of three stations, and the counters of the line itself.
+// The chain is due when the sink behind it is due, and passes on the tick.
 TEST(ContinuedCounts, PassOnWhatIsDue) {
   test::RecordingSink samples;
   test::RecordingHealth healths;
@@ -151,14 +151,14 @@ TEST(ContinuedCounts, GoOnWhereTheDeviceIsMadeAnew) {
   EXPECT_EQ(ball(1), 9u);
 }
 
-// A glove whose sensors drift, each in its own direction, while its wearer shows one posture after
-// the other for 0.4 s each.
+// A glove whose sensors drift, each in its own direction, while its wearer shows the postures one
+// by one for 0.4 s each.
 class DriftingGlove {
  public:
   explicit DriftingGlove(const nn::TrainedPostures& postures) : ranges_(postures.network.ranges) {}
 
-  // Shows every shape once with its sensors drifted by `drift`, a share of each sensor's range;
-  // returns how many of the eight shapes were recognised at their last sample.
+  // Shows every shape once, with the sensors drifted by `drift`, a share of each sensor's range.
+  // Returns how many of the eight shapes were recognised at their last sample.
   int show(PostureSink& sink, const shm::Channel<PostureSample>& seen, float drift) {
     int right = 0;
     for (const hand::Shape& shape : hand::shapes()) {
@@ -176,7 +176,7 @@ class DriftingGlove {
     }
     return right;
   }
-  // No sample comes from the glove, as when it is unplugged.
+  // Simulates that no sample comes from the glove, as when it is unplugged.
   void pause() { counter_ += 200; }
 
  private:
@@ -186,7 +186,7 @@ class DriftingGlove {
 
 constexpr float kDrifted = 0.27F;
 
-// Number of postures, of eight, that are recognised at the end of a slow drift.
+// Returns how many of eight postures are recognised at the end of a slow drift.
 int rightAfterDrift(PostureSink& sink, const shm::Channel<PostureSample>& seen,
                     DriftingGlove& glove) {
   constexpr int kRounds = 100;

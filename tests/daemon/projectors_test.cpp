@@ -1,5 +1,6 @@
 // All projectors together: a day on a virtual clock with the schedule, a person's commands,
-// cool-down, and a projector that is missing for a while; and the texts of commands and status.
+// cool-down, and a projector that does not answer for a while. Also the texts of commands and
+// status.
 #include "daemon/devices/projectors.h"
 
 #include <vector>
@@ -31,8 +32,8 @@ DevicesSettings settingsOf(const std::vector<SwitchingTimes>& schedule) {
 
 constexpr pjlink::LocalMinute kMonday = 20605 * 24 * 60;  // 2026-06-01 00:00
 
-// A wall with projectors at the panel's line and two that speak PJLink; its clock starts on Monday
-// at `start_min`.
+// A wall with projectors at the control panel's line and two projectors that speak PJLink; its
+// clock starts on Monday at `start_min`.
 struct Wall {
   explicit Wall(int start_min, const std::vector<SwitchingTimes>& schedule =
                                    {{{"mon", "tue", "wed", "thu", "fri"}, "09:00", "17:00"}})
@@ -68,7 +69,7 @@ struct Wall {
       text += fmt::format(" {}", pjlink::powerName(s.power));
     return text;
   }
-  // Runs until the time of day: does each second what is due, and adds a row for each change.
+  // Runs until the time of day: does in each second what is due, and adds a row for each change.
   void until(int hour, int minute_of_hour, int second = 0) {
     const auto end = begin + seconds(hour * 3600 + minute_of_hour * 60 + second) -
                      std::chrono::minutes(first_min - kMonday);
@@ -102,8 +103,8 @@ struct Wall {
   std::string last, table = "\n";
 };
 
-// Columns after the time: the panel's projectors (30 s to warm up, 90 s to cool down), then left
-// and right, which have the same times.
+// The columns after the time are the panel's projectors (30 s to warm up, 90 s to cool down), then
+// the projectors left and right, which take the same times.
 TEST(Projectors, ADayOnAVirtualClock) {
   Wall w(8 * 60);
   w.until(8, 30);
@@ -202,7 +203,7 @@ TEST(Projectors, APersonSupersedesWhatTheScheduleStillWants) {
   EXPECT_EQ(w.powers(), "off off off");
 }
 
-// merlind is restarted on a Monday or Tuesday; the schedule switches on at 09:00 and off at 17:00.
+// merlind is restarted on a Monday or Tuesday. The schedule switches on at 09:00 and off at 17:00.
 struct Restart {
   int command_min;  // when a person switched the projectors, from Monday 00:00
   bool on;

@@ -1,4 +1,5 @@
-// Which settings a running merlind takes over: the table, a plan, and the effect of a plan.
+// Which settings a running merlind takes over: the table of settings, a plan, and the effect of a
+// plan.
 #include <set>
 
 #include <gtest/gtest.h>
@@ -113,7 +114,8 @@ TEST(ReloadTable, ASettingThatItDoesNotKnowNeedsARestart) {
   EXPECT_EQ(takerOf("").part, Part::kRestart);
 }
 
-// Changes one setting at a time: after the plan, exactly what the plan swaps is in effect.
+// Changes one setting at a time. After the plan was carried out, exactly what it swaps must be in
+// effect.
 TEST(ReloadPlan, WhatIsSwappedIsTaken) {
   int swapped = 0;
   for (const SettingValue& setting : valuesOf({})) {

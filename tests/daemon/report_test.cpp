@@ -133,7 +133,7 @@ class RunPart : public testing::Test {
   ~RunPart() override { ::sigprocmask(SIG_SETMASK, &mask_, nullptr); }
   RunPart(const RunPart&) = delete;
   RunPart& operator=(const RunPart&) = delete;
-  // The report's files about the configuration merlin.json of the folder.
+  // Returns the report's files about the configuration merlin.json of the folder.
   std::vector<PackedFile> configurationFiles(const TempDir& dir) {
     const ReportSubject subject{dir / "merlin.json", loadSettingsFile(dir / "merlin.json"),
                                 "merlin-report-none", dir.path()};
@@ -141,7 +141,8 @@ class RunPart : public testing::Test {
     EXPECT_TRUE(result);
     return result ? std::move(result->files) : std::vector<PackedFile>();
   }
-  // Runs a part that never ends, until it has written its file, however busy the machine is.
+  // Runs a part that never ends with growing time limits, until it has had time to write its file,
+  // however busy the machine is.
   PartResult runEnded(const std::function<void(PartFolder&)>& collect) {
     for (Duration limit = milliseconds(100); limit < seconds(100); limit *= 2) {
       auto result = run(collect, limit);
@@ -195,8 +196,8 @@ TEST_F(RunPart, WhatItHasStartedIsEndedToo) {
   }));
 }
 
-// Names of secret files are removed because of the settings' meaning, before known secrets are
-// replaced.
+// Names of secret files are removed because of the settings' meaning. This happens before known
+// secrets are replaced.
 TEST_F(RunPart, TheConfigurationLacksNamesOfFilesWithSecrets) {
   const TempDir dir;
   writeText(dir / "merlin.json",
@@ -281,7 +282,7 @@ TEST_F(RunPart, EndsAtCtrlC) {
   EXPECT_EQ(::read(stop_.get(), &taken, sizeof taken), static_cast<ssize_t>(sizeof taken));
 }
 
-// The files of an archive, as another reader sees them.
+// Returns the files of an archive, read by another program.
 std::vector<PackedFile> unpack(const std::string& path) {
   std::vector<PackedFile> files;
   archive* const a = ::archive_read_new();

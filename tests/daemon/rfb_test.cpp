@@ -1,4 +1,4 @@
-// merlin-rfb without its library: which part of a frame it shows, what input means, and the
+// merlin-rfb without its library: which part of a frame it shows, what its input means, and the
 // settings.
 #include <algorithm>
 #include <vector>
@@ -36,8 +36,8 @@ TileRectangle tile(const std::string& name, unsigned kind, const Rectangle& r, i
   return made;
 }
 
-// Two wall tiles above the operator's view; in the frame they are in the opposite order. A pixel's
-// red is its x in the frame, its green its y.
+// Returns a frame with two wall tiles above the operator's view; in the frame they are in the
+// opposite order. A pixel's red is its x in the frame, its green its y.
 CapturedFrame frameOfThree() {
   CapturedFrame frame;
   frame.width = 160;
@@ -58,7 +58,8 @@ CapturedFrame frameOfThree() {
 struct Shown {
   int width, height;
   std::vector<std::uint8_t> pixels;
-  // The frame position from which the pixel at (x, y) was copied, read from its red and green.
+  // Returns the frame position from which the pixel at (x, y) was copied, read from its red and
+  // green.
   std::pair<int, int> from(int x, int y) const {
     const auto at = static_cast<std::size_t>(4 * (y * width + x));
     return {pixels[at], pixels[at + 1]};

@@ -1,4 +1,5 @@
-// Tests daemon/page/role_watch: what the page reports of a role that starts, ends and starts again.
+// Tests daemon/page/role_watch: what the page reports about a role that starts, ends and starts
+// again.
 #include "daemon/page/role_watch.h"
 
 #include <optional>
@@ -23,7 +24,7 @@ class RoleWatchTest : public testing::Test {
     ASSERT_TRUE(made) << made.error().what;
     wall_.emplace(std::move(*made));
   }
-  // The sentences that the watch reports within a second.
+  // Returns the sentences that the watch reports within a second.
   std::vector<std::string> told() {
     for (int i = 0; i < 10; ++i) {
       clock_.advance(std::chrono::milliseconds(100));

@@ -1,5 +1,5 @@
-// The devices of another machine: the samples document of one end reaches the other end's shared
-// memory over a real, encrypted socket.
+// The devices of another machine: the samples document of one end reaches the shared memory of the
+// other end over a real, encrypted socket.
 #include "daemon/status/sample_link.h"
 
 #include <vector>
@@ -114,7 +114,7 @@ TEST(ApplySamples, BringsEverythingOverAsOldAsItWas) {
   EXPECT_STREQ(here->health[test::kBall].read()->port, "tcp://a:1");
 }
 
-// What moves a corner of an output is taken from this list.
+// The moves of an output's corner are taken from this list.
 TEST(ApplySamples, ListsTheActionsThatBeganBetweenTwoDocuments) {
   const auto here = std::make_unique<shm::DevicesSegment>();
   const auto apply = [&](std::uint32_t counter) {
@@ -232,7 +232,8 @@ struct Devices {
   ThreadWatch threads;
   test::LocalDevices segment;
   std::unique_ptr<StatusServer> server;
-  std::unique_ptr<net::Server> samples;  // uses `server`, so it is destroyed first
+  // uses `server`, so it is declared after it and destroyed first
+  std::unique_ptr<net::Server> samples;
 };
 
 HealthState ballOf(const shm::DevicesSegment& segment) {
@@ -285,7 +286,7 @@ TEST(SampleLink, AStrangersKeyHearsNothing) {
   EXPECT_EQ(theirs->ball[0].count(), 0u);
 }
 
-// As in a usual installation, the daemon lists our key only after our first attempt.
+// In a usual installation, the daemon lists the wall's key only after the wall's first attempt.
 TEST(SampleLink, AKeyThatIsListedLaterIsHeardAfterTheOthersRestart) {
   const test::TempDir dir;
   const int port = 20000 + (::getpid() + 3571) % 20000;
@@ -298,7 +299,7 @@ TEST(SampleLink, AKeyThatIsListedLaterIsHeardAfterTheOthersRestart) {
   auto devices = std::make_unique<Devices>(dir, port, server, std::vector{other.public_key});
   const auto link = SampleLink::start(settings, test::defaultSlotNames(), *here, threads, clock);
   ASSERT_TRUE(link) << link.error().what;
-  // At first the daemon accepts the TCP connection, but refuses our key at least once.
+  // At first the daemon accepts the TCP connection, but refuses the wall's key at least once.
   ASSERT_TRUE(test::eventually([&] { return devices->samples->report().accepted > 0; }));
   devices->stop();
   devices = std::make_unique<Devices>(dir, port, server, std::vector{ours.public_key});

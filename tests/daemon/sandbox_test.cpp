@@ -1,4 +1,4 @@
-// The sandbox of merlin-import in a child process: what is still allowed, and what is not.
+// The sandbox of merlin-import in a child process: what it still allows, and what it forbids.
 #include "daemon/import/sandbox.h"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ bool opens(const std::string& path, int flags) {
   return fd >= 0;
 }
 
-// Enters the sandbox in a child; returns the number, counted from 1, of the first check that fails
-// there, or 0.
+// Enters the sandbox in a child process, and performs the checks there. Returns the number, counted
+// from 1, of the first check that fails, or 0 if none does.
 int firstFailure(const std::string& input, const std::string& folder, const Limits& limits,
                  const std::vector<std::function<bool()>>& checks) {
   const pid_t child = ::fork();

@@ -12,7 +12,7 @@
 namespace merlin::shm {
 namespace {
 
-// Large, so that a write takes long enough for a read to overlap it.
+// A value that is so large that a write takes long enough for a read to overlap it.
 using Block = std::array<std::uint64_t, 512>;
 
 Block filled(std::uint64_t n) {
@@ -35,7 +35,8 @@ TEST(SeqSlot, IsEmptyUntilTheFirstPublish) {
 TEST(SeqSlot, AReaderNeverSeesAMixOfTwoValues) {
   SeqSlot<Block> slot;
   std::atomic<int> reads{0};
-  // Writes three times, then waits for a read: most reads overlap a write, and none waits for ever.
+  // The writer writes three times, then waits for a read. Most reads therefore overlap a write, and
+  // none waits for ever.
   std::jthread writer([&](const std::stop_token& stop) {
     for (std::uint64_t n = 1; !stop.stop_requested(); ++n) {
       const int before = reads;
@@ -63,7 +64,8 @@ TEST(SeqSlot, AWriterThatDiedInTheMiddleIsNothingAndNoWait) {
   EXPECT_FALSE(reinterpret_cast<const SeqSlot<std::uint64_t>&>(torn).read());
 }
 
-// SharedMemory::mend() copies a segment while others write to it, so a copy may be torn.
+// SharedMemory::mend() copies a segment while others write to it, so a slot in the copy may be
+// torn.
 TEST(SeqSlot, ACopyThatWasTakenDuringAWriteIsWholeWithTheNextOne) {
   struct Torn {
     std::uint64_t sequence = 7, payload = 1;

@@ -1,4 +1,5 @@
-// A server is optional for the wall: it is restarted after a failure, which never ends the process.
+// A server is optional for the wall: it is restarted after a failure, and its failure never ends
+// the process.
 #include "daemon/net/server_keeper.h"
 
 #include <atomic>

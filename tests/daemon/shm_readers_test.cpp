@@ -1,5 +1,5 @@
-// The shipped C and Python readers, which know only the table of fields, run as programs beside a
-// live writer.
+// The shipped C and Python readers, which know only the table of fields, run as programs while a
+// writer writes.
 #include <sstream>
 #include <thread>
 
@@ -70,7 +70,7 @@ TEST_F(Writer, ThePythonReaderSaysTheSame) {
   EXPECT_NE(out.output.find("glove.count [1]"), std::string::npos);
 }
 
-// Until destroyed, publishes ball samples whose rotation about x equals their counter.
+// Publishes ball samples whose rotation about x equals their counter, as long as this object lives.
 struct Turning {
   explicit Turning(DevicesSegment& segment)
       : thread([&segment](const std::stop_token& stop) {

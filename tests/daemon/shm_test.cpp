@@ -24,7 +24,7 @@ using test::privateName;
 
 const Endpoints kEndpoints{"ipc:///run/merlin/a.status", "ipc:///run/merlin/a.command"};
 
-// The contract with other programs: these offsets never change within version 6.
+// Other programs rely on these offsets, so they must never change within version 6.
 TEST(Layout, OffsetsOfVersion6) {
   EXPECT_EQ(kVersion, 6u);
   EXPECT_EQ(offsetof(Header, generation), 16u);
@@ -82,8 +82,8 @@ TEST(Fields, DescribeEachValueOnceAndInsideTheSegment) {
   }
 }
 
-// Marks the bytes of a segment that the table describes: values, the sequence counters of their
-// slots, and rings.
+// Returns, for each byte of a segment, whether the table describes it: values, the sequence
+// counters of their slots, and rings.
 std::vector<bool> described(const std::vector<Field>& fields, std::size_t size) {
   std::vector<bool> bytes(size);
   const auto mark = [&](std::size_t from, std::size_t count) {
@@ -97,8 +97,8 @@ std::vector<bool> described(const std::vector<Field>& fields, std::size_t size) 
   return bytes;
 }
 
-// The gaps between described bytes before the table, each as the name of the preceding field and
-// its length.
+// Returns the gaps between described bytes before the table, each as the name of the preceding
+// field and the gap's length.
 std::vector<std::string> undescribed(const std::vector<Field>& fields, std::size_t size) {
   const std::vector<bool> bytes = described(fields, size);
   std::map<std::size_t, std::string> ends;
@@ -119,8 +119,8 @@ std::vector<std::string> undescribed(const std::vector<Field>& fields, std::size
 
 using Runs = std::vector<std::string>;
 
-// A member that is added to layout.h or samples.h but not to fields.cpp changes these lists. They
-// contain only `reserved` members and padding to 8 or 64 bytes.
+// A member that is added to layout.h or samples.h but not to fields.cpp changes these lists. The
+// lists may contain only `reserved` members and padding to 8 or 64 bytes.
 TEST(Fields, CoverEveryByteOfTheDevicesSegmentButPadding) {
   SlotNames all;  // each device of a kind has the kind as its name, after a letter
   const auto add = [&](SampleKind kind, const char* name, std::size_t count) {
@@ -186,7 +186,7 @@ TEST(Fields, CoverEveryByteOfTheWallsSegmentButPadding) {
                   "panel.by_ball 28", "notice.text 24"}));
 }
 
-// Reads sample 258 at its position in the ring, as a reader does that knows only the table.
+// Reads sample 258 at its position in the ring, as a reader would that knows only the table.
 TEST(Fields, SayWhereASampleLiesInItsRing) {
   auto segment = std::make_unique<DevicesSegment>();
   BallSample ball{};
@@ -257,7 +257,7 @@ TEST(Segment, ASecondWriterIsRefusedAndTheFirstUndisturbed) {
   EXPECT_EQ((*SegmentReader<DevicesSegment>::open(name))->header.generation, 1u);
 }
 
-// kill -9 leaves the shared memory object behind; the next start takes it over.
+// kill -9 leaves the shared memory object behind; the next start must take it over.
 TEST(Segment, OfADeadWriterIsReplaced) {
   const std::string name = segmentName(privateName("dead"), "wall");
   const SystemClock clock;
@@ -279,8 +279,8 @@ TEST(Segment, OfADeadWriterIsReplaced) {
   EXPECT_EQ((*SegmentReader<WallSegment>::open(name))->header.generation, 2u);
 }
 
-// A reader may hold a read lock on an object that it may read. That lock must not be taken for the
-// owner's.
+// A reader may hold a read lock on an object that it is allowed to read. The next start must not
+// mistake that lock for the owner's.
 TEST(SharedMemory, AReadersLockDoesNotForbidTheRestart) {
   const std::string name = "/" + privateName("locked");
   { ASSERT_TRUE(SharedMemory::create(name, 4096)); }
@@ -308,7 +308,8 @@ TEST(SharedMemory, TwoLivingOwnersCannotShareAName) {
   EXPECT_TRUE(SharedMemory::owned(name));
 }
 
-// Somebody else has removed the object: an administrator, or logind when its user logged out.
+// Somebody else has removed the object: an administrator, or logind when the daemon's user logged
+// out.
 TEST(SharedMemory, WhatWasRemovedIsMadeAgainWithTheSameBytes) {
   const std::string name = "/" + privateName("mended");
   auto memory = SharedMemory::create(name, 10'000);
@@ -378,7 +379,7 @@ TEST(SharedMemory, AStrangersLockKeepsNobodyOut) {
   ::waitpid(child, nullptr, 0);
 }
 
-// Any user may create an object whose name is not in use.
+// Any user may create an object with a name that is not in use.
 TEST(SharedMemory, AStrangersObjectIsNotTakenAndGoesForRoot) {
   if (::geteuid() != 0) GTEST_SKIP() << "takes root, to act as another user";
   const std::string name = "/" + privateName("stranger");

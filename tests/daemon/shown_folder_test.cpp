@@ -1,5 +1,5 @@
-// The content folder: which files merlind opens and removes there, and which merlin show puts
-// there.
+// The content folder: which files merlind opens and removes there, and which files merlin show
+// writes there.
 #include "daemon/wall/shown_folder.h"
 
 #include <filesystem>
@@ -127,7 +127,7 @@ TEST_F(Folder, AFileIsAContentByItsNameAndItsEnding) {
   EXPECT_EQ(whyUnread(*slides), "");
 }
 
-// If two contents have the same name, the newer one counts. Files that are no contents have no
+// If two contents have the same name, the newer one counts. Files that are not contents have no
 // name.
 TEST_F(Folder, WhatCanBeShownAgainHasANameTheNewestFirst) {
   put("photo 1.tif", 30);
@@ -170,7 +170,7 @@ TEST_F(Folder, NoLinkIsFollowed) {
   EXPECT_NE(whyUnread(*talk).find("1.tif: is a link"), std::string::npos) << whyUnread(*talk);
 }
 
-// Somebody replaces a file by a link after merlind has examined it.
+// Somebody replaces a file by a link after merlind has examined the file.
 TEST_F(Folder, NorOneThatComesBetweenLookingAndReading) {
   test::writeText(dir_ / "secret.tif", test::pyramidBytes());
   put("photo.tif");
@@ -292,7 +292,7 @@ TEST(FileKinds, AFitsImageIsRangesIfACardSaysHow) {
   EXPECT_TRUE(saysGeometry(header({"SIMPLE  = T", "CELLX   = 30", "END"})));
 }
 
-// A TIFF with these tags only, in either byte order.
+// Returns a TIFF with these tags only, in either byte order.
 std::string tiff(bool little, const std::vector<std::pair<int, int>>& tags) {
   std::string bytes = little ? std::string("II*\0", 4) : std::string("MM\0*", 4);
   const auto put = [&](int value, int size) {

@@ -91,8 +91,8 @@ TEST(Simd, ProductsOfFloatsAddUpToTheSameBits) {
 
 using Numbers = std::array<std::uint32_t, 8>;
 
-// The expected result: the numbers at even positions of `from`; 7 at odd ones, whose indices are
-// out of bounds.
+// Returns the expected result: the numbers at even positions of `from`, and 7 at odd positions,
+// whose indices are out of bounds.
 Numbers gatherPlain(const std::uint32_t* from) {
   return {from[0], 7, from[2], 7, from[4], 7, from[6], 7};
 }
@@ -110,7 +110,8 @@ TEST(Simd, GatherReadsOnlyWhatTheMaskSays) {
   EXPECT_EQ(simd::pick(gatherWide, gatherPlain)(from.data()), gatherPlain(from.data()));
 }
 
-// All other files use the vectors and pick() of that header.
+// Only one header may depend on the processor; all other files use the vectors and pick() of that
+// header.
 TEST(Simd, OneHeaderKnowsTheProcessor) {
   const fs::path root = MERLIN_SOURCE_DIR;
   int files = 0;

@@ -1,4 +1,4 @@
-// Which slide of a folder is next, and which one is the last, while the folder changes.
+// Which slide of a folder comes next, and which one is the last, while the folder changes.
 #include <filesystem>
 #include <vector>
 
@@ -23,14 +23,14 @@ class Slides : public testing::Test {
     const ContentEntry entry{"", "talk", dir_.path(), ContentKind::kSlides, {}};
     return readContent(entry, {}, {from.empty() ? "" : dir_ / (from + ".tif"), back}, skipped_);
   }
-  // The next slide as "b" or "c, the last", or the error.
+  // Returns the next slide as "b" or "c, the last", or the error.
   std::string next(const std::string& after) {
     const auto slide = read(after);
     if (!slide) return slide.error().what;
     return std::filesystem::path(slide->file).stem().string() +
            (slide->is_last_slide ? ", the last" : "");
   }
-  // The previous slide as "b" or "a, the first".
+  // Returns the previous slide as "b" or "a, the first".
   std::string previous(const std::string& before) {
     const auto slide = read(before, true);
     if (!slide) return slide.error().what;

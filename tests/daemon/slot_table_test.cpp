@@ -1,5 +1,5 @@
 // Readers find the devices' slots by name. Slots that another release or a hostile writer has moved
-// are found, or refused with one error.
+// are either found, or refused with one error.
 #include "daemon/shm/slot_table.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 namespace merlin::shm {
 namespace {
 
-// The devices' segment of a later release: it begins as ours does, then has another header and a
-// device of an unknown kind before our slots; its table is last.
+// The devices' segment of a later release: it begins like that of this release, then has another
+// header, and a device of an unknown kind before this release's slots; its table is last.
 struct LaterSegment {
   Header header;
   alignas(64) SeqSlot<DeviceHealth> touch_health;
@@ -28,7 +28,8 @@ struct LaterSegment {
   alignas(64) Field fields[kMostDevicesFields];
 };
 
-// The table of LaterSegment: our fields at their new offsets, and those of the new device.
+// Returns the table of LaterSegment: this release's fields at their new offsets, and those of the
+// new device.
 std::vector<Field> laterFields() {
   std::vector<Field> fields;
   constexpr auto kMoved = static_cast<std::uint32_t>(offsetof(LaterSegment, ours));
@@ -149,7 +150,7 @@ class SlotTableTest : public testing::Test {
     EXPECT_NE(found, std::end(segment_->fields)) << name;
     return *found;
   }
-  // The error when all slots are looked up; empty if there is none.
+  // Returns the error when all slots are looked up; empty if there is none.
   std::string fault() const {
     const auto slots = DeviceSlots::find(*segment_);
     if (slots) return "";

@@ -1,5 +1,5 @@
-// The file of the daemon's state: it is saved and read by StateKeeper, also if it is damaged, newer
-// or cannot be written, and it lies in StateFolder.
+// The file of the daemon's state: StateKeeper saves and reads it, also if it is damaged, newer or
+// cannot be written. The file is in StateFolder.
 #include "daemon/state/state_keeper.h"
 
 #include <cstdlib>
@@ -52,7 +52,8 @@ class FakeFiles final : public StateFiles {
 
 class StateKeeping : public testing::Test {
  protected:
-  // A daemon's life: it reads the state, makes a change if there is one, and ends.
+  // Starts the life of a daemon: it reads the state. A test may change the state, and ends the life
+  // by destroying the keeper.
   std::unique_ptr<StateKeeper> keeper() {
     return std::make_unique<StateKeeper>(std::make_unique<FakeFiles>(disk_), watch_);
   }

@@ -1,4 +1,5 @@
-// The daemon's state: alignments with their steps, those that are set aside, and the state's text.
+// The daemon's state: alignments with their steps, alignments that are set aside, and the state's
+// text.
 #include "daemon/state/state.h"
 
 #include <gtest/gtest.h>
@@ -125,7 +126,7 @@ TEST(Alignment, TheStepsOfBothAreLimitedWhereOneIsPutBack) {
   EXPECT_EQ(a.offset("right", kTopLeft), Offset{});
 }
 
-// Over the years outputs are renamed.
+// Outputs are renamed over the years, so the number of remembered outputs is limited.
 TEST(Alignment, BeyondTheMostOutputsTheFirstOneIsForgottenAndOneThatIsNotMovedBefore) {
   const auto formOf = [](std::size_t i) { return OutputForm{std::to_string(i), 640, 480, 0, 0}; };
   State state;
@@ -173,7 +174,8 @@ TEST(SetAside, KeepsTheLastFormsOfEachOutput) {
   EXPECT_EQ(aside.alignments().size(), 4u) << "nothing is not kept";
 }
 
-// One alignment fits the base mesh of one configuration, the other that of another configuration.
+// One alignment fits the base mesh of one configuration, the other alignment that of another
+// configuration.
 TEST(SetAside, KeepsTwoOfTheSameForm) {
   SetAside aside;
   aside.add(alignedAt(640));
@@ -250,7 +252,7 @@ TEST(StateText, IsReadBackAsItWas) {
   EXPECT_EQ(again.offset("right", kBottomRight), (Offset{-7, 0}));
 }
 
-// The state would be set aside as damaged, and the alignment with it.
+// Otherwise the state would be set aside as damaged, and with it the alignment.
 TEST(StateText, OfProjectorsSwitchedWhileTheClockWasWrongIsReadBack) {
   for (const auto& [minute, kept] :
        {std::pair<std::int64_t, std::int64_t>{-300, 0}, {9'000'000'000, 5'000'000'000}}) {
@@ -270,7 +272,7 @@ TEST(StateText, OfNothingIsReadBack) {
   EXPECT_EQ(read->alignment.steps.size(), 0u);
 }
 
-// The text of an older merlind, which did not yet store the playlist and the projectors.
+// This is the text of an older merlind, which did not yet store the playlist and the projectors.
 TEST(StateText, OfVersion1IsRead) {
   const auto read = parseState(R"({"merlin_state": 1,
 "rate_hz": 25.0,
@@ -288,7 +290,7 @@ TEST(StateText, OfVersion1IsRead) {
   EXPECT_FALSE(read->playlist_off || read->projectors);
 }
 
-// The text of an older merlind, which did not yet set alignments aside.
+// This is the text of an older merlind, which did not yet set alignments aside.
 TEST(StateText, OfVersion2IsRead) {
   const auto read = parseState(
       R"({"merlin_state": 2, "playlist": "off",
@@ -309,7 +311,7 @@ TEST(State, HasTheAlignmentThatFitsAnOutput) {
   EXPECT_FALSE(alignmentFor(state, {"left", 801, 480, 0, 0, std::array<double, 8>{}}));
 }
 
-// A file that is cut or has one wrong byte gives an error, or a state within the limits.
+// A file that is cut or has one wrong byte gives either an error, or a state within the limits.
 TEST(StateText, EveryCutAndEveryDamagedByteIsSeenOrHarmless) {
   const std::string text = stateText(someState());
   for (std::size_t size = 0; size + 1 < text.size(); ++size)  // the last byte is the line end
@@ -338,7 +340,7 @@ Place pointAt(std::size_t i) {
   return {Place::Of::kMesh, static_cast<int>(i % 64), static_cast<int>(i / 64)};
 }
 
-// An alignment with this many steps of this many changes each, and this many moved places.
+// Returns an alignment with this many steps of this many changes each, and this many moved places.
 Alignment longAlignment(std::size_t number, std::size_t moved, std::size_t steps,
                         std::size_t changes) {
   Alignment a;

@@ -236,8 +236,8 @@ TEST_F(DocumentsTest, SamplesAreTheNewestOfEachThatThereIs) {
   EXPECT_FALSE(s.contains("glove"));
 }
 
-// The same names as in shared memory: "glove" is the glove's own measurement, "hand" combines glove
-// and tracker.
+// The names are those of shared memory: "glove" is the glove's own measurement, "hand" combines
+// glove and tracker.
 TEST_F(DocumentsTest, TheGloveIsCalledGloveAndTheHandHand) {
   GloveSample glove{};
   glove.sensors = 22;
@@ -333,7 +333,8 @@ TEST_F(DocumentsTest, EventsAreToldOnce) {
   lost.state = HealthState::kOpening;  // another attempt to open it is no event
   devices_->health[test::kBall].publish(lost);
   EXPECT_TRUE(events.take(kNow).empty());
-  DeviceHealth starts{};  // nor is it an event that a restarted process has not opened it yet
+  // it is no event either that a restarted process has not opened the device yet
+  DeviceHealth starts{};
   std::snprintf(starts.reason, sizeof starts.reason, "not opened yet");
   devices_->health[test::kBall].publish(starts);
   EXPECT_TRUE(events.take(kNow).empty());
@@ -378,7 +379,7 @@ TEST_F(DocumentsTest, AFaultThatRecursIsToldOnceUntilItChangesOrStaysAway) {
 // Uses real sockets in a temporary folder.
 class ServerTest : public testing::Test {
  protected:
-  // As in the programs, before the first thread starts.
+  // Starts the log before the first thread starts, as the programs do.
   static void SetUpTestSuite() { initLog(LogLevel::kWarning); }
 
   void SetUp() override {
@@ -543,7 +544,7 @@ void sendRaw(const UniqueFd& fd, const std::string& bytes) {
   (void)::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-// Whether the server closes the connection; everything that it sends before is ignored.
+// Returns whether the server closes the connection; ignores everything that it sends before.
 bool isClosed(const UniqueFd& fd) {
   char bytes[4096];
   for (;;) {
@@ -635,7 +636,7 @@ TEST_F(ServerTest, SocketsThatAreRemovedAreThereAgain) {
   }));
 }
 
-// What this process says on its standard error, as long as this object lives.
+// Captures what this process writes to its standard error, as long as this object lives.
 class Said {
  public:
   Said() : before_(::dup(STDERR_FILENO)) {
@@ -656,7 +657,7 @@ class Said {
   UniqueFd before_;
 };
 
-// In /run only root can make the folder again that somebody removed.
+// In /run, only root can make the folder again after somebody has removed it.
 TEST_F(ServerTest, SocketsWhoseFolderIsMissingForAWhileAreThereOnceItIsBack) {
   const Said said;
   ASSERT_TRUE(test::eventually([&] {  // the server makes the folder again at once
@@ -687,7 +688,8 @@ TEST_F(ServerTest, ACleanStopLeavesNoSocket) {
   EXPECT_TRUE(fs::is_empty(dir_.path()));
 }
 
-// Too many files were open, for example; the run may go on for months.
+// The run could not be followed at first, for example because too many files were open; it may go
+// on for months.
 TEST(RoleFollower, ConnectsToARunThatItCouldNotFollowAtFirst) {
   using Wall = shm::WallSegment;
   const test::TempDir dir;
@@ -769,7 +771,8 @@ TEST(Watchdog, KnowsThreadsThatPauseEndStopAndStart) {
   EXPECT_FALSE(watchdog.ping(kNow + seconds(6), {a, {3, "c", 5, false, true, "gone"}}));
 }
 
-// When strangers hold all places, a daemon closes connections, and requests on them are lost.
+// When strangers hold all places, a daemon closes connections, and requests on these connections
+// are lost.
 TEST(Client, AsksForTheStatusAgainAndForNothingElse) {
   const test::TempDir dir;
   const std::string endpoint = "ipc://" + dir.path() + "/c";

@@ -10,8 +10,8 @@ using Json = nlohmann::ordered_json;
 
 const char* const kFull = "state.json: No space left on device";
 
-// A status document of a role whose service "state" has failed for this reason; empty: the service
-// works.
+// Returns a status document of a role whose service "state" has failed for this reason; if the
+// reason is empty, the service works.
 std::string document(const std::string& role, const std::string& reason) {
   const Json service = {{"health", reason.empty() ? "ok" : "failed"}, {"reason", reason}};
   Json status = {{"role", role}, {"pid", 7}, {"services", {{"state", service}}}};

@@ -61,8 +61,9 @@ TEST_P(ForBlocks, MayHaveBlocksOfTheirOwn) {
 
 thread_local int turns_of_this = 0;
 
-// Runs loops in which every thread waits for all others, so each handles one block of each loop.
-// Returns the smallest number of blocks that a thread of the last loop has handled in all loops.
+// Runs loops in which every thread waits for all others, so that each thread handles one block of
+// each loop. Returns the smallest number of blocks that a thread of the last loop has handled in
+// all loops.
 int fewestTurns(Threads threads, int turns) {
   std::vector<int> of(threads.count);
   turns_of_this = 0;

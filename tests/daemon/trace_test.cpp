@@ -15,7 +15,8 @@ namespace {
 using nlohmann::json;
 using shm::StepKind;
 
-// Two frames with a period of 33 ms: the first is 2 ms late, the second shows a still picture.
+// Returns two frames with a period of 33 ms: the first is 2 ms late, the second shows a still
+// picture.
 std::vector<shm::FrameTrace> frames() {
   shm::FrameTrace late{};
   late.begin_ns = 5'000'000'000;
@@ -101,7 +102,7 @@ TEST(Trace, OfNothingIsADocumentAllTheSame) {
   EXPECT_TRUE(json::parse(traceJson({}, {}))["traceEvents"].is_array());
 }
 
-// A segment with a step count beyond the array, or with an unknown kind of step.
+// The segment is hostile: a step count is beyond the array, or a kind of step is unknown.
 TEST(Trace, BelievesNoCount) {
   auto hostile = frames();
   hostile[0].count = 4'000'000'000;

@@ -34,8 +34,8 @@ TEST(Turns, WhoActsFirstHasTheWallUntilIdle) {
   EXPECT_FALSE(turns.update(now, {})) << "idle: anybody may take it";
 }
 
-// Two gloves, two balls and a tracker, which give two hands and two balls; each of two people has
-// one hand and one ball.
+// Two gloves, two balls and a tracker give two hands and two balls; each of two people has one hand
+// and one ball.
 class SeveralDevicesTest : public testing::Test {
  protected:
   static shm::SlotNames names() {
@@ -47,7 +47,7 @@ class SeveralDevicesTest : public testing::Test {
              {"table", SampleKind::kTouch}},
             {"left_hand", "right_hand"}};
   }
-  // `person_of_right`: of the right glove and hand, and of the ball at the door.
+  // `person_of_right`: the person of the right glove and hand, and of the ball at the door.
   static FeedSettings settings(const std::string& person_of_right) {
     FeedSettings settings;
     settings.hands = {{"left_hand", "", "left", {"room", 1}},
@@ -196,7 +196,8 @@ TEST_F(SeveralDevicesTest, WhoseTurnItIsNotMayStillPoint) {
   EXPECT_EQ(input.scene.other_pointers[0].station, 2u);
 }
 
-// The right hand holds a wand, whose buttons are those of the ball at the door.
+// Returns settings in which the right hand holds a wand, whose buttons are those of the ball at the
+// door.
 FeedSettings withWand(FeedSettings settings) {
   settings.hands[1].glove = "none";
   settings.hands[1].buttons = "door";

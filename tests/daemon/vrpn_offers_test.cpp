@@ -1,4 +1,4 @@
-// How `merlin devices` presents the answers of VRPN servers, and how it asks several servers of
+// How `merlin devices` presents the answers of VRPN servers, and how it asks several servers, of
 // which one lies and one never answers.
 #include "daemon/cli/devices/vrpn_offers.h"
 
@@ -170,7 +170,7 @@ TEST(VrpnServers, HostsAreNamedWithAndWithoutAPort) {
     EXPECT_FALSE(vrpnPort(bad)) << bad;
 }
 
-// The match is by the identity that the running driver has reported.
+// A server's device is matched by the identity that the running driver has reported.
 TEST(VrpnServers, WhatARunningMerlindReadsIsKnown) {
   const auto tracker = vrpnDeviceOf("eyes", kLab, vrpn::trackerIdentity("Wand0", "07.38"));
   ASSERT_TRUE(tracker);
@@ -206,7 +206,7 @@ TEST(VrpnServers, OneThatNeverAnswersOrIsNotThereKeepsNoOtherWaiting) {
   const std::vector<std::string> ports = {at(net::portOf(silent->get())), at(none),
                                           at(wand.port())};
   std::vector<VrpnAnswer> answers;
-  // The test tries again, since a busy machine may take longer than the servers' time limit.
+  // The test repeats this, since a busy machine may take longer than the servers' time limit.
   EXPECT_TRUE(test::eventually([&] {
     const auto began = std::chrono::steady_clock::now();
     answers = askServers(ports, std::chrono::milliseconds(300));

@@ -1,4 +1,4 @@
-// The VRPN protocol byte by byte, following VRPN's sources, and MERLIN's server over real sockets.
+// The VRPN protocol byte by byte, as in VRPN's sources, and MERLIN's server over real sockets.
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -131,7 +131,7 @@ struct Client {
     VrpnHeader header;
     std::string payload;
   };
-  // The next message whose type has this name in the server's descriptions.
+  // Returns the next message whose type has this name in the server's descriptions.
   std::optional<Received> next(const std::string& type) {
     for (VrpnFront front; !front.broken;) {
       if (!cookie_seen && input.size() >= 24) {
@@ -273,8 +273,8 @@ TEST(VrpnServer, AClientHearsOfAButtonThatIsHeldAlready) {
   EXPECT_EQ(hex(states->payload.substr(0, 16)), "0000000C000000010000000000000001");
 }
 
-// Each message of the flood is well-formed. The server reads it at a limited pace and serves other
-// clients meanwhile.
+// Each message of the flood is well-formed. The server reads them at a limited pace and serves
+// other clients meanwhile.
 TEST(VrpnServer, AFloodOfOneClientNeitherGrowsNorKeepsAnyoneWaiting) {
   const SystemClock clock;
   ThreadWatch threads;
@@ -310,8 +310,8 @@ TEST(VrpnServer, SilentClientsGiveTheirPlacesUp) {
   checkSamples(client, *segment);
 }
 
-// UDP datagrams can be sent without effort: the connections that they ask for must not take other
-// clients' places.
+// UDP datagrams cost their sender nothing, so the connections that they ask for must not take the
+// places of other clients.
 TEST(VrpnServer, DatagramsThatAskForSilentConnectionsKeepNobodyOut) {
   const SystemClock clock;
   ThreadWatch threads;
@@ -366,8 +366,8 @@ TEST(VrpnServer, OnePortIsConnectedToOnceHoweverOftenItIsAskedFor) {
   const UniqueFd udp(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const sockaddr_in there = loopback((*server)->port());
   const std::string ask = "127.0.0.1 " + std::to_string(net::portOf(listener->get()));
-  // Asks for a connection to the same port until the server has closed the first one because it was
-  // silent.
+  // Asks for a connection to the same port until the server has closed the first connection because
+  // nothing was sent on it.
   EXPECT_TRUE(test::eventually([&] {
     ::sendto(udp.get(), ask.c_str(), ask.size() + 1, 0, reinterpret_cast<const sockaddr*>(&there),
              sizeof there);

@@ -1,4 +1,4 @@
-// A wall that is black, frozen, or under control of its playlist, on a virtual clock.
+// A wall that is black, frozen, or controlled by its playlist, on a virtual clock.
 #include <gtest/gtest.h>
 
 #include "tests/support/fake_wall.h"
@@ -16,7 +16,7 @@ class WallAttendanceTest : public FakeWall {
     feed_.pushed = false;
     calibrated_ = true;
   }
-  // Runs for `seconds` and calls `on_frame` with the number of each frame, from 1.
+  // Runs for `seconds` and calls `on_frame` with the number of each frame, counted from 1.
   void frames(double seconds, const std::function<void(std::size_t)>& on_frame) {
     run(seconds, [&](Timestamp) { on_frame(feed_.begins.size()); });
   }
@@ -27,7 +27,8 @@ class WallAttendanceTest : public FakeWall {
   }
   shm::WallInteraction interaction() const { return *interaction_->read(); }
   Eigen::Isometry3f pose() const { return scene_.view().T_eye_model; }
-  // Angle by which the content has turned about the vertical axis since the initial view [degrees].
+  // Returns the angle by which the content has turned about the vertical axis since the initial
+  // view [degrees].
   float turned() const {
     const Eigen::Matrix3f R = pose().linear();
     return std::atan2(R(0, 2), R(0, 0)) / kRadian;
@@ -142,8 +143,8 @@ TEST_F(WallAttendanceTest, AModelThatIsReplacedWhileItIsFrozenIsShownAfterwards)
   EXPECT_GT(fresh.taken, before);
 }
 
-// After 2 seconds without a touch the content turns by 30 degrees a second; each is shown for 3
-// seconds.
+// After 2 seconds without a touch, the content turns by 30 degrees a second; each content is shown
+// for 3 seconds.
 TEST_F(WallAttendanceTest, ThePlaylistTurnsAtTheRateAndYieldsAtTheFirstTouch) {
   setPlaylist(2, 3, 30);
   float yielded = 0;
@@ -237,7 +238,7 @@ TEST_F(WallAttendanceTest, AContentThatIsNotInThePlaylistIsShownFirstIfAPersonCh
   }
 }
 
-// A model whose reading takes long arrives while the playlist is already running.
+// A model that takes long to read arrives while the playlist is already running.
 TEST_F(WallAttendanceTest, WhatComesLateIsShownAsLongAsWhatComesAtOnce) {
   class Late final : public ContentSource {
    public:

@@ -12,14 +12,14 @@
 namespace merlin::wall {
 namespace {
 
-// A triangle of the second model costs four times as much as one of the first.
+// A triangle of the second model costs four times as much as a triangle of the first one.
 class WallContentsTest : public FakeWall {
  protected:
   WallContentsTest() {
     contents_.push_back({&detail_, &dear_});
     calibrated_ = true;
   }
-  // Requests the next content after 2 s and again after 4 s.
+  // Requests the next content after 2 s, and again after 4 s.
   void pressTwice(Timestamp) {
     const auto frame = static_cast<int>(feed_.begins.size());
     feed_.actions.next_content = frame == 60 || frame == 120 ? 1 : 0;
@@ -82,7 +82,7 @@ TEST_F(WallContentsTest, OneThatIsMissingIsPassedOver) {
   EXPECT_EQ(stats().late, 0u);
 }
 
-// Offers one other content for one place, once a test sets `due`.
+// Offers another content for one place, once a test sets `due`.
 class OneReplacement final : public ContentSource {
  public:
   OneReplacement(std::size_t place, ShownContent content) : fresh_({place, content}) {}
@@ -108,7 +108,7 @@ TEST_F(WallContentsTest, WhereAllAreMissingTheFirstThatComesIsShown) {
   EXPECT_EQ(shown.back(), 1u);
 }
 
-// Two clients send requests at the same time: neither takes the other's answer for its own.
+// Two clients send requests at the same time: neither may take the other's answer for its own.
 TEST_F(WallContentsTest, WhatBecameOfEachRequestIsPublishedForAWhile) {
   std::map<std::uint32_t, std::string> seen;
   run(2, [&](Timestamp) {
@@ -146,7 +146,7 @@ TEST_F(WallContentsTest, ACommandDoesTheSame) {
   EXPECT_EQ(interaction().content, 1u);
 }
 
-// After the two contents of the list there is a third one that a person has shown.
+// After the two contents of the list there is a third one, which a person has shown.
 TEST_F(WallContentsTest, ThePreviousOneIsTheOneThatTheNextOneCameFrom) {
   contents_.push_back({&detail_, &dear_});
   contents_.push_back({&detail_, &dear_});
@@ -237,7 +237,7 @@ TEST_F(WallContentsTest, WhatComesAfterFullDetailIsDrawnToo) {
   EXPECT_TRUE(stats().full_detail);
 }
 
-// The second content has two slides; the next one comes when it is requested.
+// The second content has two slides; the next slide comes when it is requested.
 class Slides final : public ContentSource {
  public:
   explicit Slides(ShownContent content) : content_(content) {}
@@ -329,7 +329,8 @@ TEST_F(WallContentsTest, WhereNoFurtherSlideCanBeShownTheNextContentFollows) {
   EXPECT_EQ(slides.parts, 99);
 }
 
-// `merlin show FILE`: one place after the contents of the list is for files that are not in it.
+// For `merlin show FILE`, there is one place after the contents of the list, for a file that is not
+// in the list.
 TEST_F(WallContentsTest, AContentThatIsAskedForIsShownAndTheListGoesOnAfterIt) {
   contents_.push_back({&detail_, &dear_});
   listed_ = 2;

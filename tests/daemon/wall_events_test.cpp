@@ -1,4 +1,4 @@
-// Tests the sentences that report what the wall reduced for lack of time.
+// The sentences that report what the wall has reduced for lack of time.
 #include "daemon/status/wall_events.h"
 
 #include <cstring>

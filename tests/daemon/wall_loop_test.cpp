@@ -1,5 +1,4 @@
-// The wall's frame clock on a virtual clock; the painter's frames take as long as a model of the
-// renderer says.
+// The pace of the wall's frames on a virtual clock; the painter's frames take a simulated time.
 #include "daemon/wall/wall_loop.h"
 
 #include <gtest/gtest.h>
@@ -62,8 +61,8 @@ TEST_F(WallLoopTest, ShowsFullDetailWithinHalfASecondOfStandstill) {
   EXPECT_NEAR(stats().rate_held_hz, 30, 0.01);
 }
 
-// Whenever motion resumes, during refinement or not, the first frame that begins then meets its own
-// deadline.
+// Whenever motion resumes, during refinement or not, the first frame that begins afterwards must
+// meet its own deadline.
 TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
   std::optional<Timestamp> resumed;
   for (int still_periods = 5; still_periods < 40; ++still_periods) {
@@ -87,8 +86,8 @@ TEST_F(WallLoopTest, TheFirstFrameAfterMotionResumesIsInTime) {
   }
 }
 
-// The first frame is twice as slow, since its data are in no cache; three frames later the content
-// has full detail.
+// The first frame of the content is twice as slow, since its data are in no cache; three frames
+// later the content has full detail.
 TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentIsInTime) {
   contents_.push_back({&detail_, &painter_});
   calibrated_ = true;
@@ -107,7 +106,7 @@ TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentIsInTime) {
   EXPECT_EQ(costOf(at_change + 3), costOf(at_change - 1));
 }
 
-// Without this, the text over the frame (the operator's plates) would name the previous content.
+// Otherwise the text over the frame (the operator's plates) would name the previous content.
 TEST_F(WallLoopTest, TheFirstFrameOfAnotherContentFindsItsNamePublished) {
   contents_.push_back({&detail_, &painter_});
   contents_[0].name = "first";

@@ -1,5 +1,5 @@
-// What the wall gives for its rate, and what it says of it: calibration, feed-forward, the ladder,
-// by hand; on a virtual clock.
+// How the wall holds its rate, and what it reports about that: calibration, feed-forward, the
+// ladder, settings by hand; on a virtual clock.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class WallPaceTest : public FakeWall {
   Duration since() const { return clock_.now() - feed_.begins.front(); }
 };
 
-// Without calibration the first second has late frames. With it, the first frame has as many
+// Without calibration, frames in the first second are late. With it, the first frame has as many
 // triangles as fit, and is in time.
 TEST_F(WallPaceTest, IsCalibratedBeforeTheFirstFrame) {
   calibrated_ = true;
@@ -43,8 +43,8 @@ TEST_F(WallPaceTest, IsCalibratedBeforeTheFirstFrame) {
   EXPECT_NEAR(frames_.frames.front().cost, 2600, 80);  // (33.3 ms x 0.9 - 4 ms) / 10 us
 }
 
-// The view returns to the start view, where a triangle costs a quarter, so the next frame has four
-// times as many.
+// The view jumps back to the start view, where a triangle costs a quarter, so the next frame has
+// four times as many triangles.
 TEST_F(WallPaceTest, AJumpToAKnownViewIsFedForward) {
   calibrated_ = true;
   std::size_t at_reset = 0;
@@ -61,7 +61,7 @@ TEST_F(WallPaceTest, AJumpToAKnownViewIsFedForward) {
   EXPECT_LE(stats().longest_late, 4u);
 }
 
-// 100 triangles take 30 ms, and the tiles add 4 ms, or 1 ms at half size. Later the triangles take
+// 100 triangles take 30 ms, and the tiles add 4 ms, or 1 ms at half size. Later 100 triangles take
 // 1 ms again.
 TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
   std::uint32_t scale = 0;
@@ -80,8 +80,8 @@ TEST_F(WallPaceTest, TheSizeGivesWayFirstAndComesBack) {
   EXPECT_EQ(stats().ladder_steps, 2u);
 }
 
-// The coarsest detail takes 31 of 33 ms. After a quarter of the period has passed it does not fit,
-// but is drawn nevertheless.
+// The coarsest detail takes 31 of 33 ms. When motion resumes after a quarter of the period, it does
+// not fit, but must be drawn nevertheless.
 TEST_F(WallPaceTest, MotionThatResumesNearTheLeastIsDrawn) {
   std::size_t resumed = 0, drawn = 0;
   run(8, [&](Timestamp) {
@@ -98,7 +98,8 @@ TEST_F(WallPaceTest, MotionThatResumesNearTheLeastIsDrawn) {
   EXPECT_EQ(stats().rate_divisor, 1u);
 }
 
-// 100 triangles take 44 ms: 30 Hz is lost, 15 Hz is kept. Later they take 1 ms again.
+// 100 triangles take 44 ms, which is too long for 30 Hz but not for 15 Hz. Later they take 1 ms
+// again.
 TEST_F(WallPaceTest, TheRateGivesWayByHalvesAndComesBack) {
   std::uint32_t divisor = 0;
   double held = 0;
@@ -149,7 +150,8 @@ TEST_F(WallPaceTest, TrianglesAndRateAreSetByHandUntilTheyAreGivenBack) {
   EXPECT_GT(frames_.frames.back().cost, 2300u);
 }
 
-// Poses are predicted for the end of the frame, which comes later at a lower rate, whoever set it.
+// Poses are predicted for the end of the frame, which comes later at a lower rate, whoever has set
+// that rate.
 TEST_F(WallPaceTest, PosesArePredictedForThePeriodInForce) {
   std::vector<Duration> ahead;
   run(4, [&](Timestamp) {
@@ -171,8 +173,8 @@ TEST_F(WallPaceTest, PosesArePredictedForThePeriodThatTheWallWentDownTo) {
   EXPECT_EQ(feed_.ahead, fromSeconds(1.0 / 15));
 }
 
-// What a load that never fits makes of the rate, step by step, in Hz. At each rate, ten late frames
-// in a row are one step.
+// Returns the rates [Hz] to which a load that never fits makes the pace go down, step by step. Ten
+// late frames in a row at a rate are one step.
 std::vector<double> ratesWhileLate(const render::governor::GovernorSettings& settings,
                                    std::optional<double> by_hand = std::nullopt) {
   render::governor::Governor governor(settings);
@@ -189,7 +191,8 @@ std::vector<double> ratesWhileLate(const render::governor::GovernorSettings& set
   return rates;
 }
 
-// [GOURLEY98] B.3: at least 10 frames a second, unless a person has set less.
+// According to [GOURLEY98] B.3, the rate must not fall below 10 frames a second, unless a person
+// has set less.
 TEST(Pace, GoesDownToTenHertzAndNotBelow) {
   using Rates = std::vector<double>;
   EXPECT_EQ(ratesWhileLate({}), (Rates{30, 15, 10}));
@@ -219,7 +222,7 @@ TEST(Pace, LeavesTheStepsThatARateByHandDoesNotHave) {
   EXPECT_EQ(pace.changes(), changes + 1);
 }
 
-// The number that a person may set is the number that is used.
+// The number of triangles that a person may set must be the number that is used.
 TEST_F(WallPaceTest, TheLimitsOfTrianglesByHandAreThoseOfTheContent) {
   contents_.push_back({&picture_, &painter_});
   std::vector<std::size_t> least;
@@ -233,7 +236,7 @@ TEST_F(WallPaceTest, TheLimitsOfTrianglesByHandAreThoseOfTheContent) {
   EXPECT_EQ(least, (std::vector<std::size_t>{100, 16})) << "of the model, and of the picture";
 }
 
-// A step of 100 kilotexels (as many units as the minimum of triangles) would be two steps finer.
+// A step of 100 kilotexels, as many units as the minimum of triangles, would be two steps finer.
 TEST_F(WallPaceTest, APictureGetsAsCoarseAsItCan) {
   contents_.push_back({&picture_, &painter_});
   run(4, [&](Timestamp) {
@@ -260,7 +263,7 @@ TEST_F(WallPaceTest, DetailByHandEndsWithTheUnitThatItIsIn) {
       << "another model keeps it, a picture does not, and it does not come back";
 }
 
-// The cost per triangle varies by two per cent; the number of triangles must not change at all.
+// The cost per triangle varies by two per cent, but the number of triangles must not change at all.
 TEST_F(WallPaceTest, NothingPopsForAFewPerCent) {
   calibrated_ = true;
   run(2);
@@ -296,7 +299,8 @@ const std::vector<shm::FrameTrace> all(const shm::Channel<shm::FrameTrace>& chan
   return frames;
 }
 
-// Input, scene, governor, cut, the tile, its pixels, present: in this order and within the frame.
+// The steps are input, scene, governor, cut, the tile, its pixels, present; they must be in this
+// order and within the frame.
 TEST_F(WallPaceTest, TellsEachStepOfEachFrame) {
   run(2, [&](Timestamp) { feed_.pushed = since() < std::chrono::seconds(1); });
   const auto frames = all(*trace_);
@@ -322,8 +326,8 @@ TEST_F(WallPaceTest, TellsEachStepOfEachFrame) {
   }));
 }
 
-// Some frames take several periods, and others are then left out for lack of time. The charts have
-// to show as many late frames as the statistics count.
+// Some frames take several periods, and later frames are then left out for lack of time. The charts
+// must show as many late frames as the statistics count.
 TEST_F(WallPaceTest, TellsEachDeadlineThatWasMissed) {
   calibrated_ = true;
   run(4, [&](Timestamp) {

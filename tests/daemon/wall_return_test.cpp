@@ -13,8 +13,8 @@ class WallReturnTest : public FakeWall {
     painter_.furthest_seen_m = 5;
     return_after_s_ = 60;
   }
-  // The hand grabs the content after a second, is 3 m further away a moment later, and releases it
-  // there.
+  // The hand grabs the content after a second, is 3 m further away a moment later, and releases the
+  // content there.
   void carryAway(Timestamp now) {
     const double s = toSeconds(now - feed_.begins.front());
     feed_.actions.scene.grab = s > 1 && s < 2;

@@ -8,8 +8,8 @@
 namespace merlin::wall {
 namespace {
 
-// Costs in proportion to those of the model of 10 million triangles on a software renderer: in
-// motion, one triangle in 20 fits into a frame; full detail takes 3,000 slices, which are 9 s.
+// The costs are in proportion to those of a model of 10 million triangles on a software renderer:
+// in motion, one triangle in 20 fits into a frame; full detail takes 3,000 slices, which are 9 s.
 class BigModelTest : public FakeWall {
  protected:
   BigModelTest()
@@ -58,7 +58,7 @@ TEST_F(BigModelTest, GetsFinerInStepsAndThenWhole) {
 }
 
 // At whatever point of the refinement motion resumes, the first frame that begins after the input
-// meets its deadline, and the next one is as fine as the last one in motion.
+// must meet its deadline, and the next one must be as fine as the last one in motion.
 TEST_F(BigModelTest, MotionAfterAStillPictureIsInTime) {
   for (int still_ms = 160; still_ms < 2000; still_ms += 37) {
     feed_.begins.clear();
@@ -87,7 +87,7 @@ TEST_F(BigModelTest, MotionAfterAStillPictureIsInTime) {
   }
 }
 
-// Full detail takes 40 slices.
+// A model whose full detail takes 40 slices.
 class FadingTest : public FakeWall {
  protected:
   FadingTest() {

@@ -1,4 +1,4 @@
-// Settings that a running wall takes over, on a virtual clock.
+// Changes of settings that a running wall takes over, on a virtual clock.
 #include <gtest/gtest.h>
 
 #include "tests/support/fake_wall.h"
@@ -50,7 +50,7 @@ TEST_F(WallTuningTest, TheLimitsOfTheTrianglesHoldAtOnce) {
   EXPECT_LE(frames_.frames.back().cost, 300u);
 }
 
-// The model's place does not change; from now on the ball turns it at the new speed.
+// The model's place must not change; from now on, the ball turns it at the new speed.
 TEST_F(WallTuningTest, TheViewStaysAndTheBallIsFaster) {
   WallTuning tuning;
   tuning.scene = render::scene::SceneSettings{};

@@ -1,5 +1,5 @@
-// The wall follows the viewer's tracked head: while it moves, frames are drawn in time; while it
-// rests, the picture becomes finer.
+// The wall follows the viewer's tracked head: while the head moves, frames are drawn in time; while
+// it rests, the picture becomes finer.
 #include <gtest/gtest.h>
 
 #include "render/stereo/eye_tiles.h"
@@ -23,8 +23,8 @@ class WallViewerTest : public FakeWall {
                           [this](const Event& event) { said_.push_back(test::told({event})[0]); });
     viewer_ = &*viewer_place_;
   }
-  // The tracker's -y is the room's x. `right_m`: metres to the right of the place for which the
-  // tiles are configured.
+  // Sets the head's place. The tracker's -y is the room's x. `right_m`: metres to the right of the
+  // place for which the tiles are configured.
   void standAt(double right_m) {
     feed_.actions.head.emplace();
     feed_.actions.head->position_m[1] = static_cast<float>(-right_m);

@@ -1,4 +1,4 @@
-// The table of merlin watch: how a status document is laid out on a screen of a given size.
+// The table of merlin watch: how a status document is arranged on a screen of a given size.
 #include "daemon/cli/watch/watch_view.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ std::vector<std::string> linesOf(const CellGrid& grid) {
   return lines;
 }
 
-// The style of the first cell of this text.
+// Returns the style of the first cell of this text.
 CellStyle styleOf(const CellGrid& grid, const std::string& text) {
   for (int row = 0; row < grid.rows(); ++row) {
     const auto at = grid.line(row).find(text);
@@ -74,7 +74,7 @@ TEST(WatchView, ShowsWallDevicesOutputsChartAndEvents) {
       "           " + bars,
       "           " + bars};
   ASSERT_GE(lines.size(), expected.size());
-  // The title also has a hint at its right edge.
+  // The first line, the title, also has a hint at its right edge.
   for (std::size_t i = 1; i < expected.size(); ++i) EXPECT_EQ(lines[i], expected[i]) << i;
   EXPECT_TRUE(lines[0].starts_with("merlin watch: merlin  14:05:07 UTC  up 2 h 13 min"));
   EXPECT_TRUE(lines[0].ends_with(" q quits"));

@@ -1,4 +1,4 @@
-// Who may connect to an encrypted socket, decided from ZeroMQ's question about a client's key.
+// Who may connect to an encrypted socket, decided from ZeroMQ's request about a client's key.
 #include "daemon/status/zap.h"
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace merlin::status {
 namespace {
 
-// The same key in binary form and as text.
+// Two forms of the same key: binary, and as text.
 std::string binary(char fill) { return std::string(32, fill); }
 std::string text(char fill) {
   std::array<char, 41> z85{};
@@ -68,7 +68,8 @@ TEST_F(Zap, WhatIsMalformedIsRefused) {
     EXPECT_EQ(codeOf(request("commands", key)), "400") << key.size();
 }
 
-// Of a malformed key the text is empty. A door whose list is empty must not accept that text.
+// The text of a malformed key is empty, so a door whose list is empty must not accept an empty
+// text.
 TEST_F(Zap, AnEmptyListAdmitsNobody) {
   doors_["commands"] = {{""}, {""}};
   EXPECT_EQ(codeOf(request("commands", "")), "400");

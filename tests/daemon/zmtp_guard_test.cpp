@@ -23,13 +23,14 @@ const std::string kPing = frame(4, std::string("\4PING\0\x10", 7));
 
 class Guard : public testing::Test {
  protected:
-  // The reason why `input` is refused; empty if it is accepted.
+  // Returns the reason why `input` is refused; empty if it is accepted.
   static std::string refusal(const ZmtpLimits& limits, const std::string& input) {
     ZmtpGuard guard(limits);
     const auto followed = guard.follow(input, kAll);
     return followed ? "" : followed.error().what;
   }
-  // The same for a greeting followed by `count` copies of the frame `one`.
+  // Returns the reason why a greeting followed by `count` copies of the frame `one` is refused;
+  // empty if it is accepted.
   static std::string ofMany(const std::string& mechanism, const std::string& one, int count) {
     std::string input = greeting(mechanism);
     for (int i = 0; i < count; ++i) input += one;

@@ -32,7 +32,7 @@ TEST(Import, AsrsFileIsTheShippedCalibration) {
   EXPECT_STREQ(c->format, "asr_cyberglove");
   const CybergloveSettings shipped;
   for (std::size_t slot = 0; slot < 23; ++slot) {
-    // Slot 7 has no sensor, slot 20 no angles in the file.
+    // Slot 7 has no sensor, and slot 20 has no angles in the file.
     EXPECT_EQ(c->given[slot], slot != 7 && slot != 20) << slot;
     if (!c->given[slot]) continue;
     EXPECT_NEAR(c->gain[slot], shipped.gain[slot], 1e-6F) << slot;
@@ -57,7 +57,7 @@ TEST(Import, TheVendorsFileHasTwentyFourSlots) {
 }
 
 TEST(Import, ShadowsTablesAreDegreesOverAShareOfTheRange) {
-  // The fact sheet's example: raw 110 means 0 degrees, raw 167 means 90.
+  // The fact sheet gives this example: raw 110 means 0 degrees, raw 167 means 90 degrees.
   for (const std::string text :
        {R"(["G_IndexMPJ", [[0.42913,0.0],[0.5,10.0],[0.65354,90.0]]])",
         R"(<Joint name="G_IndexMPJ"><calib raw_value="0.42913" calibrated_value="0.0"/>
@@ -83,7 +83,7 @@ std::string vess(const std::string& fourth) {
 TEST(Import, VessHasARangeForEachSensor) {
   const auto c = importCalibration(vess("60 40 200\n"));
   ASSERT_TRUE(c) << c.error().what;
-  // Index MCP joint: 90 degrees are 160 raw counts.
+  // At the index MCP joint, 90 degrees are 160 raw counts.
   EXPECT_NEAR((220 - c->offset[4]) * c->gain[4], 1.5708F, 1e-4F);
 }
 
@@ -103,7 +103,7 @@ TEST(Import, WhatIsNoCalibrationIsSaid) {
     EXPECT_FALSE(importCalibration(kAsr.substr(0, n))) << n;
 }
 
-// The sample of a glove with these settings whose wearer has these joint angles.
+// Returns the sample of a glove with these settings whose wearer has these joint angles.
 GloveSample at(const std::array<float, 23>& angles, const CybergloveSettings& settings) {
   GloveSample s{};
   const auto raw = rawOf(angles, settings);

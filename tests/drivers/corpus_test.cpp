@@ -1,9 +1,9 @@
 // The corpus: replays every transcript of tests/transcripts through its driver and compares the
 // result with the .expect file beside it: one JSON line for each sample, then the counts of dropped
-// data and how the replay ended.
+// data, and how the replay ended.
 //
 // corpus_test --rebuild: rewrites every .expect file, for review as a diff
-// corpus_test --synthesise: rewrites the synthetic transcripts that exist, by the emulators
+// corpus_test --synthesise: rewrites the existing synthetic transcripts by means of the emulators
 //
 // All other combinations of models, settings and damage are generated while the test runs.
 #include <algorithm>
@@ -30,7 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kFolder = fs::path(MERLIN_SOURCE_DIR) / "tests/transcripts";
 
-// Parses the header's settings, such as "slot7=derived rate=50", which differ from the defaults.
+// Parses the settings in the header of a transcript that differ from the defaults, such as
+// "slot7=derived rate=50".
 DriverSettings settingsOf(std::string_view text) {
   DriverSettings s;
   std::istringstream words{std::string(text)};
@@ -88,7 +89,7 @@ class Lines final : public SampleSink {
                         list(s.rotation, "{}{:.3f}"), list(s.raw, "{}{}"));
   }
   std::string text;
-  bool counts = true;  // false: counters are printed as 0, since a line that returns continues them
+  bool counts = true;  // false: counters are printed as 0, since after a reconnect they continue
 
  private:
   template <typename T>
@@ -161,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(Files, Corpus, testing::ValuesIn(corpus()), [](const au
   return name;
 });
 
-// The transcript of a line that is unplugged after the device has sent `bytes` bytes.
+// Returns the transcript of a line that is unplugged after the device has sent `bytes` bytes.
 io::Transcript pulledAfter(std::size_t bytes, io::Transcript transcript) {
   std::vector<io::TranscriptChunk>& chunks = transcript.chunks;
   for (std::size_t i = 0; i < chunks.size(); ++i) {
@@ -183,7 +184,7 @@ std::size_t deviceBytes(const io::Transcript& transcript) {
   return bytes;
 }
 
-// Opens `device` on the transcript; returns its reports as text until the transcript ends.
+// Opens `device` on the transcript; returns as text what it reports until the transcript ends.
 std::string readBy(Device& device, const io::Transcript& transcript, FakeClock& clock,
                    Lines& lines) {
   lines.text.clear();
@@ -194,7 +195,7 @@ std::string readBy(Device& device, const io::Transcript& transcript, FakeClock& 
   return lines.text + (opened ? *opened : opened.error().what);
 }
 
-// Whether the text is empty, or is one sample that releases what was held when the line was
+// Returns whether the text is empty, or is one sample that releases what was held when the line was
 // unplugged.
 bool isRelease(const std::string& text) {
   static const std::regex release(
@@ -330,7 +331,7 @@ struct NamedCase {
   Case what;
 };
 
-// Every model combined with every setting and every kind of damage.
+// Returns every model combined with every setting and every kind of damage.
 std::vector<NamedCase> allCases() {
   struct Family {
     const char* driver;
@@ -382,8 +383,8 @@ int synthesise() {
 
 class Generated : public testing::TestWithParam<NamedCase> {};
 
-// Whatever is damaged, the driver reads to the end of the recording, identifies the device, and
-// loses no records except those around the damage.
+// Whatever is damaged, the driver must read to the end of the recording, identify the device, and
+// lose no records except those around the damage.
 TEST_P(Generated, LosesOnlyWhatIsDamaged) {
   Case whole = GetParam().what;
   whole.fault = "none";

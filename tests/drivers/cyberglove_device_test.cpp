@@ -25,7 +25,7 @@ struct Glove : test::DeviceBench {
   std::unique_ptr<Device> device;
 };
 
-// A record of 22 sensors at raw 100, with the other fields of `like`.
+// Returns a record of 22 sensors at raw 100, with the other fields of `like`.
 std::string record(const Record& like) {
   Record r = like;
   r.values.fill(100);
@@ -177,7 +177,8 @@ TEST(CybergloveDevice, SaysWhatAnsweredInstead) {
   EXPECT_LT(glove.clock.now() - glove.start, seconds(1));
 }
 
-// An emulator that answers each query from a table, also with answers that no real glove gives.
+// An emulator that answers each query from a table, which may have answers that no real glove
+// gives.
 struct Liar final : emulate::Emulator {
   void receive(std::span<const std::byte> bytes, Timestamp) override {
     const std::string query(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -222,8 +223,8 @@ TEST(CybergloveDevice, RefusesAnswersThatMakeNoGlove) {
   }
 }
 
-// Begins to answer with the first query. Before the answer it sends what it was sending earlier and
-// the answers to earlier queries.
+// A glove that begins to answer at the first query. Before that answer it sends what it was sending
+// earlier, and the answers to earlier queries.
 struct Returning final : emulate::Emulator {
   Returning(emulate::Emulator& box, std::string left_over)
       : box_(box), left(std::move(left_over)) {}
@@ -256,7 +257,7 @@ TEST(CybergloveDevice, IsNotMistakenForAnotherDeviceAsItComesBack) {
   }
 }
 
-// The vendor's firmware of 1993 ends the answer to a set command with an extra NUL.
+// Imitates the vendor's firmware of 1993, which ends the answer to a set command with an extra NUL.
 struct ThirdByte final : emulate::Emulator {
   explicit ThirdByte(emulate::Emulator& box) : box_(box) {}
   void receive(std::span<const std::byte> bytes, Timestamp now) override {

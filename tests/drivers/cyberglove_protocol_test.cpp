@@ -46,14 +46,15 @@ std::vector<int> values(const Record& record, std::size_t count) {
   return {record.values.begin(), record.values.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-// Fact sheet, example 1: 18 sensors; the first value is the byte 'e', which could begin an error.
+// Fact sheet, example 1: 18 sensors. The first value is the byte 'e', which could also begin an
+// error message.
 const std::string kExample1 =
     "\x47\x65\x78\x57\x8F\x82\x5C\x7D\x58\xA0\x77\x5F\x98\x7B\x5A\x95\x6E\x85\x62\x00"s;
 // Fact sheet, example 2: 22 sensors, time stamp, status.
 const std::string kExample2 =
     "\x53\x65\x78\x57\x8F\x82\x5C\x46\x7D\x58\x42\xA0\x77\x5F\x47\x98\x7B\x5A\x44\x95\x6E\x85\x62"
     "\x88\x03\x02\x01\x01\x83\x00"s;
-// The same with the fields that the driver asks for: status, no time stamp.
+// Example 2 with the fields that the driver asks for: status, but no time stamp.
 const std::string kGood =
     "\x53\x65\x78\x57\x8F\x82\x5C\x46\x7D\x58\x42\xA0\x77\x5F\x47\x98\x7B\x5A\x44\x95\x6E\x85\x62"
     "\x83\x00"s;
@@ -244,7 +245,8 @@ TEST(CybergloveCalibration, ASpanIsTwoPointsOfIt) {  // fact sheet, example 5
   EXPECT_FLOAT_EQ((167 - kSpan.offset()) * kSpan.gain(), kRightAngle);
 }
 
-// The defaults are the published file. Which line belongs to which slot: README.md of the driver.
+// The defaults must be the values of the published file. The driver's README.md says which line
+// belongs to which slot.
 TEST(CybergloveCalibration, TheDefaultsAreThePublishedFile) {
   constexpr GloveSpan kFile[22] = {
       {46, 0.3F, 164, -0.5F}, {73, 0.9F, 181, -0.7F},  {216, -0.5F, 79, -0.2F},

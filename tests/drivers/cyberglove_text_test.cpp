@@ -1,5 +1,5 @@
-// The CyberGlove's ASCII dialogue: fact sheet, sections 2.4 and 4. What the sheet does not specify
-// is inferred (drivers/cyberglove/README.md).
+// The CyberGlove's ASCII dialogue, following the fact sheet, sections 2.4 and 4. What the sheet
+// does not specify is inferred (drivers/cyberglove/README.md).
 #include <algorithm>
 #include <span>
 #include <string>
@@ -68,7 +68,7 @@ TEST(CybergloveText, ARecordIsReadAndWrittenAlike) {
   EXPECT_EQ(encode(record, kThree), kRecord);
 }
 
-// The longest possible record fits into the buffer, so no allocation is needed.
+// The buffer holds the longest possible record, so no allocation is needed.
 TEST(CybergloveText, TheLongestRecordFits) {
   Record record;
   record.values.fill(200);

@@ -100,7 +100,7 @@ TEST(UdpPort, IsReadByDriversOfDatagramsAlone) {
       "drivers \"tuio\" and \"osc\" do");
 }
 
-// A free port: the system has just assigned it to a socket that is closed again.
+// Returns a UDP port that the system has just assigned to a socket that is closed again.
 std::string freePort() {
   const UniqueFd probe(::socket(AF_INET, SOCK_DGRAM, 0));
   sockaddr_in address{};
@@ -163,7 +163,7 @@ TEST(UdpPort, AnAddressThatIsNotThisMachinesIsSaidToBe) {
   EXPECT_EQ(stream.error().what, "udp://192.0.2.1:3333: this machine does not have this address");
 }
 
-// Writes the messages that it takes as text.
+// Writes as text the messages that it receives.
 struct Lines final : OscSink {
   void take(const OscMessage& message) noexcept override {
     text += message.address;
@@ -211,8 +211,8 @@ TEST(OscPacket, OfADatagramThatIsMalformedAnywhereNothingIsTaken) {
   EXPECT_EQ(read("#bun"), "malformed: ");
 }
 
-// oscpack adds 4 to the size in 32-bit arithmetic; with a size of 0xFFFFFFFC it would read the same
-// element for ever.
+// oscpack adds 4 to the size in 32-bit arithmetic; with a size of 0xFFFFFFFC, it would read the
+// same element for ever.
 TEST(OscPacket, AnElementThatReachesBeyondItsBundleIsMalformed) {
   const std::string head = oscText("#bundle") + oscWord(0) + oscWord(0);
   const std::string good = oscMessage("/a", {1});
@@ -226,7 +226,7 @@ TEST(OscPacket, AnElementThatReachesBeyondItsBundleIsMalformed) {
   }
 }
 
-// Damage that oscpack itself detects, in messages that end where the datagram does.
+// oscpack itself detects this damage, in messages that end where the datagram does.
 TEST(OscPacket, MessagesWithoutAnEndAreMalformed) {
   for (const std::string& packet :
        {std::string("/abc"), oscText("/a") + ",iii", oscText("/a") + oscText(",s") + "text",

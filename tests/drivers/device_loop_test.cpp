@@ -36,7 +36,7 @@ struct Loop : test::DeviceBench {
     return std::unique_ptr<ByteStream>(std::move(fresh));
   }
 
-  // Milliseconds between successive attempts to open the port.
+  // Returns the milliseconds between successive attempts to open the port.
   std::vector<long> pauses() const {
     std::vector<long> all;
     for (std::size_t i = 1; i < opened_at.size(); ++i) {
@@ -46,7 +46,7 @@ struct Loop : test::DeviceBench {
     return all;
   }
 
-  // The sequence of health states, without repetitions.
+  // Returns the sequence of health states, without repetitions.
   std::vector<HealthState> states() const {
     std::vector<HealthState> all;
     for (const DeviceHealth& h : health.all) {
@@ -81,7 +81,7 @@ TEST(DeviceLoop, AnAbsentPortIsTriedEverMoreRarely) {
   };
   loop.run();
   EXPECT_EQ(loop.pauses(), (std::vector<long>{100, 200, 250, 250, 250, 250, 250}));
-  // The last report has the reason "stopped".
+  // The report before the last one is checked, since the last one has the reason "stopped".
   const DeviceHealth& h = loop.health.all[loop.health.all.size() - 2];
   EXPECT_EQ(h.state, HealthState::kAbsent);
   EXPECT_STREQ(h.reason, "/tmp/glove: no such file");

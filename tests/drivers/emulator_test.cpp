@@ -19,7 +19,7 @@ using namespace std::string_literals;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Plays the program at the other end of an emulator's line.
+// Takes the place of the program at the other end of an emulator's line.
 struct Box {
   explicit Box(const char* device, const EmulatorSettings& settings = {},
                const char* script_name = "visit")
@@ -151,7 +151,7 @@ TEST(CybergloveEmulator, ObeysSetsAndRefusesTheRest) {  // fact sheet, sections 
   EXPECT_EQ(box.ask("?P"), "?P\x87\xE4\x01\0"s);
   EXPECT_EQ(box.ask("?D?U?W?L?Q?F?J"), "?D\1\0?U\1\0?W\1\0?L\1\0?Q\1\0?F\0\0?J\0\0"s);
   EXPECT_EQ(box.ask("M\xFF\x00\x00"s), "M\0"s);
-  // The mask is combined by AND with the sensors that exist.
+  // The mask is combined with the existing sensors by AND.
   EXPECT_EQ(box.ask("?M?N"), "?M\x7F\0\0\0?N\7\0"s);
   EXPECT_EQ(box.ask("N\x08"), "en\0"s);
   EXPECT_EQ(box.ask("N\x03"), "N\0"s);
@@ -263,12 +263,12 @@ TEST(FastrakEmulator, IsDeafWhileItStartsAndRemembersWhatWasSaved) {
   EXPECT_EQ(box.listen(milliseconds(999)), "");
   EXPECT_EQ(box.ask("S"), "");
   box.listen(milliseconds(2));
-  // Saved values are back: centimetres, and ASCII again.
+  // The saved values are in effect again: centimetres and ASCII.
   EXPECT_EQ(box.ask("S").substr(3, 3), "3F2");
   EXPECT_EQ(box.ask("WS").substr(3, 3), "3F0");
 }
 
-// Section 7: two receivers, although four stations are asked for.
+// Section 7: there are only two receivers, although VRPN asks for four stations.
 TEST(FastrakEmulator, SpeaksWithVrpn) {
   Box box("fastrak", {.model = "2"});
   EXPECT_EQ(box.ask("c"), "");

@@ -1,6 +1,6 @@
 // An input device of the kernel that is unplugged after `merlin devices` has listed it, at each
-// step of its opening: the message, and that nothing else is touched. What the kernel itself does
-// when a device is there is seen in the virtual machine (tests/vm).
+// step of its opening: the message, and that no other device is affected. What the kernel itself
+// does with an existing device is tested in the virtual machine (tests/vm).
 #include "drivers/io/evdev_stream.h"
 
 #include <cerrno>
@@ -29,7 +29,7 @@ int describes(int, libevdev** device) {
 }
 int grabs(libevdev*) { return 0; }
 
-// Requests of which one gets this answer of the kernel.
+// Returns requests in which the description gets this answer of the kernel.
 EvdevRequests descriptionIs(int answer) {
   return {[answer](int, libevdev**) { return answer; }, grabs};
 }
@@ -88,7 +88,8 @@ struct Reports final : HealthSink {
   std::function<void(const DeviceHealth&)> then;
 };
 
-// The device is gone at its description, then at its grab; then its file is gone; then it is back.
+// The device disappears at its description, then at its grab; then its file does not exist; then
+// the device is back.
 TEST_F(EvdevStreamTest, ItIsAbsentUntilItIsBack) {
   const std::string description = test::evdevRecord(EvdevRecord::kAxis, ABS_X, 0, -100, 100) +
                                   test::evdevRecord(EvdevRecord::kReady);

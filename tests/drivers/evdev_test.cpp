@@ -1,5 +1,5 @@
-// The kernel's input devices as a ball: records, the axes and buttons of a gamepad, a space mouse,
-// a joystick and a clicker, and the driver's stream.
+// The kernel's input devices read as a ball: records, the axes and buttons of a gamepad, a space
+// mouse, a joystick and a clicker, and the driver's stream.
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 
@@ -29,8 +29,8 @@ std::string axis(int code, std::int32_t low, std::int32_t high, std::int32_t val
   return test::evdevRecord(EvdevRecord::kAxis, code, value, low, high);
 }
 
-// A controller as the kernel's driver xpad describes it. Resting values are seldom in the middle of
-// the range.
+// Returns a controller's description as the kernel's driver xpad gives it. Resting values are
+// seldom in the middle of the range.
 std::string gamepad() {
   std::string text =
       named(EvdevRecord::kName, 0, "Microsoft X-Box 360 ") + named(EvdevRecord::kName, 0, "pad");
@@ -274,7 +274,7 @@ TEST_F(EvdevTest, ReconnectedItForgetsTheDeviceOfBefore) {
   EXPECT_EQ(s.counter, 3u) << "one said that nothing is pressed any more";
 }
 
-// While a device is unplugged, nobody notices that its button is released.
+// While a device is unplugged, the driver cannot notice that a button of the device is released.
 TEST_F(EvdevTest, WhatWasHeldWhenItWentIsReleasedWhenItReturns) {
   connect(gamepad());
   EXPECT_TRUE(sink_.ball.empty()) << "at rest it is silent";

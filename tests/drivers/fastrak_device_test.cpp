@@ -212,7 +212,7 @@ TEST(FastrakDevice, IsLostWhenItsBoxStartsAgainAndComesBack) {
   ASSERT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
   tracker.type("\x19");
   EXPECT_LE(tracker.timeToFail(*tracker.device, seconds(5)), milliseconds(500));
-  // The box is silent for one second; open() keeps asking.
+  // The box is silent for one second, during which open() keeps asking.
   ASSERT_TRUE(tracker.device->open(tracker.stream));
   EXPECT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
 }
@@ -241,7 +241,7 @@ TEST(FastrakDevice, ReinitialisesABoxThatDidNotAnswerFourTimes) {
   EXPECT_EQ(tracker.stream.written().find('\x19'), 16u);
   EXPECT_TRUE(tracker.pollFor(*tracker.device, seconds(1)));
 
-  // The box answered before, so it is not reset again.
+  // The box has answered before, so it must not be reset again.
   ASSERT_TRUE(tracker.device->open(tracker.stream));
   EXPECT_EQ(tracker.stream.written().rfind('\x19'), 16u);
 }

@@ -40,7 +40,7 @@ void expectGood(const Record& r) {
   EXPECT_NEAR(r.orientation_wxyz[3], 0.70711, 1e-5);
 }
 
-// kGood with another orientation.
+// Returns kGood with another orientation.
 std::string withQuaternion(const std::array<float, 4>& q) {
   std::string bytes = kGood.substr(0, 15);
   for (const float v : q) appendLeFloat(bytes, v);
@@ -102,7 +102,7 @@ TEST(FastrakParser, RefusesPositionsThatAreNoNumbers) {
 
 TEST(FastrakParser, FindsRecordsAmongGarbageAndCountsEveryByteOfIt) {
   Parser parser;
-  // VRPN resynchronises after the same eight bytes: fact sheet, section 7.
+  // VRPN resynchronises after the same eight bytes (fact sheet, section 7).
   const std::string garbage = "\x30\x31\x07\x6A\x75\x6E\x6B\x30"s;
   const auto records = parse(parser, garbage + kGood + kGood + "2 E*ERROR*" + kGood + kGood);
   ASSERT_EQ(records.size(), 4u);
@@ -141,7 +141,7 @@ TEST(FastrakParser, EncodingIsTheInverse) {
   }
 }
 
-// One packet of each kind that can occur in a stream.
+// The tests damage one packet of each kind that can occur in a stream.
 class FastrakDamage : public testing::TestWithParam<test::NamedPacket> {};
 
 TEST_P(FastrakDamage, EveryPrefixCostsItselfAlone) {
@@ -276,7 +276,7 @@ TEST(FastrakStatus, FlagsComeBack) {  // 3F1 binary, 3F2 centimetres, 3F8 contin
   }
 }
 
-// kGood with another position.
+// Returns kGood with another position.
 std::string withPosition(const std::array<float, 3>& position) {
   std::string bytes = kGood.substr(0, 3);
   for (const float v : position) appendLeFloat(bytes, v);

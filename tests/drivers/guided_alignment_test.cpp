@@ -12,7 +12,8 @@ namespace {
 using Place = std::array<float, 3>;
 using Pose = std::array<float, 4>;
 
-// A sample of a unit without alignment and boresight: position in cm, orientation as a quaternion.
+// Returns a sample of a unit without alignment and boresight: position in cm, orientation as a
+// quaternion.
 TrackerSample at(const Place& cm, const Pose& wxyz = {1, 0, 0, 0}) {
   TrackerSample s{};
   for (std::size_t i = 0; i < 3; ++i) s.position_m[i] = cm[i] / 100;
@@ -22,12 +23,12 @@ TrackerSample at(const Place& cm, const Pose& wxyz = {1, 0, 0, 0}) {
 }
 
 // A frame in which new x is old y, new y is old -x and new z is old z. Its origin is 50 cm in front
-// of the transmitter; its boresight is a rotation of 90 degrees about z. turned() gives the sample
-// of a place and pose in that frame.
+// of the transmitter; its boresight is a rotation of 90 degrees about z. turned() returns the
+// sample that a place and pose give in this frame.
 constexpr StationFrame kTurned{{50, 0, 0, 50, 100, 0, -50, 0, 0}, {0.70710678F, 0, 0, 0.70710678F}};
 TrackerSample turned(const Place& cm, const Pose& wxyz = {1, 0, 0, 0}) {
   TrackerSample s = at({cm[1], 50 - cm[0], cm[2]});
-  // conj(90 degrees about z) * q * conj(90 degrees about z)
+  // q becomes conj(90 degrees about z) * q * conj(90 degrees about z).
   const auto [w, x, y, z] = wxyz;
   const Pose seen = {z, x, y, -w};
   std::copy(seen.begin(), seen.end(), s.orientation_wxyz);
@@ -54,7 +55,7 @@ TEST(GuidedAlignment, PlacesMakeTheFrameAndThePoseIsAheadInIt) {
   ASSERT_TRUE(hold(guided, kOnX, at(kX)));
   ASSERT_TRUE(hold(guided, kOnY, at(kY)));
   ASSERT_TRUE(hold(guided, kAhead, at(kA, k40)));
-  // The new x axis is the old y, so that of 40 degrees -50 degrees remain.
+  // The new x axis is the old y, so of 40 degrees, -50 degrees remain.
   const Pose left = {0.90630779F, 0, 0, -0.42261826F};
   expectNear(guided.solve(), {60, 5, -15, 60, 45, -15, 30, 10, -15}, left);
 }

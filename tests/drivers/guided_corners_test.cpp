@@ -24,12 +24,12 @@ Result<SurfacePlace> touched(GuidedCorners& guided, std::size_t step, float x, f
   return guided.end();
 }
 
-// For each of the eight ways to mount a surface: with the resulting settings MERLIN has a touch
+// There are eight ways to mount a surface. With the resulting settings, MERLIN must have each touch
 // where the person sees the finger.
 TEST(GuidedCorners, FindEachWayToMountASurface) {
   for (int way = 0; way < 8; ++way) {
     const TouchOrientation mounted{(way & 1) != 0, (way & 2) != 0, (way & 4) != 0};
-    // The device's coordinates of a finger that the person sees at (x, y).
+    // Returns the device's coordinates of a finger that the person sees at (x, y).
     const auto device = [&](float x, float y) {
       if (mounted.invert_x) x = 1 - x;
       if (mounted.invert_y) y = 1 - y;

@@ -1,4 +1,5 @@
-// Finds which axes of an input device a person means, from those that were moved at each request.
+// Finds which axes of an input device a person means, from the axes that were moved at each
+// request.
 #include "drivers/port/guided_pad.h"
 
 #include <gtest/gtest.h>
@@ -8,10 +9,11 @@ namespace {
 
 using Readings = std::vector<AxisReading>;
 
-// Readings of a gamepad at rest: two sticks, one of which is slightly off-centre, and two triggers.
+// Returns the readings of a gamepad at rest: two sticks, one of which is slightly off-centre, and
+// two triggers.
 Readings atRest() { return {{"x", 0}, {"y", 0.04F}, {"z", -1}, {"rx", 0}, {"ry", 0}, {"rz", -1}}; }
 
-// The same readings, except for one axis.
+// Returns the readings of the gamepad at rest, except for one axis.
 Readings with(const std::string& name, float deflection) {
   Readings readings = atRest();
   for (AxisReading& reading : readings) {
@@ -83,7 +85,7 @@ TEST(GuidedPad, NothingMovedIsNoResult) {
   EXPECT_FALSE(guided.solve());
 }
 
-// A VRPN server sends a channel when it changes, so the first value may come while a stick is
+// A VRPN server sends a channel when it changes, so the first value may arrive while a stick is
 // deflected.
 TEST(GuidedPad, AnAxisThatWasSilentAtRestRestsInTheMiddle) {
   GuidedPad guided;

@@ -1,5 +1,5 @@
-// The hand on synthetic motion: named joints, the smoothed pose, and its prediction to another
-// time.
+// The hand with synthetic motion: named joints, the smoothed pose, and the prediction of the pose
+// for another time.
 #include "drivers/hand/hand.h"
 
 #include <cmath>

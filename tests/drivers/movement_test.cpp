@@ -76,7 +76,7 @@ TEST(MovingPeople, MakeEachGestureInItsDirection) {
   std::set<std::string> names;
   for (const MovingGesture& gesture : movingGestures()) names.insert(gesture.name);
   EXPECT_EQ(names.size(), 10u);
-  // The average person's swipe to the right is along the transmitter's -y.
+  // The average person swipes to the right along the transmitter's -y.
   const auto made = makeGestures(MovingPerson(0), 1, 1);
   ASSERT_EQ(made.made.size(), 10u);
   for (const MadeGesture& gesture : made.made) {
@@ -92,7 +92,7 @@ TEST(MovingPeople, MakeEachGestureInItsDirection) {
   }
 }
 
-// The tracker's positions do not jump, and no hand is faster than a person's can be.
+// The tracker's positions must not jump, and no hand may be faster than a person's can be.
 TEST(MovingPeople, MoveAsHandsCan) {
   for (std::uint64_t person = 1; person <= 10; ++person) {
     const auto walked = goAbout(MovingPerson(person), 60, person);

@@ -1,7 +1,8 @@
-// Each kind of input of today moves the model where a person expects it: from the bytes on a line
-// (a space mouse through spacenavd, a space mouse and a gamepad of the kernel, a Spaceball, a VRPN
-// pad; trackers of VRPN and OSC; a touch frame, a mouse, TUIO) through the real driver to the pose
-// of the scene. The trace of each is printed: `moves_model_test`, drivers/README.md.
+// Each kind of present-day input must move the model where a person expects it: from the bytes on a
+// line (a space mouse through spacenavd, a space mouse and a gamepad of the kernel, a Spaceball, a
+// VRPN pad; trackers of VRPN and OSC; a touch frame, a mouse, TUIO) through the real driver to the
+// pose of the scene. The program `moves_model_test` prints the trace of each input
+// (drivers/README.md).
 #include <cmath>
 #include <memory>
 
@@ -31,7 +32,7 @@ using Kind = EvdevRecord::Kind;
 // A driver at the end of a fake line, and a scene that its newest samples move.
 class Trace {
  public:
-  // `hello`: what the device says first.
+  // `hello`: the bytes that the device sends first.
   Trace(const char* driver, const std::string& hello, const DriverSettings& own = {},
         const render::scene::SceneSettings& scene = {.tracker_axes = {1, 2, 3}})
       : name_(driver),
@@ -44,7 +45,7 @@ class Trace {
     start_ = scene_.view().T_eye_model;
   }
 
-  // The device says these bytes; then the scene goes on for half a second.
+  // Feeds these bytes from the device; then the scene continues for half a second.
   void say(const std::string& what, const std::string& bytes) {
     line_.feed(bytes);
     while (line_.pending()) ASSERT_TRUE(device_->poll(line_)) << name_;
@@ -54,9 +55,9 @@ class Trace {
         name_, what, moved().x(), moved().y(), moved().z(), turned().x(), turned().y(),
         turned().z());
   }
-  // Where the model is now, from where it was at the beginning.
+  // Returns how far the model has moved since the beginning.
   Vector3f moved() const { return scene_.view().T_eye_model.translation() - start_.translation(); }
-  // How it is turned since: axis times angle in degrees.
+  // Returns how the model has turned since the beginning: axis times angle, in degrees.
   Vector3f turned() const {
     const Eigen::AngleAxisf turn(scene_.view().T_eye_model.linear() * start_.linear().transpose());
     return turn.axis() * turn.angle() * 180 / 3.14159265F;
@@ -91,9 +92,9 @@ void expectAlong(const Vector3f& got, const Vector3f& want) {
 }
 
 const Vector3f kX = Vector3f::UnitX(), kY = Vector3f::UnitY(), kZ = Vector3f::UnitZ();
-constexpr float kDegrees = 45;  // that the model turns in half a second
+constexpr float kDegrees = 45;  // angle by which the model turns in half a second
 
-// What is said, and what the model does: it moves, or turns.
+// What the device sends, and how the model then moves or turns.
 struct Step {
   const char* what;
   std::string bytes;
@@ -101,7 +102,7 @@ struct Step {
 };
 const Vector3f kNot = Vector3f::Zero();
 
-// Says each step to a driver of its own, so that each begins at the start view.
+// Sends each step to a driver of its own, so that each step begins at the start view.
 void expectSteps(const char* driver, const std::string& hello, const std::vector<Step>& steps,
                  const DriverSettings& own = {}) {
   for (const Step& step : steps) {
@@ -141,7 +142,7 @@ TEST(MovesTheModel, AGamepadsSticksAndTriggers) {
                {"right stick back", moves(ABS_RY, 1000), kNot, kX}});
 }
 
-// The kernel's y points towards the person, its z down.
+// Of the kernel's axes, y points towards the person and z down.
 TEST(MovesTheModel, ASpaceMouseOfTheKernel) {
   const std::string hello =
       axes({ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ}, -350, 350) + evdevRecord(Kind::kReady);
@@ -167,7 +168,7 @@ TEST(MovesTheModel, ASpaceMouseThroughSpacenavd) {
                {"space mouse turned to the right", motion(4, 500), kNot, kY}});
 }
 
-// Its own z points away from the person.
+// The Spaceball's own z points away from the person.
 TEST(MovesTheModel, ASpaceball) {
   const auto pushed = [](std::size_t axis, std::int16_t count) {
     spaceball::Displacement d;
@@ -197,7 +198,8 @@ TEST(MovesTheModel, ThePadOfAVrpnServer) {
                {"channel 4 pushed back", channel(4, -1), kNot, -kY}});
 }
 
-// The hand has grabbed the model, which goes three times as far and turns as the hand does.
+// The hand has grabbed the model, which then moves three times as far as the hand, and turns as the
+// hand does.
 template <typename Pose>
 void expectHandCarries(const char* driver, const std::string& hello, const Pose& pose) {
   const float half = std::sqrt(0.5F);

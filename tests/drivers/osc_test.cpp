@@ -1,5 +1,5 @@
-// A tracker whose poses come as OSC messages: forms of addresses and arguments, the opening of the
-// port, faults.
+// A tracker whose poses arrive as OSC messages: forms of addresses and arguments, the opening of
+// the port, faults.
 #include <cmath>
 #include <limits>
 
@@ -83,8 +83,8 @@ TEST_F(OscTest, TheSendersFrameMayLieOtherwise) {
   for (int i = 0; i < 4; ++i) EXPECT_FLOAT_EQ(newest().orientation_wxyz[i], wxyz[i]) << i;
 }
 
-// A rotation in the sender's frame followed by the placement has to equal the placement followed by
-// the rotation in our frame.
+// A rotation in the sender's frame followed by the placement must equal the placement followed by
+// the rotation in MERLIN's frame.
 TEST(TrackerPlacement, TurnsPlacesAndRotationsAlikeAlsoIfItMirrors) {
   using Vector = std::array<float, 3>;
   const auto turned = [](const float(&q)[4], const Vector& v) {  // q v q*
@@ -124,7 +124,7 @@ TEST(TrackerPlacement, TurnsPlacesAndRotationsAlikeAlsoIfItMirrors) {
 }
 
 // A person holds the station at the origin and on two axes. With the computed placement, these
-// three places lie at the origin and on the axes.
+// three places must lie at the origin and on the axes.
 TEST(TrackerPlacement, FollowsFromThreePlaces) {
   const auto solved = placementOf({1, 2, 3}, {1.02, 2, 3.5}, {0.4, 1.95, 3});
   ASSERT_TRUE(solved) << solved.error().what;
@@ -215,7 +215,7 @@ TEST_F(OscTest, OpeningSaysWhatComesInsteadOfAPose) {
   EXPECT_EQ(refused().what, "messages of poses have neither 3 nor 7 numbers");
 }
 
-// A wall on another machine would refuse such samples and say nothing.
+// A wall on another machine would refuse such samples without a message.
 TEST_F(OscTest, APoseThatIsPlacedBeyondTheTrackersReachIsDroppedAndSaid) {
   OscSettings settings;
   settings.placement.origin_m = {0, 24, 0};

@@ -1,5 +1,5 @@
-// A line that sends more than its device may is read at a limited pace, and the health reports it.
-// A line within the limit is not affected.
+// A line that sends more than its device can send is read at a limited pace, and the health reports
+// it. A line within the limit is not affected.
 #include "drivers/loop/paced_stream.h"
 
 #include <string>
@@ -17,7 +17,8 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Sends the same byte without end, as fast as it is read (a read takes 1 us), or sends nothing.
+// A stream that sends the same byte without end, as fast as it is read (a read takes 1 us), or
+// sends nothing.
 class FloodStream final : public ByteStream {
  public:
   FloodStream(test::FakeClock& clock, char byte) : clock_(clock), byte_(byte) {}
@@ -49,7 +50,7 @@ class FloodStream final : public ByteStream {
 
 class PacedStreamTest : public testing::Test {
  protected:
-  // Reads for `time`, `size` bytes at once; returns the number of bytes read.
+  // Reads for `time`, up to `size` bytes in each read; returns the number of bytes read.
   std::size_t readFor(Duration time, std::size_t size) {
     std::vector<std::byte> buffer(size);
     std::size_t bytes = 0;
@@ -74,8 +75,8 @@ TEST_F(PacedStreamTest, ReadsAFloodAtItsPaceInFewReads) {
   EXPECT_EQ(pace_.sentence(), "sends more than 15.4 kB/s, the limit at which it is read");
 }
 
-// If a read takes as long as a byte takes on the line, the stream must not read each byte
-// separately.
+// If a read takes as long as a byte takes on the line, the stream must not use one read for each
+// byte.
 TEST_F(PacedStreamTest, ReadsAFastFloodInFewReadsToo) {
   ReadPace fast(1e6, [] {});
   auto line = std::make_unique<FloodStream>(clock_, 'x');
@@ -216,8 +217,8 @@ TEST(FloodedLine, ADeviceAtTheSpeedOfItsLineIsNeverOne) {
   }
 }
 
-// While the machine is suspended for a second, a pty keeps 4 KiB. They must not be taken for a
-// flood.
+// While the machine is suspended for a second, a pseudo-terminal keeps 4 KiB, which must not be
+// taken for a flood.
 TEST(FloodedLine, WhatCameWhileTheMachineWasAsleepIsNone) {
   test::FakeClock clock;
   bool above = false;

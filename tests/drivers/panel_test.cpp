@@ -41,7 +41,7 @@ struct Bench {
 TEST(Panel, TheLampWarnsWhateverItWasSwitchedTo) {
   Bench b;
   ASSERT_TRUE(b.panel.execute("lamp_on", b.clock.now()));
-  const auto changes = [&] {  // of the lamp, in one second
+  const auto changes = [&] {  // changes of the lamp in one second
     int count = 0;
     bool lit = b.panel.outputs(b.clock.now()).lamp;
     for (int i = 0; i < 100; ++i) {

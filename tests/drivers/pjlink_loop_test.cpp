@@ -1,5 +1,5 @@
-// A projector over TCP on the loopback: one that obeys, one with a password, and others that are
-// slow, refuse, vanish, send junk or close the connection.
+// Projectors over TCP on the loopback interface: one that obeys, one with a password, and others
+// that are slow, refuse, vanish, send junk or close the connection.
 #include <csignal>
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 using test::eventually;
 using test::ProjectorServer;
 
-// A ProjectorLoop on a thread of its own, connected to this port.
+// A ProjectorLoop with its own thread, connected to this port.
 struct Running {
   explicit Running(const std::string& port, const std::string& password_file = {},
                    Duration answer_time = std::chrono::seconds(20))
@@ -73,7 +73,7 @@ TEST(ProjectorLoop, AProjectorThatSaysNothingIsUnreachable) {
   EXPECT_EQ(r.loop.state().power, Power::kUnknown);
 }
 
-// An answer that comes byte by byte does not extend the time-out.
+// An answer that arrives byte by byte must not extend the time-out.
 TEST(ProjectorLoop, AProjectorThatDripsIsUnreachable) {
   ProjectorServer server;
   server.manner = ProjectorServer::kDripping;

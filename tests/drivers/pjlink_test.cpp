@@ -1,4 +1,4 @@
-// PJLink without a network: the protocol, hostile answers, a projector's state, the schedule.
+// PJLink without a network: the protocol, hostile answers, the state of a projector, the schedule.
 
 #include <vector>
 
@@ -19,7 +19,7 @@ namespace {
 
 using std::chrono::seconds;
 
-// The example that the specification of PJLink gives for its authentication.
+// The specification of PJLink gives this example of its authentication.
 TEST(Pjlink, TheDigestIsThatOfTheSpecification) {
   EXPECT_EQ(md5Hex("498e4a67JBMIAProjectorLink"), "5d8409bc1c3fa39749434aa3a5c38682");
   EXPECT_EQ(md5Hex(""), "d41d8cd98f00b204e9800998ecf8427e");  // RFC 1321, appendix A.5
@@ -114,8 +114,8 @@ TEST(Pjlink, HostileBytesEndTheConnection) {
             "sends a line of more than 136 bytes, \"xx");
 }
 
-// A projector on a virtual clock. Each second it gets the commands that are due and its answers are
-// read.
+// A projector on a virtual clock. In each second it is sent the commands that are due, and its
+// answers are read.
 struct Bench {
   test::FakeClock clock;
   test::EmulatedProjector device;
@@ -248,7 +248,8 @@ TEST(Pjlink, WhatAPersonDoesWithARemoteControlIsLeftAlone) {
   EXPECT_EQ(b.state().power, Power::kOff);
 }
 
-// For a moment after it has accepted to switch off, a projector may still report that it is on.
+// For a moment after it has accepted the command to switch off, a projector may still report that
+// it is on.
 TEST(Pjlink, OnAfterOffIsNotReachedByAnAnswerFromBefore) {
   Bench b;
   b.projector.want(true, b.clock.now());
@@ -340,7 +341,7 @@ TEST(Pjlink, APasswordIsTheFirstLineOfItsFile) {
   EXPECT_EQ(readPassword(folder.path() + "/none").error().code, Errc::kNotFound);
 }
 
-// Minutes of the local calendar. Day 0: Monday, 2026-06-01.
+// Returns minutes of the local calendar. Day 0 is Monday, 2026-06-01.
 LocalMinute at(int day, int hour, int minute = 0) {
   constexpr LocalMinute kMonday = 20605;  // days from 1970-01-01 to 2026-06-01
   return (kMonday + day) * 24 * 60 + hour * 60 + minute;

@@ -26,8 +26,8 @@ HandSample hand() {
   return s;
 }
 
-// Expects that `good` is plausible, and that it is not when any element of `numbers` is one of
-// kNever.
+// Expects that `good` is plausible, and that it is implausible when any element of `numbers` is one
+// of kNever.
 template <typename Sample, std::size_t N>
 void expectBounded(const Sample& good, float (Sample::*numbers)[N]) {
   ASSERT_TRUE(plausible(good));

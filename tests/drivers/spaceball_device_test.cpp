@@ -143,7 +143,7 @@ TEST(SpaceballDevice, IsSetUpAgainAfterAResetOfItsOwn) {
   EXPECT_NEAR(static_cast<double>(ball.sink.ball.size() - samples), 20, 1);
 }
 
-// A ball that runs already and ignores @RESET.
+// A ball that is already running and ignores @RESET.
 struct Awake final : emulate::Emulator {
   explicit Awake(emulate::Emulator& ball) : ball_(ball) {}
   void receive(std::span<const std::byte> bytes, Timestamp now) override {

@@ -101,7 +101,7 @@ TEST(SpaceballDisplacement, EncodingIsTheInverse) {
 // The tests damage one packet of each kind.
 class SpaceballDamage : public testing::TestWithParam<test::NamedPacket> {};
 
-// The packet after the next CR is read whatever came before: the parser keeps no state.
+// The packet after the next CR must be read, whatever came before: the parser keeps no state.
 TEST_P(SpaceballDamage, EveryPrefixCostsAtMostItself) {
   for (std::size_t n = 0; n < GetParam().bytes.size(); ++n) {
     Parser parser;

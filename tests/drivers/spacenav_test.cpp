@@ -1,4 +1,4 @@
-// A space mouse that is read through spacenavd: its frames, and the driver's dialogue with both
+// A space mouse that is read through spacenavd: its frames, and the driver's dialogue in both
 // versions of the protocol.
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ TEST(SpacenavParser, ANamesPiecesAreCutAtTheirLength) {
 
 class SpacenavTest : public testing::Test {
  protected:
-  // As spacenavd 1.x answers.
+  // Connects the driver; the stream answers as spacenavd 1.x does.
   void connect() {
     stream_.feed(encodeWord(kHello));
     stream_.feed(nameAnswer("SpaceNavigator", 14));
@@ -170,7 +170,7 @@ TEST_F(SpacenavTest, AHeldButtonActsWhenItIsDue) {
   EXPECT_EQ(sink_.ticks, due);
 }
 
-// spacenavd reports that a mouse was unplugged, but not whether another one is left.
+// spacenavd reports that a mouse was unplugged, but not whether another mouse is left.
 TEST_F(SpacenavTest, OfTwoMiceTheOneThatIsLeftIsTheSpaceMouse) {
   connect();
   feed({kDevice, 1});

@@ -1,5 +1,5 @@
-// Touch frames and mice of the kernel: devices with slots, with one position, a mouse with its
-// button pressed, and the driver's stream.
+// Touch frames and mice of the kernel: devices with slots, devices with one position, a mouse with
+// its button pressed, and the driver's stream.
 #include <gtest/gtest.h>
 #include <linux/input-event-codes.h>
 #include <linux/input.h>
@@ -33,7 +33,7 @@ std::string shifted(int code, int by) { return evdevRecord(EvdevRecord::kShifted
 const std::string kReady = evdevRecord(EvdevRecord::kReady),
                   kReport = evdevRecord(EvdevRecord::kReport);
 
-// The description of a touch frame of 800 mm by 400 mm with ten slots.
+// Returns the description of a touch frame of 800 mm by 400 mm with ten slots.
 std::string frame() {
   return evdevNamed(EvdevRecord::kName, 0, "made-up frame") + axis(ABS_X, 8000, 10) +
          axis(ABS_Y, 4000, 10) + axis(ABS_MT_SLOT, 9) + axis(ABS_MT_TRACKING_ID, 65535) +
@@ -114,8 +114,8 @@ TEST_F(TouchTest, AReportThatMovesNoFingerIsNotPublished) {
   EXPECT_EQ(sink_.touch.size(), 1u);
 }
 
-// After events were lost, libevdev may report another finger on a slot without the end of the first
-// one.
+// After events were lost, libevdev may report another finger on a slot without having reported the
+// end of the first one.
 TEST_F(TouchTest, AnotherTrackingNumberIsAnotherFinger) {
   connect(frame());
   const std::uint32_t first = after(finger(0, 7, 2000, 1000)).id[0];

@@ -1,5 +1,5 @@
-// Streams other than ptys: transcripts and their replay, the recorder, tcp://, adapters that add a
-// delay.
+// Streams other than pseudo-terminals: transcripts and their replay, the recorder, tcp://, adapters
+// that add a delay.
 #include "drivers/io/transcript.h"
 
 #include <filesystem>
@@ -47,7 +47,7 @@ TEST(Transcript, IsReadAsItIsWritten) {
   EXPECT_EQ(t->chunks[0].bytes, "\r@");
   EXPECT_EQ(t->chunks[1].bytes.size(), 16u);
   EXPECT_EQ(t->chunks[1].at, milliseconds(250));
-  // The 16 bytes before this chunk take ten bits each at 9600 baud.
+  // Before this chunk there are 16 bytes, which take ten bits each at 9600 baud.
   EXPECT_EQ(t->chunks[2].at, milliseconds(250) + std::chrono::nanoseconds(16'666'666));
 }
 
@@ -201,7 +201,7 @@ TEST(TcpStream, CarriesBytesBothWaysAndSaysWhenTheServerIsGone) {
   EXPECT_EQ(gone.what, "the other end hung up");
 }
 
-// It ends with bytes that it has not read, so that the connection is reset.
+// The server closes its socket with bytes that it has not read, so that the connection is reset.
 TEST(TcpStream, AServerThatBreaksTheConnectionOffIsGoneToo) {
   Server server;
   auto stream = openPort({PortKind::kTcp, "127.0.0.1", std::to_string(server.port)}, 9600);
@@ -242,7 +242,7 @@ TEST(AdapterWarning, NamesTheDelayAndTheWayOut) {
   EXPECT_EQ(adapterWarning(dir / "by-id", dir.path()), "");
 }
 
-// The kernel's interface is a 32-bit number, which is in force as long as the device file is open.
+// The kernel's interface is a 32-bit number, which is in effect as long as the device file is open.
 TEST(CpuLatency, WritesTheLimitAndSaysWhereItCannot) {
   const test::TempDir dir;
   const std::string device = dir / "cpu_dma_latency";

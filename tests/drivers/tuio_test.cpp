@@ -1,5 +1,5 @@
 // A touch surface whose tracker speaks TUIO 1.1: frames that are lost, late, split or damaged,
-// several trackers, silence.
+// several trackers, and silence.
 #include <gtest/gtest.h>
 
 #include "daemon/base/random.h"

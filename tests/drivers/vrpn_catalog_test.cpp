@@ -1,5 +1,5 @@
-// The catalog of a VRPN server's devices, made from its messages: a recording of VRPN's own server,
-// and servers that lie.
+// The catalogue of a VRPN server's devices, made from its messages: a recording of VRPN's own
+// server, and servers that lie.
 #include <chrono>
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr auto& message = test::vrpnMessage;
 constexpr auto& sender = test::vrpnSender;
 constexpr auto& type = test::vrpnType;
 
-// The numbers that the servers of these tests use.
+// Numbers of message types that the servers of these tests use.
 constexpr std::int32_t kPose = 4, kButton = 5, kStates = 6, kChannels = 7, kPong = 8;
 
 std::string types() {
@@ -29,14 +29,14 @@ std::string types() {
          type(kPong, kVrpnPong);
 }
 
-// The catalog of a server that sends these bytes after its greeting.
+// Returns the catalogue of a server that sends these bytes after its greeting.
 Catalog catalogOf(const std::string& bytes) {
   Catalog catalog;
   EXPECT_TRUE(catalog.take(vrpnCookie() + bytes));
   return catalog;
 }
 
-// All devices with the kinds of their messages, as "Wand0 tracker buttons, Dial analog".
+// Returns all devices with the kinds of their messages, as "Wand0 tracker buttons, Dial analog".
 std::string textOf(const Catalog& catalog) {
   std::string text;
   for (const CatalogDevice& device : catalog.devices()) {
@@ -153,7 +153,7 @@ TEST(VrpnCatalog, WhatWasUnderstoodStaysWhenTheServerTurnsToNonsense) {
             "the greeting \"HTTP/1.1 400 Bad Request\" is not that of a server of VRPN 7");
 }
 
-// Damage may change the description of a type to that of a sender.
+// Damage may turn the description of a type into that of a sender, hence one more device.
 TEST(VrpnCatalog, OneDamagedByteAddsNoMoreThanADevice) {
   const std::string good = vrpnCookie() + sender(1, "Wand0") + types() + message(1, kPose, "x");
   for (std::size_t i = 0; i < good.size(); ++i) {

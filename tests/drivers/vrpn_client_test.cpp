@@ -23,7 +23,7 @@ constexpr auto& message = test::vrpnMessage;
 constexpr auto& sender = test::vrpnSender;
 constexpr auto& type = test::vrpnType;
 
-// The numbers that the servers of these tests use.
+// Numbers of senders and message types that the servers of these tests use.
 constexpr std::int32_t kOther = 4, kTracker = 7, kPoseNumber = 11, kPongNumber = 12;
 
 std::string pose(std::int32_t sensor, std::array<float, 3> p,
@@ -87,7 +87,7 @@ class VrpnTest : public testing::Test {
     EXPECT_EQ(*identity, "VRPN tracker Tracker0 at server version 07.38");
     ASSERT_EQ(sink_.tracker.size(), 1u);
   }
-  // The number of samples that the driver makes of these bytes.
+  // Returns the number of samples that the driver makes of these bytes.
   std::size_t samplesOf(const std::string& bytes) {
     const std::size_t before = sink_.tracker.size();
     stream_.feed(bytes);
@@ -198,8 +198,8 @@ TEST_F(VrpnTest, OnlyWhatTheServerCallsOurDevicesPosesIsTaken) {
   EXPECT_EQ(samplesOf(message(kOther, kPoseNumber, payload) + message(99, kPoseNumber, payload) +
                       message(kTracker, 99, payload) + message(kTracker, -77, payload)),
             0u);
-  // A sender number that now has another name, or an unreadable one, no longer belongs to our
-  // device.
+  // A sender number that now has another name, or an unreadable one, no longer belongs to the
+  // driver's device.
   EXPECT_EQ(samplesOf(sender(kTracker, "Wand") + pose(0, {1, 2, 3})), 0u);
   EXPECT_EQ(samplesOf(sender(kOther, "Tracker0") + message(kOther, kPoseNumber, payload)), 1u);
   EXPECT_EQ(
@@ -319,8 +319,8 @@ TEST_F(VrpnTest, ReconnectedItForgetsTheServersNumbers) {
   EXPECT_EQ(sink_.tracker.back().counter, 2u) << "the counter goes on";
 }
 
-// Damages every byte of a stream. No sample may be implausible, and the driver may end only by
-// refusing the server.
+// Every byte of a stream is damaged in turn. No sample may be implausible, and the driver may end
+// only by refusing the server.
 TEST_F(VrpnTest, OneDamagedByteHarmsNothingElse) {
   const std::string good =
       descriptions() + pose(0, {1, 2, 3}) + pose(1, {1, 2, 3}) + pose(0, {1, 2, 3});

@@ -1,4 +1,4 @@
-// Buttons and analogs of a VRPN server: their messages, their meaning as a ball, and the driver's
+// Buttons and analogs of a VRPN server: their messages, how they act as a ball, and the driver's
 // dialogue with a server.
 #include <limits>
 
@@ -21,7 +21,7 @@ using std::chrono::seconds;
 
 constexpr auto& message = test::vrpnMessage;
 
-// The numbers that the server of these tests uses.
+// Numbers of senders and message types that the server of these tests uses.
 constexpr std::int32_t kOther = 4, kStick = 7, kChange = 11, kStates = 12, kChannels = 13,
                        kPong = 14;
 
@@ -171,7 +171,7 @@ class VrpnPadTest : public testing::Test {
     ASSERT_TRUE(identity) << identity.error().what;
     EXPECT_EQ(*identity, "VRPN buttons and analogs Joystick0 at server version 07.38");
   }
-  // The number of samples that the driver makes of these bytes.
+  // Returns the number of samples that the driver makes of these bytes.
   std::size_t samplesOf(const std::string& bytes) {
     const std::size_t before = sink_.ball.size();
     stream_.feed(bytes);
@@ -281,8 +281,8 @@ TEST_F(VrpnPadTest, ADeviceThatLeavesItsServerIsSaidAndLetsGo) {
   EXPECT_EQ(sink_.ball.back().buttons, 4u);
 }
 
-// Damages every byte of a stream. No sample may be implausible, and the driver may end only by
-// refusing the server.
+// Every byte of a stream is damaged in turn. No sample may be implausible, and the driver may end
+// only by refusing the server.
 TEST_F(VrpnPadTest, OneDamagedByteHarmsNothingElse) {
   const std::string good = descriptions() + button(2, true) +
                            message(kStick, kStates, vrpnButtons(7, 5)) + channels({0.5, -0.25}) +

@@ -1,5 +1,5 @@
-// Gives every file of corpus/ to its target, then the same files with random damage. So a fault
-// that libFuzzer once found is detected if it comes back, in every build and under every sanitizer.
+// Gives every file of corpus/ to its target, then the same files with random damage. A fault that
+// libFuzzer once found is therefore detected if it recurs, in every build and with every sanitizer.
 // Faults are crashes and sanitizer reports; a target aborts where a condition does not hold.
 #include <filesystem>
 #include <fstream>

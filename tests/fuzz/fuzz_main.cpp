@@ -1,5 +1,5 @@
 // merlin_fuzz: libFuzzer's program for the targets of targets.h. The environment variable
-// MERLIN_FUZZ names the target; ./dev fuzz starts the program once for each.
+// MERLIN_FUZZ names the target; ./dev fuzz starts the program once for each target.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

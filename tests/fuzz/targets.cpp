@@ -72,7 +72,7 @@ std::string_view textOf(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// A file without a name that contains the bytes, for readers of files.
+// A file in memory without a name, which contains the bytes, for functions that read files.
 class MemoryFile {
  public:
   explicit MemoryFile(Bytes bytes) : fd_(::memfd_create("fuzz", MFD_CLOEXEC)) {
@@ -165,7 +165,7 @@ void configurationText(Bytes bytes) {
 }
 
 void commandText(Bytes bytes) {
-  constexpr std::size_t kMostBytes = 4096;  // of the longest request
+  constexpr std::size_t kMostBytes = 4096;  // bytes of the longest request
   std::vector<status::Command> commands;
   for (const CommandInfo& info : kCommands) {
     status::Command command{std::string(info.name), std::string(info.help), nullptr, nullptr};
@@ -209,8 +209,8 @@ void gzipFile(Bytes bytes) {
   require(!all || all->starts_with(beginning), "the beginning is the same");
 }
 
-// A mesh made of the bytes, 28 for each triangle: three numbers of its 27 vertices, the number of
-// its texture, then u and v of its corners as floats.
+// Returns a mesh made of the bytes, 28 bytes for each triangle: three indices of its 27 vertices,
+// the number of its texture, then u and v of its corners as floats.
 render::mesh::Mesh meshOf(Bytes bytes, std::vector<std::uint32_t>& textures) {
   constexpr std::size_t kTriangle = 28, kVertices = 27;
   render::mesh::Mesh mesh;
@@ -307,7 +307,8 @@ struct PlausibleSink final : SampleSink {
   }
 };
 
-// Gives the bytes of a line to the whole driver, which is polled more often than the bytes need.
+// Gives the bytes of a line to the whole driver, and polls the driver more often than the bytes
+// need.
 void driverBytes(Device& device, test::FakeClock& clock, std::string_view bytes) {
   constexpr std::size_t kPolls = 20;
   test::FakeStream stream(clock, nullptr);
@@ -340,7 +341,7 @@ void touchBytes(Bytes bytes) {
   driverBytes(device, clock, textOf(bytes));
 }
 
-// The bytes are one datagram.
+// Gives the bytes to the TUIO driver as one datagram.
 void tuioBytes(Bytes bytes) {
   PlausibleSink sink;
   test::FakeClock clock;
@@ -350,7 +351,8 @@ void tuioBytes(Bytes bytes) {
   driverBytes(device, clock, line + line);
 }
 
-// The bytes are the content of the line: records of datagrams.
+// Gives the bytes to the OSC driver as the content of its line, which consists of records of
+// datagrams.
 void oscBytes(Bytes bytes) {
   PlausibleSink sink;
   test::FakeClock clock;

@@ -1,5 +1,6 @@
 // The fuzz targets: one function for each reader of bytes that come from outside. libFuzzer calls
-// one of them (fuzz_main.cpp, ./dev fuzz); fuzz_corpus_test calls all with the files in corpus/.
+// one target (fuzz_main.cpp, ./dev fuzz); fuzz_corpus_test calls all targets with the files in
+// corpus/.
 #pragma once
 
 #include <cstdint>

@@ -16,8 +16,8 @@ std::string wrongWith(const std::string& text) {
   return read ? "" : read.error().what;
 }
 
-// A CSV text: a header with 22 sensor names, and one row whose values are the column numbers plus
-// 0.5.
+// Returns a CSV text: a header with 22 sensor names, and one row whose values are the column
+// numbers plus 0.5.
 std::string twentyTwo(const std::string& end, const std::string& label = "fist") {
   std::string header = "Label", line = label;
   for (int i = 0; i < 22; ++i) {
@@ -50,8 +50,8 @@ TEST(Recording, TakesSlotsByNameInAnyOrder) {
   EXPECT_EQ(read->unit, InputUnit::kRadians);
 }
 
-// The header is that of another program. The chosen columns say which sensor each holds; all other
-// columns are skipped.
+// The header is that of another program. The chosen columns say which sensor each column holds; all
+// other columns are skipped.
 TEST(Recording, TakesTheColumnsThatWereChosen) {
   const std::string text = "Frame,Symbol,ThumbRotate,IndexInner,Battery\n7,fist,0.5,0.25,99\n";
   const auto columns = [&](std::vector<ChosenColumn> chosen) {

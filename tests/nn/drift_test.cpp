@@ -1,5 +1,5 @@
 // Postures while the glove's sensors drift: how much drift the trained network tolerates, and how
-// much DriftFollower corrects.
+// much of it DriftFollower corrects.
 #include "nn/drift.h"
 
 #include <algorithm>
@@ -15,15 +15,15 @@
 namespace merlin::nn {
 namespace {
 
-// Returns the hands whose posture is not recognised.
+// Returns the number of hands whose posture is not recognised.
 std::size_t faultsOf(DriftFollower& follower, const DataSet& hands) {
   return static_cast<std::size_t>(std::count_if(
       hands.begin(), hands.end(),
       [&](const LabelledHand& hand) { return follower(hand.value).name != hand.posture; }));
 }
 
-// Three people whose gloves drift more than most: 8.7 % of these 6975 hands were faults before the
-// training kept hands that stray on their own side of the border.
+// The gloves of these three people drift more than most. 8.7 % of these 6975 hands were faults
+// before the training kept straying hands on their own side of the border between postures.
 TEST(Drift, TheTrainingBearsSomeAndTheFollowerNearlyAll) {
   std::size_t hands = 0, alone = 0, followed = 0;
   for (const std::uint64_t person : {3008U, 3013U, 3014U}) {
@@ -41,7 +41,7 @@ TEST(Drift, TheTrainingBearsSomeAndTheFollowerNearlyAll) {
   EXPECT_LT(followed, 35U) << "0.5 %";
 }
 
-// A network for the laws below: two postures that differ in slot 4, and every output follows it.
+// A network for the tests below: two postures that differ in slot 4, which determines every output.
 class TwoPostures : public testing::Test {
  protected:
   TwoPostures() {
@@ -62,7 +62,7 @@ class TwoPostures : public testing::Test {
     statistics_.mean[1][4] = 0.8F;
   }
 
-  // A hand that shows one of the two postures, with the same drift in every slot.
+  // Returns a hand that shows one of the two postures, with the same drift in every slot.
   static Angles hand(bool fist, float drift) {
     Angles value;
     value.fill(0.5F + drift);

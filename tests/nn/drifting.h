@@ -1,5 +1,5 @@
-// A synthetic person whose glove drifts during a session, as gloves do: each sensor's offset and
-// gain walk at random. Shared by the tests of nn and by a benchmark.
+// A synthetic person whose glove drifts during a session, as real gloves do: each sensor's offset
+// and gain walk at random. Shared by the tests of nn and a benchmark.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,8 @@
 
 namespace merlin::nn::test {
 
-// Standard deviations of the drift after a whole session. A walk of N steps has steps of 1 /
-// sqrt(N) of these.
+// Standard deviations of the drift after a whole session. The drift makes a step before each take
+// of a posture; of N steps in a session, each has 1 / sqrt(N) of these deviations.
 struct SessionSettings {
   double offset = 0.18;     // of a sensor's zero, as a share of its range of angles
   double gain = 0.18;       // of the factor by which a sensor's angles are multiplied
@@ -24,7 +24,7 @@ struct Session {
   DataSet first, second;  // the earlier and the later half, both in chronological order
 };
 
-// In each round the person takes every posture once, in random order.
+// Returns a session in which the person takes every posture once in each round, in random order.
 inline Session drifting(std::span<const hand::Shape> shapes, std::uint64_t person,
                         const SessionSettings& drift) {
   const hand::Person hand(person);
@@ -50,7 +50,7 @@ inline Session drifting(std::span<const hand::Shape> shapes, std::uint64_t perso
           shown.value[i] = static_cast<float>((1 + gain[i]) * static_cast<double>(shown.value[i]) +
                                               offset[i] * static_cast<double>(high - low));
         }
-        shown.value[7] = 0;  // no glove measures the index' abduction
+        shown.value[7] = 0;  // no glove measures the abduction of the index finger
         (2 * round < drift.rounds ? session.first : session.second).push_back(shown);
       }
     }

@@ -17,7 +17,7 @@ inline std::string contentOf(const std::string& path) {
   return content.str();
 }
 
-// Each test has a folder of its own, removed at its end.
+// A test fixture; each test has its own folder, which is removed at the test's end.
 class FilesTest : public testing::Test {
  protected:
   void SetUp() override {

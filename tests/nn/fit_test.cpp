@@ -27,7 +27,7 @@ TrainingWeights someWeights(std::uint64_t seed) {
 
 class LaneGradient : public testing::TestWithParam<Phi> {};
 
-// The gradient used in training is a template, so this test for double covers float as well.
+// The gradient used in training is a template, so this test with double also covers float.
 TEST_P(LaneGradient, AgreesWithFiniteDifferences) {
   PackedWeights<double> packed = pack(someWeights(3));
   Random random(4);
@@ -231,15 +231,15 @@ TEST(PostureHold, TenPosturesOnTheirWayAreReportedOnceEach) {
   for (std::size_t n = 0; n < 10; ++n) EXPECT_EQ(reported[n], ten[n].name);
 }
 
-// [GOURLEY98] B.3: an interactive response within 0.1 s. A posture is recognised on the way to it,
-// so most of the time for which it has to last is over when the fingers have arrived. A frame of
-// the wall takes another 0.033 s.
+// According to [GOURLEY98] B.3, an interactive response takes at most 0.1 s. A posture is
+// recognised while the hand is on its way to it, so most of the hold time is over when the fingers
+// have arrived. A frame of the wall takes another 0.033 s.
 TEST(PostureHold, ActsWithinATenthOfASecondAndInventsNothing) {
   const PostureNetwork network = test::shippedNetwork();
   const Recogniser recognise(network);
   constexpr std::size_t kStays = 100, kWay = 35;  // records, 100 a second
   const auto shapes = hand::shapes();
-  std::vector<std::int64_t> after;  // from the fingers' arrival until the posture begins [records]
+  std::vector<std::int64_t> after;  // [records] from the fingers' arrival until the posture begins
   for (std::uint64_t person = 9001; person <= 9020; ++person) {
     PostureHold hold({});
     std::uint32_t entered = 0;
@@ -250,7 +250,8 @@ TEST(PostureHold, ActsWithinATenthOfASecondAndInventsNothing) {
       ASSERT_LT(entered, shapes.size()) << "a posture was invented";
       EXPECT_EQ(recognise.name(h.code), shapes[entered].name) << person;
       const auto arrived = static_cast<std::int64_t>(entered * (kStays + kWay));
-      if (entered > 0) after.push_back(record - 1 - arrived);  // no way leads to the first
+      // there is no way to the first posture
+      if (entered > 0) after.push_back(record - 1 - arrived);
       entered = h.entered;
     }
     EXPECT_EQ(entered, shapes.size()) << person;

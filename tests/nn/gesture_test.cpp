@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kFull = 2 * std::numbers::pi_v<float>;
 
-// A pose whose hand points at the wall and is rolled clockwise by `roll_rad`.
+// Returns a pose whose hand points at the wall and is rolled clockwise by `roll_rad`.
 HandPose poseAt(double seconds, std::array<float, 3> position_m, float roll_rad = 0) {
   return {static_cast<std::int64_t>(seconds * 1e9),
           position_m,
@@ -25,8 +25,8 @@ float smooth(double share) {
   return static_cast<float>(x * x * x * (10 + x * (-15 + 6 * x)));
 }
 
-// The poses of a hand that rests for half a second, moves as way(share of `seconds`) says, and
-// rests again.
+// Returns the poses of a hand that rests for half a second, moves for `seconds` as way() says, and
+// rests again. The argument of way() is the share of `seconds` that has passed.
 template <typename Way>
 std::vector<HandPose> motion(double seconds, Way way, double rate_hz = 100) {
   std::vector<HandPose> poses;
@@ -188,8 +188,8 @@ TEST(DiscriminantTest, FindsAQuadric) {
   EXPECT_GT(right, 780);
 }
 
-// People 1 to 12 train the model, 801 to 806 test it. The numbers are small so that the test is
-// fast; figures of the shipped file are in the benchmark.
+// People 1 to 12 train the model, and people 801 to 806 test it. The numbers are small so that the
+// test is fast; the benchmark has the figures of the shipped file.
 const GestureModel& trained() {
   static const GestureModel model = [] {
     PathRecording recording = test::gesturesOf(1, 12, 4, 1);

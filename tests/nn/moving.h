@@ -1,5 +1,5 @@
-// Recordings of synthetic people who move, after the hand's smoothing, as the gesture follower gets
-// them at run time. Shared by the tests of nn/gesture and the benchmark.
+// Recordings of synthetic people who move, smoothed as the hand's poses are, which is what the
+// gesture follower receives at run time. Shared by the tests of nn/gesture and the benchmark.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ inline void append(PathRecording& recording, const hand::Performance& performanc
   }
 }
 
-// Recordings of `count` people, numbered from `first`; each makes every gesture `times` times.
+// Returns recordings of `count` people, numbered from `first`; each person makes every gesture
+// `times` times.
 inline PathRecording gesturesOf(std::uint64_t first, std::size_t count, std::size_t times,
                                 std::uint64_t seed) {
   PathRecording recording;
@@ -35,7 +36,8 @@ inline PathRecording gesturesOf(std::uint64_t first, std::size_t count, std::siz
   return recording;
 }
 
-// Recordings of `count` people, numbered from `first`; each makes ordinary motions for `seconds`.
+// Returns recordings of `count` people, numbered from `first`; each person makes ordinary motions
+// for `seconds`.
 inline PathRecording ordinaryOf(std::uint64_t first, std::size_t count, double seconds,
                                 std::uint64_t seed) {
   PathRecording recording;
@@ -44,7 +46,8 @@ inline PathRecording ordinaryOf(std::uint64_t first, std::size_t count, double s
   return recording;
 }
 
-// As above, but with one kind of ordinary motion only.
+// Returns recordings of `count` people, numbered from `first`; each person makes one kind of
+// ordinary motion for `seconds`.
 inline PathRecording ordinaryOf(hand::Ordinary kind, std::uint64_t first, std::size_t count,
                                 double seconds, std::uint64_t seed) {
   PathRecording recording;

@@ -29,7 +29,8 @@ BasicWeights<Real> randomWeights(std::uint64_t seed, double most) {
   return weights;
 }
 
-// Hidden node 0 computes 2 x_2 - 1, the others 0; output 3 computes 4 h_0 - 2 h_1 + 0.25.
+// Returns weights with which hidden node 0 computes 2 x_2 - 1, the other hidden nodes 0, and output
+// 3 computes 4 h_0 - 2 h_1 + 0.25.
 Weights handWeights() {
   Weights weights;
   weights.hidden[0][2] = 2;
@@ -40,7 +41,7 @@ Weights handWeights() {
   return weights;
 }
 
-// Worked by hand for x_2 = 0.75: hidden node 0 gets I = 2 * 0.75 - 1 = 0.5, the others get 0.
+// Computed by hand for x_2 = 0.75: hidden node 0 gets I = 2 * 0.75 - 1 = 0.5, the others get 0.
 TEST(Network, IsEquationsA9AndA10WithTheSigmoid) {
   Input x{};
   x[2] = 0.75F;
@@ -74,7 +75,8 @@ TEST(Network, SignumIsOneAboveZeroOnly) {
   EXPECT_EQ(pass.output, (Output{0, 0, 0, 1, 0}));
 }
 
-// A reference written from the equations, not from the code: each node sums in long double.
+// A reference implementation, written from the equations and not from the code: each node sums in
+// long double.
 Output reference(const BasicWeights<double>& w, const Input& x) {
   Output out{};
   for (std::size_t k = 0; k < kOutputs; ++k) {

@@ -19,7 +19,7 @@ const std::string& shippedText() {
   return text;
 }
 
-// The text of the shipped file with `from` replaced by `to`.
+// Returns the text of the shipped file with `from` replaced by `to`.
 std::string changed(std::string_view from, std::string_view to) {
   std::string text = shippedText();
   const auto at = text.find(from);
@@ -91,7 +91,8 @@ TEST(NetworkFormat, HoldsTheShippedFile) {  // the format is a contract: nn/io/R
 TEST(NetworkDamage, EveryTruncationIsAnError) {
   const std::string& text = shippedText();
   ASSERT_GT(text.size(), 6000u);
-  // Without the last byte, a line feed, it would be valid.
+  // Prefixes end before the last byte, since the file without that byte, a line feed, is still
+  // valid.
   for (std::size_t n = 0; n + 1 < text.size(); n += 11) {
     const auto read = parseNetwork(std::string_view(text).substr(0, n), "f");
     ASSERT_FALSE(read) << n;
@@ -99,7 +100,8 @@ TEST(NetworkDamage, EveryTruncationIsAnError) {
   }
 }
 
-// A file with one wrong byte is refused, or it loads as a complete network with valid numbers.
+// A file with one wrong byte must either be refused, or load as a complete network with valid
+// numbers.
 TEST(NetworkDamage, OneWrongByteNeverLoadsHalf) {
   std::size_t refused = 0;
   std::string text = shippedText();
@@ -186,8 +188,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"\"seed\": 1998", "\"seed\": 1998, \"seed\": 1998",
               "f.json: line 101: duplicate key \"seed\" in one object, first on line 101"}));
 
-// Numbers that JSON, double or float cannot represent, or that are out of range, each in place of
-// the first weight.
+// These numbers are out of range, or JSON, double or float cannot represent them. Each takes the
+// place of the first weight.
 TEST(NetworkHostile, NumbersThatAreNone) {
   const std::string& text = shippedText();
   const auto row = text.find("\"hidden\": [\n    [") + 17;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Phi kPhis[] = {Phi::kSigmoid, Phi::kSignum, Phi::kAtan};
 
-// Random weights as large as trained ones, whose magnitudes are at most 90 (hidden) and 17
+// Returns random weights as large as trained ones, whose magnitudes are at most 90 (hidden) and 17
 // (output).
 Weights randomWeights(std::uint64_t seed) {
   Weights weights;
@@ -72,7 +72,7 @@ void expectSameBits(Phi phi, const Weights& weights, const Input& x) {
   EXPECT_EQ(std::memcmp(fast.data(), portable.data(), sizeof fast), 0) << nameOf(phi);
 }
 
-// Without AVX2 both versions are the same, and the test compares nothing.
+// On a processor without AVX2 both versions are the same, so the test compares nothing there.
 TEST(Recall, GivesTheSameBitsWithEveryProcessorsInstructions) {
   Random random(7);
   constexpr float kOdd[] = {

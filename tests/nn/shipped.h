@@ -10,7 +10,8 @@ namespace merlin::nn::test {
 
 inline const std::string kShippedPath = MERLIN_SOURCE_DIR "/config/postures.json";
 
-// The network of config/postures.json, or an empty network (no postures) if that does not load.
+// Returns the network of config/postures.json, or an empty network (no postures) if the file cannot
+// be loaded.
 inline PostureNetwork shippedNetwork() {
   const auto file = loadNetwork(kShippedPath);
   return file ? file->network : PostureNetwork{};

@@ -19,7 +19,8 @@ std::vector<Example> randomExamples(std::size_t count, std::uint64_t seed) {
   return examples;
 }
 
-// Training examples: output 2 is the exclusive or of inputs 4 and 20, the other outputs are 0.
+// Returns training examples: output 2 is the exclusive or of inputs 4 and 20, the other outputs are
+// 0.
 std::vector<Example> exclusiveOr() {
   std::vector<Example> examples(4);
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -63,7 +64,7 @@ TEST_P(Gradient, AgreesWithFiniteDifferences) {
   const auto examples = randomExamples(5, 2);
   constexpr double kStep = 1e-5;
   TrainingWeights weights = initialWeights(3);
-  // Out of the range in which every activation function is nearly linear.
+  // These weights are outside of the range in which every activation function is nearly linear.
   forEach(weights, [](double& w) { w *= 4; });
   const auto gradient = flat(backPropagate(GetParam(), weights, examples).gradient);
   std::size_t n = 0;

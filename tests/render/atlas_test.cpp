@@ -1,4 +1,4 @@
-// Several textures in one (render/mesh/atlas). All pictures are synthetic.
+// Several textures joined into one (render/mesh/atlas). All pictures are synthetic.
 #include <array>
 #include <cmath>
 #include <set>
@@ -21,7 +21,8 @@ using image::Wrap;
 using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 
-// A picture of waves with the given phase, in which a shift by a few pixels changes the colours.
+// Returns a picture of waves with the given phase, in which a shift by a few pixels changes the
+// colours.
 ImageFile waves(int width, int height, double phase) {
   ImageFile picture{width, height, {}, {1, 2, 3}};
   for (int y = 0; y < height; ++y) {
@@ -41,7 +42,7 @@ ImageFile plain(int width, int height, const Colour& colour) {
   return picture;
 }
 
-// Triangles that share no vertices; `uv` has two numbers for each corner.
+// Returns triangles that share no vertices; `uv` has two numbers for each corner.
 Mesh trianglesWith(const Floats& uv) {
   Mesh mesh;
   for (std::uint32_t v = 0; v < uv.size() / 2; ++v) {
@@ -70,8 +71,8 @@ ImageFile textureOf(const Mesh& mesh) {
   return picture ? *std::move(picture) : ImageFile{};
 }
 
-// Expects the same colours everywhere on the triangles, from the textures before and from the
-// atlas.
+// Expects that the triangles have the same colours everywhere, whether taken from the textures
+// before or from the atlas.
 void expectSameColours(const Mesh& before, const Mesh& after, const SurfaceTextures& textures,
                        float tolerance) {
   const ImageFile atlas = textureOf(after);
@@ -129,7 +130,8 @@ TEST(Atlas, ShowsEachTriangleWhatItsPictureShows) {
   EXPECT_EQ(again.find("texcoord")->values, mesh.find("texcoord")->values);
 }
 
-// The mean of two by two texels, as a graphics card makes its mipmaps.
+// Returns the image at half its size, each pixel the mean of 2 x 2 texels, as a graphics card makes
+// its mipmaps.
 ImageFile halved(const ImageFile& image) {
   ImageFile half{image.width / 2, image.height / 2, {}, {}};
   const auto at = [&](int x, int y, int k) {
@@ -288,7 +290,7 @@ TEST(Atlas, MakesAPictureSmallerThatIsRepeatedOften) {
   expectSameColours(before, mesh, textures, 0.06F);
 }
 
-// Two triangles of the vertices 0, 1, 2, 3; vertices 1 and 2 belong to both.
+// Returns two triangles of the vertices 0, 1, 2, 3; vertices 1 and 2 belong to both.
 Mesh twoTriangles(const Floats& uv) {
   Mesh mesh{{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, {{"texcoord", 2, uv}}, {0, 1, 2, 1, 3, 2}};
   mesh.features.push_back({"heat", 1, {1, 2, 3, 4}});

@@ -1,5 +1,5 @@
 // Reduction in blocks, for meshes that do not fit into memory: the result is nearly as good as that
-// of a reduction in one piece, in one collapse log and without cracks.
+// of a reduction in one piece, with a single collapse log and without cracks.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -17,7 +17,7 @@
 namespace merlin::render {
 namespace {
 
-// A mesh that is flat on one side and hilly on the other.
+// Returns a mesh that is flat on one side and hilly on the other.
 mesh::Mesh hills(std::uint32_t size) {
   mesh::Mesh mesh = test::noisyGrid(size, size, 0.05, 3);
   const auto extent = static_cast<float>(size);
@@ -36,7 +36,7 @@ reduce::Reduction reduced(const mesh::Mesh& mesh, const reduce::ReduceSettings& 
   return *std::move(result);
 }
 
-// Settings with three quarters of the memory that a reduction in one piece takes.
+// Returns settings with three quarters of the memory that a reduction in one piece takes.
 reduce::ReduceSettings tight(const mesh::Mesh& mesh, reduce::ReduceSettings settings = {}) {
   settings.memory = reduce::needOf(mesh::sizeOf(mesh), settings).whole / 4 * 3;
   return settings;
@@ -69,7 +69,7 @@ TEST(JobNeed, IsThatOfTheStepThatTakesMost) {
   const reduce::JobNeed loaded = reduce::needOfJob(size, 0, {});
   EXPECT_EQ(loaded.besides, size.bytes() + (32U << 20));
   EXPECT_EQ(loaded.least, loaded.besides + reduction.least);
-  // A file of 10 GB is in memory together with the mesh, whose normals are computed after the file
+  // A file of 10 GB is in memory together with the mesh; normals are computed only after the file
   // has been released.
   EXPECT_EQ(reduce::needOfJob(size, 10'000'000'000, {}).least,
             10'000'000'000 + size.bytes() - 12 * size.vertices + (32U << 20));
@@ -102,8 +102,8 @@ TEST(Blocks, EveryLevelIsAManifold) {
   }
 }
 
-// Block borders are reduced late. In a mesh as small as this one they are an eighth of the vertices
-// kept, hence the tolerance.
+// Block borders are reduced late. In a mesh as small as this one they have an eighth of the
+// vertices kept, hence the tolerance.
 TEST(Blocks, AreAsGoodAsTheWhole) {
   const mesh::Mesh mesh = hills(250);
   const reduce::Reduction whole = reduced(mesh, {}), blocks = reduced(mesh, tight(mesh));

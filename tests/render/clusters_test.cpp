@@ -30,7 +30,7 @@ lod::Dendrogram dendrogramOf(mesh::Mesh mesh) {
   return lod::buildDendrogram(mesh, reduction->log);
 }
 
-// Sorts triangles; within each, the smallest index comes first and the orientation is kept.
+// Sorts triangles; each begins with its smallest index and keeps its orientation.
 std::vector<Triangle> sorted(std::span<const std::uint32_t> indices) {
   std::vector<Triangle> triangles;
   for (std::size_t i = 0; i < indices.size(); i += 3) {
@@ -85,8 +85,8 @@ TEST(Clusters, LittleMemoryMeansACoarserFinestLevel) {
   EXPECT_LT(few.memoryBytes(), 330'000u);
 }
 
-// Above 300,000 triangles the precomputed steps are further apart: a million triangles fit into 41
-// MB.
+// Above 300,000 triangles the precomputed steps are further apart, so that a million triangles fit
+// into 41 MB.
 TEST(Clusters, LargeCutsAreTheDendrogramsToo) {
   const lod::Dendrogram d = dendrogramOf(test::noisyGrid(410, 410, 0.4, 3));
   const lod::Clusters clusters(d, {});
@@ -119,8 +119,8 @@ TEST(Clusters, EverythingIsEachLeafTriangleByCluster) {
   }
 }
 
-// With random levels for all clusters: the cut consists of the mesh's triangles whose corners, each
-// replaced by its ancestor alive at the level of its cluster, are still three different nodes.
+// Every cluster gets a random level. The cut then consists of the mesh's triangles whose corners,
+// each replaced by its ancestor alive at the level of its cluster, are still three different nodes.
 TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
   const lod::Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
   const lod::Clusters clusters(d, {.clusters = 30});
@@ -130,8 +130,8 @@ TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
   const auto parent = [&](std::uint32_t n) { return d.arrays().parents[(nodes - 1 - n) / 2]; };
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Indices levels = randomLevels(clusters, seed);
-    // A leaf belongs to the cluster of its root; find that cluster by cuts that refine a single
-    // cluster.
+    // A leaf belongs to the cluster of its root. Cuts that refine a single cluster show which
+    // cluster that is.
     static std::map<std::uint32_t, std::size_t> cluster_of_root;
     if (cluster_of_root.empty()) {
       for (std::size_t c = 0; c < clusters.size(); ++c) {
@@ -152,7 +152,8 @@ TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
         std::uint32_t root = leaf;
         while (root >= coarse) root = parent(root);
         t[k] = leaf;
-        if (!cluster_of_root.count(root)) continue;  // the root is a leaf itself
+        // the root is a leaf itself, so it belongs to no cluster
+        if (!cluster_of_root.count(root)) continue;
         while (t[k] >= nodes - 2 * levels[cluster_of_root[root]]) t[k] = parent(t[k]);
       }
       if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
@@ -162,7 +163,8 @@ TEST(Clusters, AnUnevenCutIsWhatChasingEveryCornerGives) {
   }
 }
 
-// In a closed surface each edge occurs equally often in both directions, whatever the levels.
+// In a closed surface each edge occurs equally often in both directions, whatever the clusters'
+// levels.
 TEST(Clusters, NeighboursOfAnyLevelsLeaveNoCrack) {
   const lod::Dendrogram d = dendrogramOf(test::sphere(5));
   for (const std::size_t memory : {std::size_t{40} << 20, std::size_t{300'000}}) {
@@ -209,15 +211,16 @@ TEST(Clusters, BoundsHoldWhatIsCut) {
         EXPECT_LE(std::hypot(p[0] - b.centre[0], p[1] - b.centre[1], p[2] - b.centre[2]),
                   b.radius * 1.0001F);
       }
-      // The sphere's normals point away from its centre.
+      // A sphere's normals point away from its centre, so a cluster's cone axis must too.
       EXPECT_GT(b.axis[0] * b.centre[0] + b.axis[1] * b.centre[1] + b.axis[2] * b.centre[2], 0);
       EXPECT_GT(b.cone_cos, 0.3F);
     }
   }
 }
 
-// A frame at full detail draws the clusters of everything() and leaves out those whose sphere no
-// tile sees. So each sphere must contain its triangles, also one with corners in three clusters.
+// A frame at full detail draws the clusters of everything() and leaves out those whose bounding
+// sphere no tile sees. Each sphere must therefore contain its triangles, also a triangle with
+// corners in three clusters.
 TEST(Clusters, BoundsHoldEverything) {
   const lod::Dendrogram d = dendrogramOf(test::noisyGrid(40, 40, 0.4, 3));
   const auto positions = d.arrays().positions;
@@ -264,7 +267,7 @@ TEST(Clusters, TheSmallestModelsAreCutToo) {
   }
 }
 
-// Reductions usually stop earlier; this log is written by hand.
+// Reductions usually stop before no triangle is left; this log is written by hand.
 TEST(Clusters, AModelThatEndsWithoutTrianglesIsCutToo) {
   const lod::Dendrogram d = test::goldenCube();
   ASSERT_EQ(d.trianglesAt(d.levels() - 1), 0u);
@@ -272,8 +275,8 @@ TEST(Clusters, AModelThatEndsWithoutTrianglesIsCutToo) {
   EXPECT_EQ(evenCut(clusters, d, 0).size(), 3 * d.triangleCount());
 }
 
-// If the two sides of a seam were in different clusters, their levels could differ and a crack
-// could open.
+// If the two sides of a seam were in different clusters, the clusters' levels could differ and a
+// crack could open.
 TEST(Clusters, BothSidesOfASeamAreInOne) {
   const lod::Dendrogram d = dendrogramOf(test::tube(60, 40, true));
   const lod::Clusters clusters(d, {.clusters = 100});

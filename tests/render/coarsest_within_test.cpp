@@ -1,5 +1,5 @@
-// The coarsest resolution within a given distance: it keeps the distance, and it is nearly the
-// coarsest that does. Also the curve of the error over the number of triangles.
+// The coarsest resolution within a given distance: it keeps the distance, and hardly any coarser
+// one does. Also the curve of the error over the number of triangles.
 #include "render/compare/coarsest_within.h"
 
 #include <cmath>

@@ -24,15 +24,15 @@ inline void addFeature(Mesh& mesh, const char* name, Floats values) {
   mesh.features.push_back({name, 1, std::move(values)});
 }
 
-// A weight with which a difference of 1 in the feature counts as a length of `unit`, whatever the
-// feature's range.
+// Returns a weight with which a difference of 1 in the feature counts as a length of `unit`,
+// whatever the feature's range.
 inline std::pair<std::string, float> weightOf(const Mesh& mesh, const char* name, float unit = 1) {
   const Floats& v = mesh.find(name)->values;
   const auto [low, high] = std::minmax_element(v.begin(), v.end());
   return {name, unit * (*high - *low)};
 }
 
-// Performs the first `collapses` collapses in the order that `weights` give.
+// Performs the first `collapses` collapses in the order that follows from `weights`.
 inline Reduction collapse(const Mesh& mesh, const render::reduce::Weights& weights, int collapses) {
   const auto space = render::reduce::PatternSpace::make(mesh, weights);
   EXPECT_TRUE(space);
@@ -48,7 +48,7 @@ inline Reduction collapseInOrder(const Mesh& mesh, int collapses) {
   return collapse(mesh, {weightOf(mesh, "order")}, collapses);
 }
 
-// Position of the vertex that a collapse created.
+// Returns the position of the vertex that a collapse created.
 inline Floats position(const Reduction& r, std::size_t collapse) {
   const auto at = r.log.positions.begin() + 3 * static_cast<std::ptrdiff_t>(collapse);
   return {at, at + 3};

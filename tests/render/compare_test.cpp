@@ -36,7 +36,7 @@ mesh::Mesh scaled(mesh::Mesh mesh, float by) {
   return mesh;
 }
 
-// The mesh, rotated about the x axis.
+// Returns the mesh, rotated about the x axis.
 mesh::Mesh turned(mesh::Mesh mesh, double angle_deg) {
   const double c = std::cos(angle_deg * std::numbers::pi / 180);
   const double s = std::sin(angle_deg * std::numbers::pi / 180);
@@ -63,8 +63,8 @@ void expectHolds(const compare::Interval& max, double value, double width) {
   EXPECT_LE(max.high - max.low, width);
 }
 
-// A floor of two triangles from x = -1 to 1, between walls at x = -1 and x = 1. Every corner of the
-// floor touches a wall; the floor's middle line is 1 away from both.
+// Two surfaces: ground() is a floor of two triangles from x = -1 to 1; walls() are walls at x = -1
+// and x = 1. Every corner of the floor touches a wall; the floor's middle line is 1 away from both.
 mesh::Mesh ground() { return {{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, {}, {0, 1, 2, 0, 2, 3}}; }
 mesh::Mesh walls() {
   const mesh::Mesh wall{{0, -2, -2, 0, 2, -2, 0, 2, 2, 0, -2, 2}, {}, {0, 1, 2, 0, 2, 3}};
@@ -99,14 +99,15 @@ TEST(Compare, OfCubesIsLargestAtTheCorners) {
   EXPECT_EQ(c.symmetric().rms, c.backward.rms);
 }
 
-// From the octahedron to its subdivision: the largest distance is that between a facet, at
+// From the octahedron to its subdivision, the largest distance is that between a facet, at
 // 1/sqrt(3) from the centre, and the parallel facet of the subdivision, at sqrt(2/3). In the other
-// direction it is that of a new vertex above the middle of an edge, (1,1,0)/sqrt(2).
+// direction it is that between the middle of an edge and the new vertex above it, (1,1,0)/sqrt(2).
 TEST(Compare, OfASphereIsItsSagitta) {
   const compare::Comparison c = compared(test::sphere(0), test::sphere(1));
   expectHolds(c.forward.max, (kSqrt2 - 1) / kSqrt3, 0.0001 * c.diagonal);
   expectHolds(c.backward.max, 1 - 1 / kSqrt2, 0.0001 * c.diagonal);
-  // The fine sphere's triangles, with edges of 4 degrees, lie at most 0.0006 below the sphere.
+  // The triangles of the fine sphere, with edges of 4 degrees, lie at most 0.0006 inside the unit
+  // sphere.
   const compare::Interval max = compared(test::sphere(0), test::sphere(5)).forward.max;
   EXPECT_NEAR(max.low, 1 - 1 / kSqrt3, 0.001);
 }
@@ -130,7 +131,8 @@ TEST(Compare, FindsAMaximumThatIsAtNoVertex) {
   }
 }
 
-// The middle between the walls is at x = 0.15, which no repeated halving of the floor hits.
+// The middle between the walls is at x = 0.15, which is not reached by repeated halving of the
+// floor.
 TEST(Compare, DropsNothingThatMatters) {
   const mesh::Mesh wall{{0, -2, -2, 0, 2, -2, 0, 2, 2, 0, -2, 2}, {}, {0, 1, 2, 0, 2, 3}};
   const mesh::Mesh apart =
@@ -159,7 +161,7 @@ TEST(Compare, StopsAtItsBudgetWithAnIntervalThatStillHolds) {
   EXPECT_GE(some.high, 1);
 }
 
-// Compares with a dense set of points on rough surfaces.
+// The maximum is compared with that of a dense set of points on rough surfaces.
 TEST(Compare, HoldsTheMaximumOfRoughSurfaces) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const mesh::Mesh a = test::noisyGrid(6, 6, 1, seed), b = test::noisyGrid(5, 7, 1, seed + 100);
@@ -246,7 +248,7 @@ TEST(Compare, IsNothingForOneMeshTwice) {
   expectHolds(c.symmetric().max, 0, 0.0001 * c.diagonal);
 }
 
-// The results of a comparison as raw bytes, to be compared bit by bit.
+// Returns the results of a comparison as raw bytes, to be compared bit by bit.
 std::string bitsOf(const compare::Comparison& c) {
   std::string bits;
   const auto add = [&](double value) {

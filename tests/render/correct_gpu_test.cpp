@@ -1,4 +1,4 @@
-// Corrections by a shader, with EGL and with OSMesa: the picture has to equal that of the CPU.
+// Corrections by a shader, with EGL and with OSMesa: the shader's picture has to equal the CPU's.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -39,10 +39,10 @@ std::vector<std::uint8_t> signalOf(correct::OutputCorrection& correction,
   return {signal.pixels.begin(), signal.pixels.end()};
 }
 
-// The difference between two pictures.
+// How two pictures differ.
 struct Difference {
   int largest = 0;   // of 255
-  double share = 0;  // share of the channels that differ at all
+  double share = 0;  // share of the channels that differ
 };
 
 Difference differenceOf(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
@@ -71,7 +71,8 @@ class ShaderOf : public ::testing::TestWithParam<gl::GlBackend> {
   void expectTheCpusPicture(const std::string& name, const CorrectionMap& map) {
     const auto picture = noise(map.source_width, map.source_height);
     correct::OutputCorrection cpu(map, 1), gpu(map, 1, &pass_);
-    // Asserts that the pass runs, so that a pass that refuses is not taken for one that agrees.
+    // Asserts that the pass runs; otherwise a pass that refuses, so that the CPU computes both
+    // pictures, would seem to agree.
     auto shared = std::make_shared<const CorrectionMap>(map);
     std::vector<std::uint8_t> there(static_cast<std::size_t>(4 * map.width * map.height));
     ASSERT_TRUE(pass_.run(shared, picture, there)) << name << ": " << pass_.fault();
@@ -145,8 +146,8 @@ TEST_P(ShaderOf, AWidthThatIsNoMultipleOfEightIsWhole) {
   expectTheCpusPicture("13 x 5", mapOf(s, 13, 5));
 }
 
-// Outputs of different sizes in turn, as in each frame of a wall; then one of them gets another
-// correction.
+// Outputs of different sizes use the pass in turn, as in each frame of a wall; then one of them
+// gets another correction.
 TEST_P(ShaderOf, ServesSeveralOutputsAndMapsThatAreReplaced) {
   CorrectionSettings s;
   s.corners[0] = 7;
@@ -192,8 +193,9 @@ TEST_P(ShaderOf, IsOffBeforeAndAfter) {
   EXPECT_TRUE(pass_.run(map, picture, signal));
 }
 
-// A context that lends ordinary memory of the renderer in place of a display's, since a software
-// renderer without a card has no other. What a driver imports is tried in the virtual machine.
+// A context that lends ordinary memory of the renderer in place of a display's memory, since a
+// software renderer without a card has no other. Imports by real drivers are tested in the virtual
+// machine.
 class LendingContext final : public gl::GlContext {
  public:
   explicit LendingContext(const gl::GlContext& real) {
@@ -222,7 +224,7 @@ class LendingContext final : public gl::GlContext {
   Result<std::unique_ptr<GlContext>> makeFurther() const override {
     return Error{Errc::kUnsupported, "one is enough"};
   }
-  // Fills the memory with a colour: blue.
+  // Returns a target whose memory is filled with blue.
   Result<gl::RenderTarget> importTarget(const DmaBuf& buffer) const override {
     ++imports;
     if (refuses) return Error{Errc::kUnsupported, "another GPU's memory"};
@@ -237,7 +239,7 @@ class LendingContext final : public gl::GlContext {
     api_.Clear(GL_COLOR_BUFFER_BIT);
     return target;
   }
-  // What is in a buffer's memory.
+  // Returns the content of a buffer's memory.
   std::vector<std::uint8_t> pixels(const DmaBuf& buffer) const {
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(4 * buffer.width * buffer.height));
     GLuint frame = 0;
@@ -254,10 +256,10 @@ class LendingContext final : public gl::GlContext {
   bool refuses = false;
   float blue = 1;
   mutable int imports = 0;
-  mutable std::map<const DmaBuf*, GLuint> names;  // of the renderbuffers
+  mutable std::map<const DmaBuf*, GLuint> names;  // names of the renderbuffers
   static inline std::set<GLuint> deleted;
   static inline GLenum reset_status = GL_NO_ERROR;
-  static inline int draws_nothing_at_x = 0;  // into memory where a signal begins in this column
+  static inline int draws_nothing_at_x = 0;  // column of signals that drawing skips
 
  private:
   static inline PFNGLDELETERENDERBUFFERSPROC forward = nullptr;
@@ -279,7 +281,8 @@ class ShaderInto : public ShaderOf {
     buffer->height = height;
     return buffer;
   }
-  // The part of the memory where a signal was drawn. Expects that all around it is still blue.
+  // Returns the part of the memory in which a signal was drawn. Expects that everything around it
+  // is still blue.
   std::vector<std::uint8_t> partOf(const DmaBuf& buffer, int left, int top) {
     const auto all = lending_->pixels(buffer);
     std::vector<std::uint8_t> part;
@@ -390,7 +393,7 @@ TEST_P(ShaderInto, AFaultIsToldAsLongAsTheDisplayHasTheMemoryThatWasRefused) {
   EXPECT_EQ(pass_.drawFault(), "");
 }
 
-// The rows that are read back cannot tell it: they come from that memory, too.
+// The rows that are read back cannot reveal the fault, since they come from the wrong memory, too.
 TEST_P(ShaderInto, AnotherPictureThanWasDrawnIsNotShown) {
   correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
   const auto expected = signalOf(correction, picture_);
@@ -421,7 +424,7 @@ TEST_P(ShaderInto, ABlackPictureDoesNotProveThatTheDriverDraws) {
   EXPECT_FALSE(correction.draw(source_, places).drawn);
 }
 
-// After a reset no call fails, and none has an effect: the memory holds what it held before.
+// After a reset no call fails, but none has an effect: the memory keeps its content.
 TEST_P(ShaderInto, AfterAResetOfTheGpuTheCpuComputesTheSignal) {
   correct::OutputCorrection correction(mapOf(test::everything()), 1, &pass_);
   correct::OutputCorrection cpu(mapOf(test::everything()), 1);
@@ -451,7 +454,7 @@ TEST_P(ShaderInto, NothingIsDrawnIntoADisplaysMemoryUnlessAllowed) {
   EXPECT_FALSE(on_cpu.canDraw());
 }
 
-// Mesa's software renderer says that it could, and would crash.
+// Mesa's software renderer claims that it can draw into a display's memory, and would crash.
 TEST_P(ShaderOf, ASoftwareContextTakesNoDisplaysMemory) {
   if (!context_->info().software) GTEST_SKIP() << "a GPU draws";
   const auto refused = context_->importTarget(DmaBuf{});

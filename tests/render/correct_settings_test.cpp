@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The faults found for an image of 640 x 480 pixels, one on each line.
+// Returns the faults found for an image of 640 x 480 pixels, one on each line.
 std::string faultsOf(const correct::CorrectionSettings& settings) {
   std::string text;
   for (const SettingFault& f : validate(settings, 640, 480))
@@ -19,7 +19,7 @@ std::string faultsOf(const correct::CorrectionSettings& settings) {
   return text;
 }
 
-// A mesh of 3 x 3 points that leaves the image as it is.
+// Returns a mesh of 3 x 3 points that leaves the image unchanged.
 correct::CorrectionSettings meshed() {
   correct::CorrectionSettings s;
   s.mesh.columns = s.mesh.rows = 3;
@@ -79,7 +79,7 @@ TEST(CorrectSettings, AMeshThatFoldsIsFoundWithItsCell) {
   EXPECT_NE(faultsOf(s).find("column 0, row 0"), std::string::npos) << "mirrored";
 }
 
-// The points are in order, but the smooth surface between them overshoots and folds.
+// The points are in order, but the smooth surface between them overshoots and folds over.
 TEST(CorrectSettings, AMeshThatFoldsBetweenItsPointsIsFound) {
   correct::CorrectionSettings s;
   s.mesh.columns = 4;
@@ -157,7 +157,7 @@ TEST(CorrectSettings, WhatContradictsAnMpcdiFileIsFound) {
   EXPECT_EQ(faultsOf(region), "/mpcdi_region names a region, but mpcdi names no file\n");
 }
 
-// The image's size is that of the output's tiles, not that of the frame.
+// The image has the size of the output's tiles, not that of the frame.
 TEST(CorrectSettings, AnOutputsCorrectionIsCheckedAgainstItsPicture) {
   out::OutputSettings png{out::OutputKind::kPng, "", "a.png"};
   png.tiles = {{"left", 0, 0}};

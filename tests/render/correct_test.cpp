@@ -33,7 +33,7 @@ std::vector<std::uint8_t> corrected(const correct::CorrectionSettings& s,
   return {signal.pixels.begin(), signal.pixels.end()};
 }
 
-// Cuts a part out of an RGBA picture whose rows have `width` pixels.
+// Returns a part of an RGBA picture whose rows have `width` pixels.
 std::vector<std::uint8_t> partOf(const std::vector<std::uint8_t>& picture, int width,
                                  const out::Rectangle& part) {
   std::vector<std::uint8_t> pixels;
@@ -44,7 +44,8 @@ std::vector<std::uint8_t> partOf(const std::vector<std::uint8_t>& picture, int w
   return pixels;
 }
 
-// The formula of correction_map.h in double precision; the result, 0..255, is not yet rounded.
+// Computes the formula of correction_map.h in double precision; the result, 0..255, is not yet
+// rounded.
 std::array<double, 3> byFormula(const correct::CorrectionMap& map,
                                 const std::vector<std::uint8_t>& picture, int x, int y) {
   const auto entry = static_cast<std::size_t>(y * map.stride + x);
@@ -96,7 +97,7 @@ void expectEachPixelLooksWhereItIsLandedFrom(const correct::CorrectionSettings& 
     }
   }
   EXPECT_GT(looked, kWidth * kHeight / 2);
-  // Every pixel inside the warped image has a source.
+  // Every pixel inside the warped image must have a source.
   for (int j = 0; j <= 100; ++j) {
     for (int i = 0; i <= 100; ++i) {
       const correct::Point at = *warp.land({i / 100.0, j / 100.0});
@@ -296,14 +297,15 @@ TEST(Correct, TwoNeighboursRampsSumToOne) {
     EXPECT_NEAR(correct::ramp(t) + correct::ramp(1 - t), 1, 1e-12);
 }
 
-// Two projectors share an image and overlap by 80 pixels; each emits some light even for black.
+// Two projectors share an image and overlap by 80 pixels; each emits some light even for a black
+// signal.
 TEST(Correct, LightAndBlackOfTwoProjectorsAreEvenOverTheSeam) {
   constexpr double kGamma = 2.4, kLeak = 0.02;
   constexpr int kOverlap = 80;
   correct::CorrectionSettings left, right;
   left.blend = {0, kOverlap, 0, 0, kGamma};
   right.blend = {kOverlap, 0, 0, 0, kGamma};
-  // Light of a projector: leak + (1 - leak) * signal ^ gamma.
+  // The light of a projector is leak + (1 - leak) * signal ^ gamma.
   left.black.level.fill(kLeak / (1 - kLeak));
   right.black.level = left.black.level;
   for (const int level : {0, 40, 128, 255}) {
@@ -334,7 +336,7 @@ TEST(Correct, BlackIsLiftedByWhatLacksToTheMostProjectors) {
   EXPECT_EQ(correct::blackShare(side, 15, 50, 200, 100), 0);
 }
 
-// At the end of a ramp this wide the gain rounds to 1 and the black share to 0. Such pixels still
+// At the end of a ramp this wide, the gain rounds to 1 and the black share to 0. Such pixels still
 // need the same processing as those beside them, since the black level is raised.
 TEST(Correct, EveryPixelOfALiftedPictureGoesThroughTheLight) {
   correct::CorrectionSettings s;
@@ -388,7 +390,8 @@ TEST(Correct, AChainCorrectsThePictureThatTheTilesMake) {
   EXPECT_TRUE(std::ranges::equal(signal.pixels, expected));
 }
 
-// A signal with both eyes' pictures: each is corrected like the picture of an output of its own.
+// A signal contains the pictures of both eyes: each must be corrected like the picture of an output
+// of its own.
 TEST(CorrectionMap, EachPartOfASignalHasTheWholeCorrection) {
   const std::vector<std::uint8_t> picture = noise(kWidth, kHeight);
   for (const correct::SignalParts parts : {correct::SignalParts{2, 1}, {1, 2}}) {

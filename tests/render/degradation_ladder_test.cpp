@@ -1,4 +1,4 @@
-// The steps by which the wall reduces its quality when even the coarsest detail is late.
+// The steps by which the wall reduces its quality when frames are late even at the coarsest detail.
 #include "render/governor/degradation_ladder.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace merlin::render {
 namespace {
 
-// Observes `count` frames alike; returns whether any of them changed the step.
+// Observes `count` equal frames; returns whether any of them changed the step.
 bool observe(governor::DegradationLadder& ladder, int count, bool late, bool least = true,
              bool fits = true) {
   bool changed = false;
@@ -33,8 +33,8 @@ TEST(DegradationLadder, NineLateInSixtyDoNot) {
   }
 }
 
-// Number of frames until the ladder steps down when every `period`-th frame is late; 0 if `most`
-// frames do not suffice.
+// Returns the number of frames until the ladder steps down when every `period`-th frame is late; 0
+// if it does not within `most` frames.
 int framesToStepDown(int period, int most) {
   governor::DegradationLadder ladder(1);
   for (int i = 1; i <= most; ++i) {

@@ -1,5 +1,5 @@
-// Dendrogram::make refuses arrays with which a cut would read out of bounds or give wrong results,
-// and names the array.
+// Dendrogram::make refuses arrays with which a cut would read out of bounds or give wrong results.
+// The message names the array.
 #include <functional>
 #include <limits>
 #include <memory>

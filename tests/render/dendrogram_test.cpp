@@ -35,8 +35,8 @@ Triangle turned(Node a, Node b, Node c) {
   return t;
 }
 
-// Adds the feature "id": each node's number in the log, which survives the dendrogram's
-// renumbering.
+// Adds the feature "id": each node's number in the log. The feature shows which node is which after
+// the dendrogram has renumbered the nodes.
 Reduced withIds(mesh::Mesh mesh, lod::CollapseLog log) {
   std::vector<float> vertices(mesh.vertexCount()), made(log.children.size());
   std::iota(vertices.begin(), vertices.end(), 0.0F);
@@ -53,7 +53,7 @@ Reduced reduced(mesh::Mesh mesh) {
   return withIds(std::move(mesh), std::move(r->log));
 }
 
-// Merges arbitrary nodes; the dendrogram does not require that they are neighbours.
+// Merges arbitrary nodes; the dendrogram does not require that merged nodes are neighbours.
 Reduced mergedAtRandom(mesh::Mesh mesh, std::uint64_t seed) {
   Random random(seed);
   std::vector<Node> alive(mesh.vertexCount());
@@ -75,7 +75,7 @@ Reduced mergedAtRandom(mesh::Mesh mesh, std::uint64_t seed) {
   return withIds(std::move(mesh), std::move(log));
 }
 
-// The oracle: a plain list of triangles.
+// The oracle: a plain list of triangles, on which collapses are performed one by one.
 class PlainMesh {
  public:
   explicit PlainMesh(const mesh::Mesh& mesh) : corners_(mesh.triangles) {}
@@ -130,7 +130,7 @@ void expectEachLevelIsTheOracles(const Reduced& r) {
 
 mesh::Mesh hills() { return test::noisyGrid(12, 9, 0.3, 1); }
 
-// A closed component, one with a border, and another closed one.
+// Returns three components: a closed one, one with a border, and another closed one.
 mesh::Mesh components() {
   return test::together(test::together(test::sphere(2), test::moved(hills(), 3, 0, 0)),
                         test::moved(test::cube(), -5, 0, 0));

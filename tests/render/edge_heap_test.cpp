@@ -15,7 +15,7 @@ namespace {
 
 using Edges = std::vector<std::uint32_t>;
 
-// Removes the top until the heap is empty; returns the order.
+// Removes the top until the heap is empty; returns the removed edges in their order.
 Edges drained(reduce::EdgeHeap& heap) {
   Edges order;
   while (!heap.empty()) {

@@ -1,4 +1,4 @@
-// The lengths of edges in pattern space, as they are shown before a reduction.
+// The lengths of edges in pattern space, which MERLIN can show before a reduction.
 #include "render/reduce/edge_lengths.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 
 using Lengths = std::vector<float>;
 
-// Two triangles of a square of 3 x 4, so that the diagonal of its box is 5. Features: "heat" has
-// the extent 20.
+// Returns a square of two triangles, 3 x 4, so that the diagonal of its bounding box is 5. Its
+// feature "heat" has the range 20.
 mesh::Mesh square() {
   mesh::Mesh mesh{{0, 0, 0, 3, 0, 0, 3, 4, 0, 0, 4, 0}, {}, {0, 1, 2, 0, 2, 3}};
   mesh::ensureNormals(mesh);
@@ -53,8 +53,8 @@ TEST(EdgeLengths, NameAWeightThatCannotBe) {
             "boundary, heat");
 }
 
-// "the edges which are colored red will be the first to be collapsed" ([GOURLEY98] 5.1), for each
-// set of weights.
+// "the edges which are colored red will be the first to be collapsed" ([GOURLEY98] 5.1); this is
+// checked for each set of weights.
 TEST(EdgeLengths, NameTheEdgeThatIsCollapsedFirst) {
   mesh::Mesh mesh = test::noisyGrid(12, 12, 0.3, 7);
   mesh::ensureNormals(mesh);

@@ -1,4 +1,4 @@
-// Imports of displays' memory by a fake driver, whose functions of EGL replace the library's in
+// Imports of displays' memory by a fake driver, whose EGL functions replace those of the library in
 // this program.
 #include "render/gl/egl_import.h"
 
@@ -19,12 +19,12 @@ constexpr std::uint32_t kFormat = 0x34325258;  // XR24 of drm_fourcc.h
 
 struct FakeDriver {
   std::string extensions = "EGL_KHR_image_base EGL_EXT_image_dma_buf_import";
-  EGLint modifiers = 0;                           // how many it lists
-  std::vector<std::map<EGLint, EGLint>> tries{};  // attributes of the images it was asked for
+  EGLint modifiers = 0;                           // number of modifiers that the driver lists
+  std::vector<std::map<EGLint, EGLint>> tries{};  // attributes of each image that was requested
 };
 FakeDriver driver;
 
-// Takes no memory at all.
+// Notes the attributes and refuses every import.
 EGLImageKHR createImage(EGLDisplay, EGLContext, EGLenum, EGLClientBuffer, const EGLint* at) {
   auto& attributes = driver.tries.emplace_back();
   for (; *at != EGL_NONE; at += 2) attributes[at[0]] = at[1];

@@ -1,5 +1,5 @@
-// Two eyes look through the same screens: a point in the plane of a screen has no parallax, a point
-// behind it has the parallax that follows from its distance.
+// Two eyes look through the same screens: a point in the plane of a screen has no parallax, and a
+// point behind it has the parallax that follows from its distance.
 #include "render/stereo/eye_tiles.h"
 
 #include <algorithm>
@@ -71,7 +71,8 @@ TEST(EyeTiles, ShowWhatLiesInTheScreenAtOnePlaceInBothPictures) {
   }
 }
 
-// Similar triangles: parallax on the screen = separation x (1 - distance of screen / of point).
+// By similar triangles, the parallax on the screen is separation x (1 - distance of screen /
+// distance of point).
 TEST(EyeTiles, HaveTheParallaxThatThePointsDistanceSays) {
   const stereo::EyeTiles eyes =
       eyesOf(inMode(stereo::StereoMode::kAnaglyph), tiles::TilesSettings{});
@@ -88,7 +89,7 @@ TEST(EyeTiles, HaveTheParallaxThatThePointsDistanceSays) {
 
 TEST(EyeTiles, OfASymmetricTileHaveItsFieldOfViewInTheMiddle) {
   stereo::StereoSettings tracked;
-  // With head tracking, tiles are screens in the room; there is still one eye only.
+  // With head tracking, tiles are screens in the room, but there is still only one eye.
   tracked.head.station = 2;
   tiles::TilesSettings tiles;
   tiles.tiles[0].direction_deg = {10, 20, 30};
@@ -156,8 +157,8 @@ TEST(EyeTiles, OfTheLeftEyeAreTheWallsPicture) {
   EXPECT_EQ(tileNamed(plan, "centre.R").wall_x, -1);
 }
 
-// Unless the settings say otherwise, the eyes are along the middle tile, which is turned to the
-// left here.
+// Unless the settings say otherwise, the line between the eyes is parallel to the middle tile,
+// which is turned to the left here.
 TEST(EyeTiles, HaveEyesAlongTheMiddleTile) {
   tiles::TilesSettings tiles;
   for (std::size_t i = 0; i < 3; ++i) tiles.tiles[i].direction_deg = {30, 0, 0};
@@ -187,7 +188,7 @@ TEST(EyeTiles, ASignalHasAPartForEachEyeIfTheyAreItsHalves) {
       << "the left eye's picture is not a half";
 }
 
-// A mirrored tile: each eye's picture is mirrored, and the left one stays on the left.
+// On a mirrored tile each eye's picture is mirrored, but the left eye's picture stays on the left.
 TEST(EyeTiles, ArePackedOnOutputsThatShowTheirTile) {
   const std::vector<out::OutputSettings> outputs = {
       {},
@@ -256,7 +257,7 @@ TEST(Anaglyph, TakesBrightnessFromTheLeftEyeAndGreenAndBlueFromTheRightOne) {
 }
 
 // The viewer moves towards the screen and to the right. The frusta change, but the screen's corners
-// remain at the tiles' corners.
+// must remain at the tiles' corners.
 TEST(PlaceViewer, KeepsEachScreensCornersAtTheTilesCorners) {
   tiles::TilePlan plan =
       *tiles::planTiles(eyesOf(inMode(stereo::StereoMode::kAnaglyph), hinged()).tiles);

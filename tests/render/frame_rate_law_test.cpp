@@ -1,4 +1,4 @@
-// The frame rate law of [GOURLEY98] against figures computed by hand, with given times.
+// The frame rate law of [GOURLEY98] compared with figures computed by hand, at given times.
 #include "render/inventor/frame_rate_law.h"
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 using Answer = std::optional<std::int32_t>;
 
-// Reports `frames` + 1 frames at `hz`, the first one at `start_s`; returns the last answer.
+// Reports `frames` + 1 frames at `hz`, the first one at `start_s`; returns the law's last answer.
 Answer draw(inventor::FrameRateLaw& law, double start_s, double hz, int frames,
             std::size_t triangles, double desired_hz) {
   Answer answer;

@@ -28,7 +28,8 @@ const render::lod::Dendrogram& model() {
   return made;
 }
 
-// A model so close to the eye and so wide that it fills all three tiles.
+// Returns the pose of a model that is so close to the eye and so wide that it fills all three
+// tiles.
 Eigen::Isometry3f inFront() {
   Eigen::Isometry3f T_eye_model(Eigen::Translation3f(0.1F, 0.05F, -1.2F));
   T_eye_model.rotate(Eigen::AngleAxisf(0.2F, Eigen::Vector3f::UnitY()));
@@ -86,8 +87,8 @@ TEST(FrameRenderer, MiddleTileAloneIsTheSamePixels) {
   EXPECT_NE(wall.tile(0).pixels, wall.tile(1).pixels);
 }
 
-// At half size, a tile shows the same image in blocks of 2 x 2 pixels; refined detail is at full
-// size.
+// At half size, a tile shows the same image in blocks of 2 x 2 pixels; refined detail is drawn at
+// full size.
 TEST(FrameRenderer, HalfTheSizeIsEnlargedAndGoesWhenItIsRefined) {
   Wall wall(fourTiles());
   wall.draw();
@@ -110,7 +111,7 @@ TEST(FrameRenderer, HalfTheSizeIsEnlargedAndGoesWhenItIsRefined) {
   EXPECT_EQ(wall.tile(1).pixels, full.pixels);
 }
 
-// At full detail, vertices that were interpolated are back at their own positions.
+// At full detail, vertices that were interpolated are at their own positions again.
 TEST(FrameRenderer, FullDetailIsWithoutGeomorphs) {
   Wall wall(fourTiles());
   wall.draw();
@@ -124,7 +125,7 @@ TEST(FrameRenderer, FullDetailIsWithoutGeomorphs) {
   EXPECT_EQ(wall.tile(1).pixels, moving.pixels) << "a function of the level alone";
 }
 
-// The result does not depend on which context draws which tile.
+// The result must not depend on which context draws which tile.
 TEST(FrameRenderer, TwoContextsDrawThePixelsOfOne) {
   Wall one(fourTiles(), gl::GlBackend::kEgl, 1), two(fourTiles(), gl::GlBackend::kEgl, 2);
   EXPECT_EQ(two.renderer->contexts()->renderer(),
@@ -145,8 +146,8 @@ TEST(FrameRenderer, TwoContextsDrawThePixelsOfOne) {
   EXPECT_TRUE(same()) << "full detail, drawn at once by one";
 }
 
-// Frames at full size and reduced sizes, and a refined one. Only one wall at a time can have its
-// context current.
+// Returns frames at full size and at reduced sizes, and a refined one. Only one wall at a time can
+// have its context current.
 std::vector<std::vector<std::uint8_t>> framesOf(const gl::GlSettings& settings) {
   Wall wall(fourTiles(), settings);
   EXPECT_EQ(wall.renderer->contexts()->asynchronous,
@@ -209,7 +210,7 @@ TEST(FrameRenderer, AsynchronousFramesCountTheirWholeTime) {
   };
   const frame::DrawTimes direct = timesWith(gl::ReadBackMode::kDirect);
   const frame::DrawTimes later = timesWith(gl::ReadBackMode::kAsynchronous);
-  // In this mode the renderer reads the clock twice more for each of the four tiles.
+  // In the asynchronous mode the renderer reads the clock twice more for each of the four tiles.
   EXPECT_GT(later.drawing + later.fixed,
             direct.drawing + direct.fixed + std::chrono::milliseconds(7));
   EXPECT_GE(later.drawing, direct.drawing);
@@ -227,7 +228,7 @@ TEST(FrameRenderer, OsmesaHasOneContextForAProcess) {
       "to egl");
 }
 
-// As in a wall of several models: drawing one leaves no GL state that affects the other.
+// In a wall of several models, drawing one must leave no GL state that affects another.
 TEST(FrameRenderer, TwoInOneContextDrawWhatEachDrawsAlone) {
   Wall alone(fourTiles()), first(fourTiles());
   const SystemClock clock;
@@ -244,7 +245,7 @@ TEST(FrameRenderer, TwoInOneContextDrawWhatEachDrawsAlone) {
   EXPECT_TRUE(std::ranges::equal(first.renderer->pixels(), alone.renderer->pixels()));
 }
 
-// Mean difference, 0..255, between two adjacent columns of pixels.
+// Returns the mean difference, 0..255, between two columns of pixels.
 double step(const Image& left, int x, const Image& right, int y) {
   double sum = 0;
   for (int row = 0; row < left.height; ++row)
@@ -329,7 +330,7 @@ TEST(FrameRenderer, SaysWhatItsTimeWentTo) {
                                 kReadBack, kDraw, kReadBack}));
 }
 
-// The steps of the second thread follow those of the first; each tile is drawn by one thread.
+// The steps of the second thread follow those of the first one; each tile is drawn by one thread.
 TEST(FrameRenderer, SaysWhatTheTimeOfBothThreadsWentTo) {
   Wall wall(fourTiles(), gl::GlBackend::kEgl, 2);
   wall.draw(model().levelFor(200));
@@ -385,7 +386,7 @@ TEST(FrameRenderer, OsmesaDrawsTheSameWall) {
   EXPECT_LE(1000 * test::differing(egl, osmesa, 2), kTileWidth * kTileHeight);
 }
 
-// A wall with one tile that has a camera of its own.
+// Returns settings in which one tile has a camera of its own.
 tiles::TilesSettings ownView(tiles::TileCamera view) {
   tiles::TilesSettings s;
   s.frame_width = s.tile_width = kTileWidth;
@@ -395,7 +396,7 @@ tiles::TilesSettings ownView(tiles::TileCamera view) {
   return s;
 }
 
-// A ball that looks different from every side.
+// Returns a ball that looks different from every side.
 const lod::Dendrogram& lopsided() {
   static const lod::Dendrogram made = [] {
     mesh::Mesh mesh = test::sphere(4);
@@ -413,7 +414,7 @@ const lod::Dendrogram& lopsided() {
 }
 
 // Seen from the right, the content looks as it does from the front after a quarter turn, wherever
-// it is.
+// it is placed.
 TEST(OwnViews, AreThoseOfTheSameContentFromAnotherSide) {
   const struct {
     tiles::TileCamera camera;

@@ -1,5 +1,5 @@
 // Fusion of synthetic scans of known shapes: the result is closed, near the shape and blended, and
-// bridges no gaps.
+// does not bridge gaps.
 #include "render/fuse/fuse.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using range::Scanner;
 constexpr double kDeg = std::numbers::pi / 180;
 constexpr std::size_t kPlenty = std::size_t{1} << 30;
 
-// A scan of 80 x 80 pixels, 30 x 30 degrees, from `from` towards the origin.
+// Returns a scan of 80 x 80 pixels, 30 x 30 degrees, from `from` towards the origin.
 range::RangeImage scanFrom(const Mesh& mesh, Scanner scanner, const scan::Point& from) {
   scan::ScanSettings settings;
   settings.width = settings.height = 80;
@@ -43,7 +43,7 @@ range::RangeImage scanFrom(const Mesh& mesh, Scanner scanner, const scan::Point&
   return taken.ok() ? std::move(taken->image) : range::RangeImage{};
 }
 
-// Six scans along the axes, 5 units from the origin.
+// Returns six scans along the axes, from 5 units away from the origin.
 std::vector<range::RangeImage> sixScans(const Mesh& mesh, Scanner scanner) {
   std::vector<range::RangeImage> scans;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -69,7 +69,7 @@ fuse::FuseSettings closed(double voxel) {
   return settings;
 }
 
-// Edges of the mesh that do not have one triangle on each side, in opposite directions.
+// Returns the number of edges that do not have one triangle on each side, in opposite directions.
 std::size_t openEdges(const Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -84,7 +84,7 @@ std::size_t openEdges(const Mesh& mesh) {
   return open;
 }
 
-// Vertices - edges + triangles, of a closed mesh: 2 for one sphere.
+// Returns vertices - edges + triangles of a closed mesh; this is 2 for one sphere.
 long eulerOf(const Mesh& mesh) {
   return static_cast<long>(mesh.vertexCount()) - static_cast<long>(mesh.triangleCount() / 2);
 }
@@ -161,7 +161,7 @@ TEST(Fuse, ConfidenceSaysWhichColourCounts) {
     image.planes.push_back({"heat", 1, std::vector<float>(image.pixels(), i == 0 ? 0.F : 8.F)});
     image.planes.push_back({"label", 1, std::vector<float>(image.pixels(), i == 0 ? 3.F : 4.F)});
     image.planes.push_back({"confidence", 1, std::vector<float>(image.pixels(), 1.F)});
-    // All pixels have a quarter of the confidence of the one in the corner, which is 1.
+    // The pixel in the corner has the confidence 1; all others have a quarter of it.
     if (i == 0) std::fill_n(image.planes[2].values.begin() + 1, image.pixels() - 1, 0.25F);
   }
   fuse::FuseSettings settings;

@@ -24,7 +24,7 @@ const lod::Dendrogram& hills() {
   return made;
 }
 
-// The position of each node, interpolated for those that a geomorph moves.
+// The position of each node, with the interpolated positions of the nodes that a geomorph moves.
 class Places {
  public:
   explicit Places(const std::vector<lod::Morph>& morphs) {
@@ -44,8 +44,8 @@ class Places {
   std::map<std::uint32_t, Place> moved_;
 };
 
-// The sum, over the corners of all triangles of the mesh, of the squared distance between the node
-// that represents the corner at one level and at the next.
+// Returns how far the mesh jumps between a level and the next one: the sum, over the corners of all
+// triangles, of the squared distance between the nodes that represent the corner at these levels.
 double jump(std::size_t level, double share) {
   std::vector<lod::Morph> morphs;
   lod::morphsAt(hills(), level, share, morphs);

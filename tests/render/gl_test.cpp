@@ -19,7 +19,7 @@ using Source = content::ModelRenderer::Source;
 
 const Rgba kBackground{15, 18, 23, 255};  // RenderStyle's background x 255, rounded
 
-// A bumpy ball whose colours are derived from its normals.
+// Returns a bumpy ball whose colours are derived from its normals.
 mesh::Mesh ball() {
   mesh::Mesh mesh = test::sphere(5);
   for (std::size_t v = 0; v < mesh.vertexCount(); ++v) {
@@ -39,7 +39,7 @@ lod::Dendrogram wholeModel(mesh::Mesh mesh) {
   return lod::buildDendrogram(mesh, reduce::reduce(mesh, {})->log);
 }
 
-// A dendrogram without collapses; the mesh's normals are kept.
+// Returns a dendrogram without collapses; the mesh's normals are kept.
 lod::Dendrogram unreduced(const mesh::Mesh& mesh) {
   lod::CollapseLog none;
   none.features.resize(mesh.features.size());
@@ -84,18 +84,18 @@ class Studio {
   std::unique_ptr<content::ModelRenderer> renderer_;
 };
 
-// A triangle that faces the viewer, in the upper right quarter of the image.
+// Returns a triangle that faces the viewer, in the upper right quarter of the image.
 mesh::Mesh upperRight() { return {{0.2F, 0.2F, 0, 0.9F, 0.2F, 0, 0.2F, 0.9F, 0}, {}, {0, 1, 2}}; }
 
-// The first level, from `level` on, at which the last merge is on the side that faces the viewer.
+// Returns the first level, from `level` on, whose last merge is on the side that faces the viewer.
 std::size_t mergesInFront(const lod::Dendrogram& model, std::size_t level) {
   const auto z = [&](std::size_t node) { return model.arrays().positions[3 * node + 2]; };
   while (z(model.nodeCount() - 2 * level - 1) < 0.3F) ++level;
   return level;
 }
 
-// If the next two nodes to be merged are morphed to their parent's position, the image equals that
-// after the merge; otherwise it is unchanged.
+// If the two nodes that are merged next are morphed to their parent's position, the image equals
+// that after the merge; otherwise it is unchanged.
 TEST(Gl, AMorphedNodeStandsWhereItIsTold) {
   const lod::Dendrogram model = wholeModel(ball());
   Studio studio(gl::GlBackend::kEgl, model);
@@ -253,7 +253,7 @@ TEST_P(GlOf, WiresAreSeenWhateverTheModelsColoursAndHiddenByFaces) {
   const Image expected = Studio(GetParam(), alone).picture(wires);
   EXPECT_EQ(Studio(GetParam(), model).picture(wires).pixels, expected.pixels);
   const Image dim = Studio(GetParam(), alone).picture({.brightness = 0.5F, .wireframe = true});
-  // Alpha is 255 in all pixels, so it is excluded.
+  // The brightest value is that of a colour, since alpha, which is 255 in all pixels, is left out.
   const auto brightest = [](const Image& image) {
     return *std::max_element(image.pixels.begin(), image.pixels.end(),
                              [](auto a, auto b) { return a % 255 < b % 255; });
@@ -285,7 +285,7 @@ TEST_P(GlOf, TooLargeAFrameBufferIsRefused) {
   EXPECT_NE(frame.error().what.find("1048576 x 16"), std::string::npos) << frame.error().what;
 }
 
-// A square that fills the image; u ranges from -1 to 3, v from 0 to 1.
+// Returns a square that fills the image; u ranges from -1 to 3, v from 0 to 1.
 mesh::Mesh square() {
   mesh::Mesh mesh;
   mesh.positions = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
@@ -314,7 +314,7 @@ TEST_P(GlOf, ATextureIsModulatedWithTheLightAndRepeats) {
   const lod::Dendrogram model = unreduced(square());
   Studio studio(GetParam(), model, 160, 120, {}, &texture);
   const Image image = studio.picture();
-  // The light at a normal towards the eye is 1.048. The texture repeats four times from left to
+  // For a normal towards the eye, the light is 1.048. The texture repeats four times from left to
   // right.
   for (const int picture : {0, 1, 2, 3}) {
     EXPECT_LE(test::difference(image.at(40 * picture + 10, 20), {0, 105, 0, 255}), 1) << picture;
@@ -336,8 +336,8 @@ TEST_P(GlOf, AFeatureThatIsShownIsShownInsteadOfTheTexture) {
   EXPECT_EQ(plain.picture().at(10, 20), (Rgba{255, 0, 0, 255})) << "no picture, so its colours";
 }
 
-// Corners 0 and 1 merge into a vertex midway between them; half-way there, their texture
-// coordinates are interpolated too.
+// Corners 0 and 1 merge into a vertex midway between them. Half-way through the geomorph, their
+// texture coordinates must be interpolated too.
 TEST_P(GlOf, TextureCoordinatesAreOnTheirWayToo) {
   const auto rgb = threeColours();
   const gl::TextureImage texture{64, 64, rgb};
@@ -368,7 +368,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, GlOf,
                            return backend.param == gl::GlBackend::kEgl ? "Egl" : "Osmesa";
                          });
 
-// Simulates a GPU context that the driver has reset, and that reports it once.
+// Simulates a GPU context that the driver has reset, which the context reports once.
 class LostContext final : public gl::GlContext {
  public:
   LostContext() {

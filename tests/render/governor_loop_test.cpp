@@ -1,5 +1,5 @@
-// The governor in a closed loop with a fake renderer: where it settles, and how many frames are
-// late on the way.
+// The governor in a closed loop with a fake renderer: where its budget settles, and how many frames
+// are late meanwhile.
 #include <cmath>
 #include <functional>
 #include <string>
@@ -55,7 +55,7 @@ struct Loop {
 
 class CostModels : public testing::TestWithParam<FakeRenderer> {};
 
-// The target is 90 per cent of the period; a change of less than 3 per cent is not worth making.
+// The target is 90 per cent of the period; a change of less than 3 per cent is not made.
 TEST_P(CostModels, SettlesAtTheRateLessTheHeadRoom) {
   Loop loop;
   loop.run(GetParam(), 150);
@@ -110,7 +110,7 @@ std::string nameOf(const testing::TestParamInfo<FakeRenderer>& info) {
          whole(100 * info.param.exponent);
 }
 
-// Exponents p from fill-bound to geometry-bound; models of 20,000 to 100,000 triangles.
+// Exponents p from fill-bound to geometry-bound, in models of 20,000 to 100,000 triangles.
 const FakeRenderer kModels[] = {{0.000, 0.030, 0.50}, {0.004, 0.020, 0.62}, {0.004, 0.100, 0.65},
                                 {0.010, 0.050, 0.75}, {0.002, 0.040, 0.88}, {0.001, 0.030, 1.00},
                                 {0.012, 0.100, 1.00}};
@@ -139,8 +139,8 @@ TEST(GovernorLateShare, NoiseTakesHeadRoomAndQuietGivesItBack) {
   EXPECT_EQ(loop.late, 0u);
 }
 
-// The machine's speed changes by a factor of 1.35 for several seconds; only a few frames may be
-// late at each change.
+// The machine's speed changes by a factor of 1.35, each time for several seconds; only a few frames
+// may be late at each change.
 TEST(GovernorLoop, LivesWithAMachineThatChangesItsSpeed) {
   const FakeRenderer fast{0.004, 0.060, 0.62, 0.03};
   FakeRenderer slow = fast;

@@ -1,5 +1,5 @@
-// Inputs of the governor other than frames: calibration, feed-forward, budgets set by a person,
-// another rate; and its exponent.
+// The governor's inputs other than frames: calibration, feed-forward, budgets set by a person,
+// another rate; and how it learns its exponent.
 #include <cmath>
 #include <vector>
 
@@ -17,8 +17,8 @@ using governed::settled;
 using std::chrono::milliseconds;
 
 // Half the triangles, drawn in the rest of a period, follow the exponent 0.8, not 0.65: they are
-// 0.5^0.15 = 0.9013 times as expensive. A tenth of the difference in the exponent is learnt; the
-// prediction for the usual size stays.
+// 0.5^0.15 = 0.9013 times as expensive as predicted. A tenth of the difference in the exponent is
+// learnt; the prediction for the usual number of triangles is unchanged.
 TEST(GovernorExponent, IsLearntFromAFrameThatHadLessTime) {
   governor::Governor governor = settled();
   EXPECT_DOUBLE_EQ(governor.exponent(), 0.65);
@@ -30,7 +30,8 @@ TEST(GovernorExponent, IsLearntFromAFrameThatHadLessTime) {
   EXPECT_EQ(governor.budget(), 10'000u);
 }
 
-// A model with fewer triangles than would fit, so all of its frames are below the budget.
+// The model has fewer triangles than would fit into the period, so all of its frames are below the
+// budget.
 TEST(GovernorExponent, IsNotLearntFromFramesThatAreAllSmall) {
   governor::Governor governor = settled();
   for (int i = 0; i < 50; ++i) governor.observe(frame(1'000, milliseconds(4), milliseconds(10)));
@@ -75,8 +76,8 @@ TEST(GovernorCalibration, WithFramesOfOneSizeLeavesTheExponent) {
   EXPECT_EQ(none.coefficient(), 0);
 }
 
-// Drawing takes 32 ms, in three frames of five 8 per cent more or less: the head room becomes 3 x
-// 0.08, within its bounds.
+// Drawing takes 32 ms; in three of five frames it takes 8 per cent more or less. The head room
+// becomes 3 x 0.08, within its bounds.
 TEST(GovernorCalibration, LeavesRoomForTheNoiseThatItSaw) {
   const auto noisy = [](double noise) {
     std::vector<governor::FrameCost> frames;
@@ -91,8 +92,8 @@ TEST(GovernorCalibration, LeavesRoomForTheNoiseThatItSaw) {
   EXPECT_DOUBLE_EQ(noisy(0.50), 0.30);
 }
 
-// A view twice as expensive: (32 / 64)^(1 / 0.65) = 0.34429. The governor reacts at once in both
-// directions.
+// The view becomes twice as expensive: (32 / 64)^(1 / 0.65) = 0.34429. The governor reacts at once
+// in both directions.
 TEST(GovernorExpect, FeedsForwardAtOnce) {
   governor::Governor governor = settled();
   governor.expect(2);

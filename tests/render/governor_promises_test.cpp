@@ -1,5 +1,5 @@
-// The limits that MERLIN states for its frame rate; ./dev bench governor prints the figures beside
-// those of other control laws.
+// The limits that MERLIN states for its frame rate; ./dev bench governor prints these figures
+// beside those of other control laws.
 #include <gtest/gtest.h>
 
 #include "tests/support/governor_plant.h"
@@ -12,7 +12,7 @@ Outcome run(const Trace& trace, double hiccups, std::uint64_t seed = 4) {
   return runOnGrid(governor, {trace, seed, hiccups});
 }
 
-// The mean over twenty seeds, since the number of hiccups in a minute is random.
+// Returns the mean over twenty seeds, since the number of hiccups in a minute is random.
 double mean(double (*figure)(const Outcome&), const Trace& trace, double hiccups) {
   double sum = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) sum += figure(run(trace, hiccups, seed));

@@ -1,4 +1,4 @@
-// The governor's rules one by one, on frames whose cost is given literally.
+// The governor's rules one by one, with frames whose cost is stated literally.
 #include "render/governor/governor.h"
 
 #include <algorithm>
@@ -93,8 +93,8 @@ TEST(Governor, AHiccupNowAndThenChangesNothingEither) {
 }
 
 // 96 ms of drawing are three times the usual 32 ms. A frame that misses two deadlines is taken as a
-// change of the load, plus 6 per cent for its noise. (40 ms x 0.8901 - 4 ms) / (1.06 x 96 ms) =
-// 0.31058; to the power of 1 / 0.65 this is 0.16561.
+// change of the load, with 6 per cent added for its noise. (40 ms x 0.8901 - 4 ms) / (1.06 x 96 ms)
+// = 0.31058; to the power of 1 / 0.65 this is 0.16561.
 TEST(Governor, AFrameThatMissesTwoDeadlinesActsAlone) {
   governor::Governor governor = settled();
   const double before = governor.coefficient();
@@ -119,8 +119,8 @@ TEST(Governor, ALongHiccupIsTakenBackByTheNextFrame) {
   EXPECT_EQ(governor.budget(), 10'000u);
 }
 
-// Two late frames in a row: the budget follows the lower of the two costs seen (56 / 32) at once,
-// less the head room learnt.
+// After two late frames in a row, the budget follows at once the lower of the two costs seen (56 /
+// 32), with the learnt head room subtracted.
 TEST(Governor, TwoLateInARowActAtOnceOnTheWorstSeen) {
   governor::Governor governor = settled();
   const double before = governor.coefficient();
@@ -153,8 +153,8 @@ TEST(Governor, TwoLateInARowDoNotWaitForALossWorthIt) {
   EXPECT_NEAR(budgetOf(governor), 9916, 3);
 }
 
-// Something else made the frames late. There is room, but a frame after two late ones must not use
-// it.
+// Something other than the load made the frames late. More triangles would fit, but the budget must
+// not grow after two late frames.
 TEST(Governor, TwoLateInARowNeverGrow) {
   governor::Governor governor(kSettings);
   for (int i = 0; i < 10; ++i) governor.observe({10'000, {}, milliseconds(1), true});
@@ -163,7 +163,8 @@ TEST(Governor, TwoLateInARowNeverGrow) {
   EXPECT_EQ(governor.budget(), 11'664u);
 }
 
-// The median of three values, smoothed by 0.15 a frame: a single slow read-back has no effect.
+// The fixed part is the median of three values, smoothed by 0.15 a frame, so a single slow
+// read-back has no effect.
 TEST(Governor, SmoothsTheFixedPart) {
   governor::Governor governor = settled();
   governor.observe(frame(10'000, milliseconds(8), milliseconds(36)));
@@ -203,8 +204,8 @@ TEST(Governor, KeepsStillWithinTheNoise) {
   EXPECT_NEAR(governor.coefficient() / before, 31.5 / 32, 0.01);
 }
 
-// For a second, each frame costs 2 per cent more than the last one: the model is never off by 9 per
-// cent.
+// For a second, each frame costs 2 per cent more than the one before; the model's error must stay
+// below 9 per cent.
 TEST(Governor, FollowsALoadThatRisesWithoutLagging) {
   governor::Governor governor = settled();
   const double before = governor.coefficient();
@@ -254,8 +255,8 @@ TEST(Governor, KeepsTheLeastAndTheMost) {
   EXPECT_EQ(governor.budget(), 1'000'000u);
 }
 
-// A content in another unit has a minimum of its own: a budget of 100 units may already be fine
-// detail of a picture. A minimum above the configured one is ignored.
+// A content whose detail has another unit has its own minimum: a budget of 100 units may already be
+// fine detail of a picture. A minimum above the configured one is ignored.
 TEST(Governor, KeepsTheLeastOfAContentWithAnotherUnit) {
   governor::Governor governor = settled();
   governor.setLeastUseful(16);
@@ -279,7 +280,7 @@ TEST(GovernorBudgetFor, IsTheBudgetForAWholePeriod) {
   const governor::Governor governor = settled();
   EXPECT_EQ(governor.budgetFor(milliseconds(40)), governor.budget());
   EXPECT_EQ(governor.budgetFor(milliseconds(60)), governor.budget());
-  // The frame started a little late.
+  // The frame started slightly late.
   EXPECT_EQ(governor.budgetFor(nanoseconds(39'600'000)), governor.budget());
 }
 

@@ -1,4 +1,4 @@
-// The choice of a GPU, from made-up lists and from this machine's.
+// The choice of a GPU, from synthetic lists and from this machine's list.
 #include "render/gl/gpu_list.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// On a machine with a GPU, the GPU must draw and correct as the software renderer and the CPU do.
-// On other machines these tests are skipped. One command: build/dev/bin/gpu_test
+// On a machine with a GPU, the GPU must draw as the software renderer does, and correct as the CPU
+// does. On other machines these tests are skipped. One command runs them: build/dev/bin/gpu_test
 #include <future>
 #include <memory>
 #include <span>
@@ -54,7 +54,7 @@ Eigen::Isometry3f viewOf(int k) {
   return T_eye_model;
 }
 
-// Counts the pixels of which any channel differs by more than `most` of 255.
+// Returns the number of pixels of which any channel differs by more than `most` of 255.
 int pixelsBeyond(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b, int most) {
   int count = 0;
   for (std::size_t i = 0; i < a.size(); i += 4) {
@@ -67,7 +67,7 @@ int pixelsBeyond(std::span<const std::uint8_t> a, std::span<const std::uint8_t> 
 
 using Frame = std::vector<std::uint8_t>;
 
-// Four views, each at full detail and coarse, drawn by a thread that has this context alone.
+// Returns four views, each at full detail and coarse, drawn by a thread with its own context.
 std::vector<Frame> framesOf(const lod::Dendrogram& model, const gl::GlSettings& settings) {
   return std::async(std::launch::async,
                     [&] {
@@ -121,7 +121,8 @@ TEST_F(GpuTest, CorrectsAsTheCpuDoesWithin1Of255) {
   pass.end();
 }
 
-// The GPU's own card, if it has connectors or could have them: needs no display, and lights none.
+// Returns the path of the GPU's own card, on which its displays are connected if it has any; empty
+// if there is no card. Needs no display, and lights none.
 std::string cardOf(const gl::RendererInfo& renderer) {
   const std::string device = deviceFolder(renderer.node);
   for (int i = 0; i < 16 && !device.empty(); ++i) {

@@ -70,7 +70,7 @@ TEST(Gzip, NamesThePlaceOfTheDamage) {
   EXPECT_EQ(whole.code, Errc::kUnsupported);
   EXPECT_TRUE(whole.what.starts_with("is packed by gzip; ")) << whole.what;
   EXPECT_EQ(packedFileError(packed.substr(0, 40)).what, "gzip: is cut");
-  // The first byte of the CRC; the error is found once all of the CRC has been read.
+  // Damages the first byte of the CRC; the reader finds the error once it has read all of the CRC.
   packed[packed.size() - 8] ^= 1;
   const std::string why =
       "gzip: is damaged at byte " + std::to_string(packed.size() - 4) + " of " + size + ": ";

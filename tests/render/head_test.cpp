@@ -1,5 +1,5 @@
-// The wall is drawn for the tracked head's position, and its picture does not change while the head
-// is at rest.
+// The wall is drawn for the position of the tracked head, and the picture does not change while the
+// head is at rest.
 #include "render/stereo/head.h"
 
 #include <limits>
@@ -48,7 +48,7 @@ class HeadTest : public testing::Test {
   Timestamp now_{std::chrono::hours(1)};
 };
 
-// Tracker x is the room's z, -y its x, -z its y.
+// The tracker's x is the room's z, its -y the room's x, its -z the room's y.
 TEST_F(HeadTest, IsInTheRoomWhereTheTrackerIsSetUpToSayIt) {
   const stereo::Head::View view = after(at(1.5F, -0.25F, 0.3F));
   EXPECT_TRUE(view.tracked);
@@ -94,7 +94,7 @@ TEST_F(HeadTest, BeyondTheDeadBandIsTakenAsItIsUntilItRests) {
   EXPECT_NEAR(at_rest.viewer.place_m.z() - rested.z(), 0.008, 1e-6);
 }
 
-// A drift of a millimetre a frame counts as motion, since it adds up.
+// A drift of a millimetre a frame counts as motion, since such steps add up.
 TEST_F(HeadTest, ThatDriftsIsFollowed) {
   restAt(at(1, 0, 0));
   stereo::Head::View view;

@@ -1,5 +1,5 @@
 // Reducing a mesh with very many triangles at one vertex takes hardly more work per triangle than
-// reducing others.
+// reducing another mesh.
 #include "tests/support/hostile_shapes.h"
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct Way {
   reduce::ReduceSettings settings;
 };
 
-// Number of elements that a reduction visits, divided by the number of triangles.
+// Returns the number of elements that a reduction visits, divided by the number of triangles.
 double workOf(const test::HostileShape& shape, Way way) {
   mesh::Mesh mesh = shape.make(24'000);
   mesh::splitNonManifold(mesh);
@@ -53,7 +53,7 @@ std::vector<Way> waysFor(const test::HostileShape& shape) {
 // per triangle here.
 class HostileShape : public testing::TestWithParam<test::HostileShape> {};
 
-// The work of each way of reducing on a regular mesh, which bounds that on all shapes.
+// Returns the work of each way of reducing a regular mesh. It bounds the work on all shapes.
 const std::vector<double>& regularWork() {
   static const std::vector<double> work = [] {
     const test::HostileShape regular = test::hostileShapes().front();

@@ -10,7 +10,7 @@
 namespace merlin::render {
 namespace {
 
-// A tetrahedron of four vertices, facing outwards; its volume is 1/6.
+// Returns a tetrahedron that faces outwards; its volume is 1/6.
 mesh::Mesh tetrahedron() {
   mesh::Mesh mesh;
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -31,7 +31,7 @@ void turn(mesh::Mesh& mesh) {
     std::swap(mesh.triangles[i + 1], mesh.triangles[i + 2]);
 }
 
-// Expects that the inspection has found none of the peculiarities that it looks for.
+// Expects that the inspection has found no peculiarity.
 void expectNothingOdd(const mesh::Inspection& is) {
   EXPECT_EQ(is.degenerate + is.no_area + is.duplicate, 0u);
   EXPECT_EQ(is.non_manifold_edges + is.turned_edges + is.non_manifold_vertices, 0u);
@@ -73,7 +73,7 @@ TEST(Inspect, TheLongestHoleComesFirst) {
   expectNothingOdd(is);
 }
 
-// At a vertex where two holes touch, each fan of triangles leads from one hole to the other.
+// At a vertex where two holes touch, each fan of triangles reaches from one hole to the other.
 TEST(Inspect, HolesThatTouchAreOneLoop) {
   mesh::Mesh sheet = test::grid(4, 4);
   for (const int cell : {2 * 4 + 2, 1 * 4 + 1})  // diagonal neighbours, the later one first
@@ -158,7 +158,7 @@ TEST(Inspect, CountsTrianglesThatAreNone) {
   EXPECT_EQ(is.isolated, 1u);
 }
 
-// As in an STL file, no two triangles share a vertex.
+// In the soup, no two triangles share a vertex, as in an STL file.
 TEST(Inspect, VerticesAtOnePlaceAreOne) {
   const mesh::Mesh cube = test::cube();
   mesh::Mesh soup;

@@ -1,5 +1,5 @@
 // What an output of kind kms decides without a card: the faults of its settings, the choice of
-// mode, connector and CRTC, the pixels of a buffer, and whose turn a buffer is.
+// mode, connector and CRTC, the pixels of a buffer, and which buffer is used next.
 #include <algorithm>
 #include <set>
 

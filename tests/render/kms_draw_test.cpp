@@ -23,7 +23,7 @@ using test::mode;
 class KmsDrawTest : public testing::Test {
  protected:
   KmsDrawTest() { bench_.shares = true; }
-  // Output 0 at A-1; output 1, at A-2, is always copied to.
+  // Output 0 is at connector A-1; output 1 is at A-2, and its pictures are always copied.
   void add(const std::string& first_mode = "640x480@60") {
     displays_.add({"", "A-1", first_mode}, 640, 480);
     displays_.add({"", "A-2", "640x480@60"}, 640, 480);
@@ -42,12 +42,14 @@ class KmsDrawTest : public testing::Test {
   Id idOf(const DrawPlace& place) const {
     return place.buffer ? bench_.buffer_of.at(place.buffer.get()) : 0;
   }
-  // What a GPU does. The fourth byte is what copying leaves there, too.
+  // Draws as a GPU would: sets the blue of each pixel. The fourth byte keeps its value, as it does
+  // when a picture is copied.
   void draw(const DrawPlace& place, std::uint8_t blue) {
     auto& bytes = *bench_.buffers.at(idOf(place));
     for (std::size_t i = 0; i < bytes.size(); i += 4) bytes[i] = blue;
   }
-  // Presents a frame, drawn to output 0; returns where.
+  // Presents a frame, which is drawn for output 0 if the output has memory to draw into; returns
+  // this memory.
   std::vector<DrawPlace> present(std::uint8_t blue) {
     const auto places = displays_.beginDrawing(0);
     for (const auto& place : places) draw(place, blue);
@@ -107,8 +109,8 @@ TEST_F(KmsDrawTest, WhatIsShownOrOnItsWayIsNeverDrawnInto) {
   EXPECT_EQ(drawn.size(), 3U);
 }
 
-// Drawing takes back the picture that waits. The one that waits on the other display belongs to the
-// same frame.
+// Drawing takes back the picture that waits for the display. A picture that waits for the other
+// display belongs to the same frame, so it must wait too.
 TEST_F(KmsDrawTest, NoDisplayChangesAloneWhileAPictureIsDrawnForAnother) {
   add();
   bench_.answers_flips = false;
@@ -168,7 +170,8 @@ TEST_F(KmsDrawTest, MemoryThatIsNotSharedIsAPlaceWithoutABuffer) {
   EXPECT_EQ(bench_.shown[21], 3);
 }
 
-// The picture that could not be drawn is shown, and nobody tries again until there is new memory.
+// The picture that could not be drawn is copied, and drawing is not tried again before there is new
+// memory.
 TEST_F(KmsDrawTest, APictureThatIsNotDrawnIsCopiedAndSoAreTheNextOnes) {
   add();
   ASSERT_EQ(displays_.beginDrawing(0).size(), 1U);
@@ -212,7 +215,8 @@ TEST_F(KmsDrawTest, ADisplayThatWasFoundToShowSomethingElseIsCopiedTo) {
   EXPECT_EQ(displays_.beginDrawing(1).size(), 1U) << "the other output was right";
 }
 
-// Nobody has drawn there, so that nobody need know why it is copied to.
+// Nothing was ever drawn for this output, so there is no reason to report why its pictures are
+// copied.
 TEST_F(KmsDrawTest, ADisplayThatWasAlwaysCopiedToIsSoForNoReason) {
   add();
   present(1);
@@ -256,7 +260,8 @@ TEST_F(KmsDrawTest, ADisplayThatIsPulledWhileItsPictureIsDrawnDoesNotStopTheOthe
   EXPECT_EQ(bench_.shown, (std::map<Id, int>{{21, 1}, {22, 2}}));
 }
 
-// The memory is in use until the picture is presented, although the display has other memory now.
+// The memory remains in use until the picture is presented, although the display has other memory
+// by then.
 TEST_F(KmsDrawTest, AModeThatChangesWhileAPictureIsDrawnLeavesItsMemory) {
   add("");
   const auto places = displays_.beginDrawing(0);

@@ -1,5 +1,5 @@
-// Tests reading back what a graphics card's displays really show, independently of what `Displays`
-// has recorded.
+// Reads back what the displays of a graphics card really show, independently of what `Displays` has
+// recorded.
 #include <gtest/gtest.h>
 
 #include "render/out/kms/displays.h"
@@ -137,7 +137,7 @@ TEST_F(KmsReadBackTest, ACardThatIsGoneIsAnError) {
   EXPECT_EQ(displays_.readBack(0)->size(), 0U);
 }
 
-// According to `Displays` a newer frame is shown; according to the card it is not.
+// `Displays` has recorded that a newer frame is shown, but the card still shows the old one.
 TEST_F(KmsReadBackTest, ACommitWithoutAFlipLeavesTheOldBuffer) {
   light();
   const ScannedOut before = bench_.scanned[21];

@@ -1,4 +1,4 @@
-// Outputs of kind kms on a fake card: what happens to a wall's displays.
+// Outputs of kind kms on a fake card: what happens to the displays of a wall.
 #include <algorithm>
 #include <map>
 

@@ -54,15 +54,16 @@ TEST(ListPool, AssignsShorterAndLongerListsWithoutTouchingOthers) {
   EXPECT_EQ(at(pool, 0), (Numbers{1, 2, 3, 4, 5}));
   pool.assign(0, Numbers{6});
   EXPECT_EQ(at(pool, 0), (Numbers{6}));
-  pool.assign(0, Numbers{1, 2, 3, 4, 5});  // fits into the space of the five that were there
+  // fits into the space of the list's earlier five elements
+  pool.assign(0, Numbers{1, 2, 3, 4, 5});
   EXPECT_EQ(at(pool, 0), (Numbers{1, 2, 3, 4, 5}));
   pool.assign(0, {});
   EXPECT_EQ(at(pool, 0), (Numbers{}));
   EXPECT_EQ(at(pool, 1), (Numbers{100}));
 }
 
-// A list that grows by one element at a time is moved up to 2000 times: 8 MB if no space were
-// reclaimed.
+// A list that grows by one element at a time is moved up to 2000 times, which would take 8 MB if no
+// space were reclaimed.
 TEST(ListPool, TakesBackThePlacesThatListsHaveLeft) {
   reduce::ListPool pool(Numbers{0});
   Numbers numbers;
@@ -75,7 +76,7 @@ TEST(ListPool, TakesBackThePlacesThatListsHaveLeft) {
   EXPECT_LE(test::largest_allocation, 6 * 2000 * sizeof(std::uint32_t));
 }
 
-// Lists that grow and shrink at random, as in a reduction, and are compacted many times.
+// Lists grow and shrink at random, as in a reduction, and are compacted many times.
 TEST(ListPool, AgreesWithAVectorOfVectors) {
   Random random(1);
   const Numbers room(20, 3);

@@ -7,7 +7,7 @@ namespace {
 
 class LostViewTest : public testing::Test {
  protected:
-  // Updates the detector after `s` more seconds.
+  // Updates the detector `s` seconds later; returns its answer.
   bool after(double s, bool seen, bool moving = false) {
     now_ += fromSeconds(s);
     return lost_.update(seen, moving, now_);

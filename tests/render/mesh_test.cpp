@@ -21,7 +21,7 @@ using Vec3 = std::array<float, 3>;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Two triangles in z = 0, 0 1 3 and 0 3 2, with vertex 0 at the origin.
+// Returns two triangles in z = 0, 0 1 3 and 0 3 2, with vertex 0 at the origin.
 mesh::Mesh square() { return test::grid(1, 1); }
 
 std::string fault(const mesh::Mesh& mesh) {
@@ -41,7 +41,7 @@ TEST(MeshValidate, TakesWhateverASurfaceMayBe) {
   EXPECT_EQ(fault(mesh::Mesh{}), "none");
   mesh::Mesh mesh =
       test::together(square(), test::cube());  // a mesh with a border, and two components
-  // Three triangles at an edge; a degenerate one.
+  // Three triangles at an edge, and a degenerate one.
   mesh.triangles.insert(mesh.triangles.end(), {0, 3, 5, 1, 1, 2});
   mesh.features = {{"heat", 1, Floats(12, 0)}, {"flow", 2, Floats(24, 0)}};
   EXPECT_EQ(fault(mesh), "none");
@@ -89,7 +89,8 @@ TEST(MeshTidy, DropsDegenerateTrianglesAndKeepsTheOrderOfTheOthers) {
   EXPECT_EQ(mesh.triangles, (Indices{0, 1, 3, 0, 3, 2}));
 }
 
-// A square that is cut along its diagonal; a triangle without area joins the cut at corner 0.
+// Returns a square that is cut along its diagonal; a triangle without area joins the two sides of
+// the cut at corner 0.
 mesh::Mesh cutSquare() {
   mesh::Mesh mesh;
   mesh.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, -0.0F, 0};
@@ -122,7 +123,8 @@ TEST(WeldDegenerate, CornersOfOtherValuesOrPlacesAndThoseOfNoCommonTriangleStayA
 }
 
 TEST(WeldDegenerate, ARowOfCopiesBecomesItsFirst) {
-  // The pole of a sphere: each triangle has its own copy of it, joined to that of the next one.
+  // The pole of a sphere: each triangle has its own copy of the pole, joined to that of the next
+  // triangle.
   mesh::Mesh fan;
   fan.positions.assign(9, 0);
   for (int i = 0; i < 4; ++i)
@@ -141,7 +143,7 @@ TEST(MeshTidy, DropsUnusedVerticesWithTheirFeatures) {
   }
   mesh.features = {{"heat", 1, {0, 1, 2, 3, 4}},
                    {"flow", 2, {0, 1, 10, 11, 20, 21, 30, 31, 40, 41}}};
-  // Vertex 0 is used by a degenerate triangle only, vertex 2 by none.
+  // Vertex 0 is used by a degenerate triangle only, vertex 2 by no triangle.
   mesh.triangles = {4, 1, 3, 3, 3, 0};
   const mesh::TidyReport report = mesh::tidy(mesh);
   EXPECT_EQ(report.degenerate, 1u);
@@ -231,9 +233,9 @@ TEST(EnsureNormals, AddsThemOnce) {
   EXPECT_EQ(mesh.features.size(), 1u);
 }
 
-// Pages of a book at these angles; each page has its own copies of the spine's two vertices. The
-// first three pages are one surface (the outer two through the middle one). The last page faces
-// away from all others.
+// Pages of a book at these angles; each page has its own copies of the two vertices at the spine.
+// The first three pages form one surface (the outer two through the middle one). The last page
+// faces away from all others.
 TEST(EnsureNormals, AreOneWhereSidesOfASeamAreOneSurface) {
   const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
   mesh::Mesh book;

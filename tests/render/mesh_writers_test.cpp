@@ -1,4 +1,4 @@
-// Third-party readers read the files that writeMesh() writes, and find the mesh in them.
+// Third-party readers read the files that writeMesh() writes, and must find the mesh in them.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -25,7 +25,8 @@ using Floats = std::vector<float>;
 using Names = std::vector<std::string>;
 using Json = nlohmann::json;
 
-// A square with all features: axis-parallel or zero normals, colours that a byte holds exactly.
+// Returns a square with all features: normals that are zero or parallel to an axis, and colours
+// that a byte holds exactly.
 mesh::Mesh richSquare() {
   mesh::Mesh mesh = test::grid(1, 1);
   mesh.positions[2] = -1.0F / 3;
@@ -135,12 +136,13 @@ TEST(InventorWriter, HoldsEachNodeWithItsRows) {
     EXPECT_EQ(readText(dir / "b.iv").find(node), std::string::npos) << node;
 }
 
-// A glTF file, decoded as the specification says.
+// A glTF file, decoded as the specification prescribes.
 struct Gltf {
   Json json;
   std::string buffer;
 
-  // The values of an accessor, floats or unsigned integers, located as the specification says.
+  // Returns the values of an accessor, floats or unsigned integers, located as the specification
+  // prescribes.
   template <typename T>
   std::vector<T> numbers(std::size_t accessor) const {
     const Json& a = json["accessors"][accessor];
@@ -226,7 +228,7 @@ TEST(GltfWriter, TurnsFeaturesIntoWhatTheFormatWants) {
   EXPECT_EQ(gltf.attribute("_heat"), (Floats{20, 21.5F, -3, 1e30F}));
   EXPECT_EQ(gltf.attribute("_label"), (Floats{0, 1, 2, 70000}));
   const Floats colour = gltf.attribute("COLOR_0");
-  // The sRGB values n / 5, converted to linear values.
+  // Linear values of the sRGB values n / 5.
   const float linear[] = {0, 0.0331048F, 0.1328683F, 0.3185468F, 0.6038273F, 1};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(colour[i], linear[i], 1e-6) << i;
 }
@@ -287,7 +289,7 @@ TEST(GltfWriter, KeepsAFeatureWhateverItsName) {
 
 constexpr mesh::Origin kUtm = {500'000, 5'200'000, -0.25};
 
-// The coordinates of the file as doubles.
+// Returns the file's coordinates as doubles, with its origin added.
 std::vector<double> placed(const mesh::LoadedMesh& loaded) {
   std::vector<double> all;
   for (std::size_t i = 0; i < loaded.mesh.positions.size(); ++i)
@@ -385,7 +387,7 @@ TEST(WriteMesh, RefusesAnEmptyMeshAndAnUnknownEnding) {
   EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
 }
 
-// A mesh without texture coordinates is written without its image. If the image file cannot be
+// If a mesh has no texture coordinates, its image is not written. If the image file cannot be
 // written, writeMesh() fails.
 TEST(WriteMesh, HasAPictureOnlyWhereItLiesSomewhere) {
   const TempDir dir;

@@ -1,5 +1,4 @@
-// MPCDI files: what is written can be read back, files of other programs are read, and damage is
-// reported.
+// MPCDI files: MERLIN reads what it has written and files of other programs, and reports damage.
 #include "render/correct/io/mpcdi.h"
 
 #include <algorithm>
@@ -68,7 +67,7 @@ std::vector<std::uint8_t> shown(const correct::CorrectionSettings& s,
   return {signal.pixels.begin(), signal.pixels.end()};
 }
 
-// Settings that take their correction from a file written with the settings `s`.
+// Returns settings that take their correction from a file, which was written with the settings `s`.
 correct::CorrectionSettings using_file(const correct::CorrectionSettings& s) {
   correct::CorrectionSettings with;
   with.mpcdi = "wall.mpcdi";
@@ -79,13 +78,14 @@ correct::CorrectionSettings using_file(const correct::CorrectionSettings& s) {
 // --- out, in, out
 // ----------------------------------------------------------------------------------
 
-// Largest distance [px] by which a point of the warp has moved after it was written, read and
-// written again; infinite if a point that was shown no longer is, or the other way round.
+// Result of writing, reading and writing a correction again: the largest distance [px] by which a
+// point of the warp has moved; infinite if a point that was shown no longer is, or the other way
+// round.
 struct RoundTrip {
   double most_px = 0;
   std::size_t points = 0;
 };
-// Whether a pixel shows more than a trace of the picture.
+// Returns whether a pixel shows more than a trace of the picture.
 bool shows(const correct::Place& p, int width, int height) {
   const auto within = [](float share, int size) {
     const double at = static_cast<double>(share) * size;
@@ -147,8 +147,8 @@ TEST(Mpcdi, AFileShowsWhatItsSettingsShow) {
 }
 
 // As in the OpenSpace issue 399, a measured correction still needs an adjustment by hand, here of
-// the corners. Other readers would repeat the edge of the picture outside of it, and raise the
-// black there.
+// the corners. Outside the picture, other readers would repeat the picture's edge and raise the
+// black level.
 TEST(Mpcdi, PixelsOutsideThePictureShowNothing) {
   correct::CorrectionSettings s;
   s.corners = {20, 10, 0, 0, 0, 0, 0, 0};
@@ -208,7 +208,7 @@ std::string pfm(int columns, int rows, const std::vector<std::array<float, 3>>& 
   return correct::pfmBytes({columns, rows, cells});
 }
 
-// A warp of 2 x 2 cells that maps each point to itself.
+// Returns a warp of 2 x 2 cells that maps each point to itself.
 std::string identity() {
   return pfm(
       2, 2,
@@ -262,7 +262,7 @@ correct::MeasuredCorrection measuredOf(const Parts& parts) {
   return measured ? *measured : correct::MeasuredCorrection{};
 }
 
-// The grid covers the image: the centres of its cells are half a cell inside, and the outermost
+// The grid covers the image: the centres of its cells lie half a cell inside, and the outermost
 // cells are extrapolated to the border ([MPCDI] 3.6).
 TEST(Mpcdi, ACoarseGridReachesTheBorder) {
   Parts version1;
@@ -354,7 +354,7 @@ TEST(Mpcdi, ABetaMapMayHaveOneColour) {
 // --- hostile
 // ---------------------------------------------------------------------------------------
 
-// The message about a file; empty if the file can be used.
+// Returns the message about a file; empty if the file can be used.
 std::string faultOf(const std::string& bytes) {
   const auto opened = correct::Mpcdi::open(bytesOf(bytes));
   if (!opened) return opened.error().what;
@@ -398,7 +398,7 @@ TEST(Mpcdi, EveryDamagedByteIsSaidOrHarmless) {
   }
 }
 
-// Damage that checksums do not detect.
+// The damage is such that checksums do not detect it.
 TEST(Mpcdi, EveryDamagedByteOfAPartIsSaidOrHarmless) {
   const Parts whole;
   for (std::string Parts::*part : {&Parts::warp, &Parts::alpha}) {
@@ -440,7 +440,8 @@ TEST(Mpcdi, ABrokenWarpIsSaid) {
         << head;
 }
 
-// Such a warp shows one point of the picture everywhere: the tool has not filled it.
+// A warp without an area shows one point of the picture everywhere; the tool that wrote it never
+// filled it.
 TEST(Mpcdi, AWarpWithoutAnAreaIsSaidWithItsRegion) {
   const auto warp = [&](const std::vector<std::array<float, 3>>& cells) {
     return faultWith([&](Parts& p) { p.warp = pfm(2, 2, cells); });
@@ -527,7 +528,7 @@ TEST(Mpcdi, ABrokenDescriptionIsSaid) {
             "mpcdi.xml: region \"r\" has no fileset with a geometryWarpFile");
 }
 
-// The gamma of a region's colours: a missing value is not the same as a wrong one.
+// In the gamma of a region's colours, a missing value is not the same as a wrong one.
 TEST(Mpcdi, ABrokenDecodeGammaIsSaid) {
   const auto with = [](const std::string& colour) {
     Parts parts;

@@ -1,4 +1,4 @@
-// .mrm files that are truncated, damaged, of a later version, or malicious are refused; the message
+// .mrm files that are truncated, damaged, of a later version, or malicious are refused. The message
 // names the file and the section.
 #include <functional>
 #include <vector>
@@ -21,7 +21,8 @@ class MrmDamage : public testing::Test {
     test::writeText(path_, bytes);
     return lod::readMrm(path_);
   }
-  // The error message for these bytes without the file's name, with which it must begin.
+  // Returns the error message for these bytes, without the file's name, with which the message must
+  // begin.
   std::string faultOf(const std::string& bytes, Errc code = Errc::kMalformed) const {
     const auto result = read(bytes);
     if (result) return "none";
@@ -30,8 +31,8 @@ class MrmDamage : public testing::Test {
     EXPECT_TRUE(what.starts_with(path_ + ": ")) << what;
     return what.substr(std::min(what.size(), path_.size() + 2));
   }
-  // The error message after `change` was made to one entry of the table and the checksums
-  // corrected.
+  // Returns the error message after `change` was made to one entry of the table and the checksums
+  // were corrected.
   std::string faultWith(Kind kind, const std::function<void(MrmBytes::Entry&)>& change,
                         Errc code = Errc::kMalformed) const {
     MrmBytes file = golden_;
@@ -74,7 +75,7 @@ TEST_F(MrmDamage, EveryPrefixIsRefused) {
   EXPECT_NE(faultOf(golden_.bytes + '\0'), "none");
 }
 
-// Inverts each single bit and each whole byte of the file.
+// Inverts each single bit and each whole byte of the file in turn.
 TEST_F(MrmDamage, EveryDamagedByteIsFoundUnlessItBelongsToNothing) {
   test::writeText(path_, golden_.bytes);
   const int file = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
@@ -121,7 +122,7 @@ TEST_F(MrmDamage, AnotherKindOfFileIsToldFromADamagedOne) {
   EXPECT_EQ(faultOf(ply), "is not an .mrm file (make one with: merlin mesh reduce IN -o OUT.mrm)");
 }
 
-// The version is checked first, since a later version may have a different header.
+// The version is checked first, since a later version may have another header.
 TEST_F(MrmDamage, AnotherVersionIsNotSupported) {
   for (const unsigned version : {0U, 2U, 0xFFFFFFFFU}) {
     const std::string fault = "is version " + std::to_string(version) +
@@ -168,7 +169,7 @@ TEST_F(MrmDamage, AFeaturesNameIsText) {
   };
   for (const char* name : {"he\x1b[31mat", "he\xff", "\xc2\x9bheat"})
     EXPECT_EQ(faultOf(named(name)), "a feature's name is not valid UTF-8");
-  // An earlier program cut names in the middle of a UTF-8 character.
+  // An earlier version of MERLIN cut names in the middle of a UTF-8 character.
   const auto cut = read(named(std::string(30, 'x') + '\xc2'));
   ASSERT_TRUE(cut) << cut.error().what;
   EXPECT_EQ(cut->arrays().features[0].name, std::string(30, 'x'));
@@ -189,7 +190,7 @@ TEST_F(MrmDamage, ATextureIsCheckedAsAllElseIs) {
   EXPECT_EQ(faultOf(file.bytes), "section texture is damaged");
 }
 
-// Only later readers know the size of a value of an unknown kind; here it is 1 or 8 bytes.
+// Only later readers know the size of a value of an unknown kind, which here is 1 or 8 bytes.
 TEST_F(MrmDamage, AnUnknownSectionMayHoldValuesOfAnySize) {
   for (const std::uint32_t dimension : {168U, 21U}) {
     MrmBytes file = golden_;
@@ -266,7 +267,8 @@ TEST_F(MrmDamage, AHeaderThatLiesIsRefused) {
   }
 }
 
-// The checksums are valid, but a cut would fail: Dendrogram::make() has to refuse the arrays.
+// The checksums are valid, but a cut with these arrays would fail, so Dendrogram::make() has to
+// refuse them.
 TEST_F(MrmDamage, SoundBytesWithoutSenseAreRefused) {
   const auto faultOfPut = [&](Kind kind, std::size_t index, auto value) {
     MrmBytes file = golden_;

@@ -1,4 +1,4 @@
-// .mrm files can be read back, also old ones, and by a program in another language.
+// .mrm files, also old ones, can be read back by MERLIN and by a program in another language.
 #include "render/lod/io/mrm_file.h"
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace {
 using test::MrmBytes;
 using test::readText;
 
-// Writes the model, reads it, and writes it again; both files have to be equal. Returns their
+// Writes the model, reads it, and writes it again; expects that both files are equal. Returns their
 // bytes.
 std::string expectRoundTrip(const lod::Dendrogram& d) {
   const test::TempDir dir;
@@ -36,7 +36,7 @@ mesh::Mesh sphere() {
   mesh::Mesh mesh = test::sphere(3);
   mesh.features.push_back({"heat", 1, std::vector<float>(mesh.vertexCount(), 0.25F)});
   mesh.features.push_back({"colour", 3, std::vector<float>(mesh.positions.size(), 0.5F)});
-  mesh.texture = {0x89, 'P', 'N', 'G', 7};  // not decoded here
+  mesh.texture = {0x89, 'P', 'N', 'G', 7};  // the texture is not decoded here
   mesh::ensureNormals(mesh);
   return mesh;
 }
@@ -216,7 +216,7 @@ TEST(MrmFile, IsNotFoundWhereThereIsNone) {
   EXPECT_FALSE(lod::readMrm(dir.path()));  // a folder
 }
 
-// A model that is shown for months must not change, or crash the program, when its file does.
+// A model that is shown for months must not change, nor crash the program, if its file changes.
 TEST(MrmFile, ACopyStaysAsItIsWhateverBecomesOfTheFile) {
   const test::TempDir dir;
   const lod::Dendrogram model = reducedSphere();

@@ -1,5 +1,5 @@
 // Shared by the tests of .mrm: a model whose numbers are all given here, and access to a file's
-// bytes, to damage them and to correct the checksums.
+// bytes, so that a test can damage them and correct the checksums.
 #pragma once
 
 #include <cmath>
@@ -24,8 +24,8 @@ using render::lod::Dendrogram;
 inline const std::string kGoldenCube =
     std::string(MERLIN_SOURCE_DIR) + "/tests/data/golden/cube.mrm";
 
-// The cube with normals along its diagonals, collapsed along x, then y. Written by hand, so that
-// only buildDendrogram() and writeMrm() affect the golden file.
+// Returns the cube with normals along its diagonals, collapsed along x, then y. The collapse log is
+// written by hand, so that only buildDendrogram() and writeMrm() affect the golden file.
 inline Dendrogram goldenCube() {
   Mesh mesh = cube();
   render::mesh::Feature normal{"normal", 3, mesh.positions};
@@ -57,7 +57,7 @@ class MrmBytes {
   Entry entry(std::size_t i) const { return at<Entry>(entryAt(i)); }
   void set(std::size_t i, const Entry& entry) { put(entryAt(i), entry); }
 
-  // Index in the table of the first section of `kind`.
+  // Returns the index in the table of the first section of `kind`.
   std::size_t find(render::lod::mrm::Kind kind) const {
     for (std::size_t i = 0; i < header().sections; ++i) {
       if (entry(i).kind == static_cast<std::uint32_t>(kind)) return i;
@@ -75,7 +75,7 @@ class MrmBytes {
     put(entry(find(kind)).offset + index * sizeof value, value);
   }
 
-  // Recomputes all checksums; of sections, only where they lie within the file.
+  // Recomputes all checksums; those of sections only where the section lies within the file.
   MrmBytes& seal() {
     for (std::size_t i = 0; i < header().sections && entryAt(i + 1) <= bytes.size(); ++i) {
       Entry e = entry(i);
@@ -95,7 +95,7 @@ class MrmBytes {
     return *this;
   }
 
-  // Whether the byte is padding that aligns a section.
+  // Returns whether the byte is padding that aligns a section.
   bool isPadding(std::size_t at) const {
     if (at < entryAt(header().sections)) return false;
     for (std::size_t i = 0; i < header().sections; ++i) {

@@ -1,4 +1,4 @@
-// What the Open Inventor file of all resolutions holds, without Coin.
+// What the Open Inventor file of all resolutions contains, tested without Coin.
 #include "render/inventor/multiresolution_writer.h"
 
 #include <filesystem>
@@ -18,7 +18,8 @@ using test::readText;
 using test::TempDir;
 using Names = std::vector<std::string>;
 
-// A square with all fields of the node, and a feature that has none.
+// Returns a square with values for all fields of the node, and with a feature for which the node
+// has no field.
 mesh::Mesh richSquare() {
   mesh::Mesh mesh = test::grid(1, 1);
   mesh::ensureNormals(mesh);

@@ -28,7 +28,7 @@ scene::Poses pushed(const scene::Navigator& navigator, const Vector3f& way_m,
   return poses;
 }
 
-// A point of the content in eye coordinates.
+// Returns a point of the content in eye coordinates.
 Vector3f seen(const scene::Poses& poses, const Vector3f& point) {
   return poses.T_wall_eye.inverse() * poses.T_wall_content * point;
 }
@@ -63,7 +63,7 @@ TEST(PlaneNavigator, StaysInFrontOfTheViewerAndInSight) {
   }
 }
 
-// A picture of 100 gigapixels is reached to its pixels.
+// The viewer can come near enough to see single pixels of a picture of 100 gigapixels.
 TEST(PlaneNavigator, GoesAsNearAsItsContentSays) {
   const scene::PlaneNavigator navigator(kSettings, 0.001F);
   EXPECT_FLOAT_EQ(pushed(navigator, {0, 0, 1e4F}).T_wall_content.translation().z(), -0.002F);

@@ -15,7 +15,7 @@ namespace {
 using Indices = std::vector<std::uint32_t>;
 using Floats = std::vector<float>;
 
-// A mesh with its vertices on a helix: no three are collinear, no two coincide.
+// Returns a mesh with its vertices on a helix, so that no three are collinear and no two coincide.
 mesh::Mesh meshOf(std::uint32_t vertices, Indices triangles) {
   mesh::Mesh mesh;
   for (std::uint32_t v = 0; v < vertices; ++v) {
@@ -31,8 +31,8 @@ std::string textOf(const mesh::SplitReport& r) {
          std::to_string(r.added) + " added";
 }
 
-// Checks the definition directly: an edge has at most two triangles, in opposite directions, and
-// the triangles around a vertex are connected over edges at that vertex.
+// Checks the definition of a manifold directly: an edge has at most two triangles, in opposite
+// directions, and the triangles around a vertex are connected over edges at that vertex.
 bool isManifold(const mesh::Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> ways;
   std::vector<std::vector<std::size_t>> stars(mesh.vertexCount());
@@ -85,7 +85,7 @@ TEST(SplitNonManifold, TakesABowTieApart) {
             (Floats{8, 9}));
 }
 
-// Two triangles share the edge 0 1, and a third one (a fin) stands on it.
+// Two triangles share the edge 0 1, and a third one (a fin) stands on that edge.
 TEST(SplitNonManifold, TakesAFinFromASheet) {
   for (const bool fin_first : {false, true}) {
     mesh::Mesh mesh;
@@ -117,7 +117,7 @@ TEST(SplitNonManifold, KeepsAFloorWholeUnderAWall) {
                          before.triangles.begin()));
 }
 
-// A Moebius strip of 5 quads, which no choice of orientations makes consistent.
+// A Moebius strip of 5 quads has no consistent orientation.
 TEST(SplitNonManifold, CutsAMoebiusStripOnce) {
   mesh::Mesh mesh;
   for (std::uint32_t i = 0; i < 5; ++i) {
@@ -218,7 +218,7 @@ TEST(Tidy, KeepsTheFirstOfEachOfManyDuplicates) {
       if (corners.size() == 3 && seen.insert(corners).second)
         expected.insert(expected.end(), v, v + 3);
     }
-    // These triangles make all vertices used.
+    // Adds triangles so that each vertex is used.
     mesh.triangles.insert(mesh.triangles.end(), {0, 1, 2, 3, 4, 5});
     for (const std::set<std::uint32_t>& last : {std::set{0U, 1U, 2U}, std::set{3U, 4U, 5U}}) {
       if (seen.insert(last).second) expected.insert(expected.end(), last.begin(), last.end());

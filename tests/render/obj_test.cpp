@@ -22,7 +22,7 @@ class ObjFile : public testing::Test {
     test::writeText(path_, text);
     return mesh::readMesh(path_);
   }
-  // Reads a file with the four corners of a square, followed by `faces`.
+  // Reads a file that has the four corners of a square, followed by `faces`.
   Result<mesh::LoadedMesh> readFaces(const std::string& faces) {
     return read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + faces);
   }
@@ -30,7 +30,7 @@ class ObjFile : public testing::Test {
     const auto loaded = readFaces(faces);
     return loaded ? loaded->mesh.triangles : Indices{};
   }
-  // The error message for `text`, without the file's name.
+  // Returns the error message for `text`, without the file's name.
   std::string faultOf(const std::string& text) {
     const auto loaded = read(text);
     return loaded ? "none" : loaded.error().what.substr(path_.size() + 2);
@@ -50,7 +50,7 @@ TEST_F(ObjFile, HasTrianglesAndFansOfLargerFaces) {
   EXPECT_EQ(trianglesOf("f 1 2 4 3\n"), square);
 }
 
-// An arrow's head: the fan around its first corner would lie outside of it.
+// The face is an arrow's head: the fan around its first corner would lie partly outside of it.
 TEST_F(ObjFile, AFaceThatIsNotConvexIsCutWithinItself) {
   const std::string arrow = "v 0 0 0\nv 2 2 0\nv 0 1 0\nv -2 2 0\n";
   const auto at = read(arrow + "f 2 3 4 1\n");
@@ -82,7 +82,7 @@ TEST_F(ObjFile, CountsNegativeIndicesFromTheVerticesSoFar) {
   EXPECT_EQ(trianglesOf("f -4 -3 -1\nv 5 5 5\nf -4 -5 -1\n"), (Indices{0, 1, 2, 1, 0, 3}));
 }
 
-// Two squares side by side, which share an edge, and one behind them that touches no other.
+// Two squares side by side share an edge; a triangle behind them touches neither.
 TEST_F(ObjFile, ObjectsAndGroupsBecomeLabels) {
   const std::string vertices =
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 0 0 9\nv 1 0 9\nv 0 1 9\n";
@@ -99,8 +99,8 @@ TEST_F(ObjFile, ObjectsAndGroupsBecomeLabels) {
   EXPECT_EQ(one->mesh.find("label"), nullptr) << "one needs no number";
 }
 
-// No corner belongs to the middle triangle alone: each is shared with a neighbour whose label is
-// lower.
+// No corner belongs to the middle triangle alone: each corner is shared with a neighbour whose
+// label is lower.
 TEST_F(ObjFile, ATriangleOfEachPartKeepsACornerWithItsLabel) {
   const auto loaded = read(
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 -1 0\nv 1 1 0\nv -1 0 0\n"
@@ -215,7 +215,7 @@ TEST_F(ObjFile, WithoutFacesOrOfSomethingElseIsNoMesh) {
   EXPECT_EQ(faultOf(std::string(1000, '\0')), "byte 0 is 0: an OBJ file is text");
 }
 
-// A file with one wrong byte or an early end gives a valid mesh or an error.
+// A file with one wrong byte, or one that ends early, gives a valid mesh or an error.
 TEST_F(ObjFile, SurvivesDamage) {
   const std::string text =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 -1\nf 1 2 3\n";
@@ -246,7 +246,7 @@ std::string objOf(const mesh::Mesh& mesh) {
   return text;
 }
 
-// OpenMesh's half-edge mesh as an oracle; on a manifold mesh it is lossless.
+// OpenMesh's half-edge mesh is the oracle; on a manifold mesh it loses nothing.
 TEST_F(ObjFile, AgreesWithAHalfEdgeMesh) {
   const auto loaded = read(objOf(test::sphere(2)));
   ASSERT_TRUE(loaded) << loaded.error().what;

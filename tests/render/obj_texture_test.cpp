@@ -1,4 +1,5 @@
-// OBJ files with texture coordinates, materials and images, which libpng and TurboJPEG write here.
+// OBJ files with texture coordinates, materials and images. The tests write the images with libpng
+// and TurboJPEG.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ using Indices = std::vector<std::uint32_t>;
 using Names = std::vector<std::string>;
 using Colour = std::array<float, 3>;
 
-// 2 x 2 pixels: red and green above blue and white.
+// An image of 2 x 2 pixels: red and green above blue and white.
 const std::vector<std::uint8_t> kFour = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
 
 void writePngFile(const std::string& path, int width, int height,
@@ -53,7 +54,7 @@ std::string jpegOf(int width, int height, const std::vector<std::uint8_t>& rgb) 
 
 // A square of two triangles: 0 1 3 and 0 3 2.
 constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
-// The centres of the four pixels, from the lower left.
+// Texture coordinates of the centres of the four pixels, from the lower left.
 constexpr const char* kMiddles = "vt 0.25 0.25\nvt 0.75 0.25\nvt 0.25 0.75\nvt 0.75 0.75\n";
 
 class TexturedObj : public testing::Test {
@@ -64,7 +65,7 @@ class TexturedObj : public testing::Test {
     EXPECT_TRUE(loaded) << loaded.error().what;
     return loaded ? *std::move(loaded) : mesh::LoadedMesh{};
   }
-  // The notes of the reader, without the folder's path.
+  // Returns the reader's notes, without the folder's path.
   Names notesOf(const mesh::LoadedMesh& loaded) const {
     Names notes;
     for (const std::string& note : loaded.notes) {
@@ -102,7 +103,7 @@ TEST_F(TexturedObj, KeepsItsOwnColoursBesideThePicture) {
   EXPECT_FALSE(loaded.mesh.texture.empty());
 }
 
-// Two columns of squares; the seam runs from the middle of the lower border to the centre vertex,
+// Two columns of squares; the seam leads from the middle of the lower border to the centre vertex,
 // where it ends.
 TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
   const auto loaded = read("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 1 2 0\n" +
@@ -117,7 +118,7 @@ TEST_F(TexturedObj, CutsVerticesAtASeamAndNowhereElse) {
   EXPECT_EQ(loaded.tidied.unused + loaded.split.added, 0u);
 }
 
-// The seam runs from border to border: at its ends, triangles that share only a corner are
+// The seam leads from border to border: at its ends, triangles that share only a corner are
 // separated.
 TEST_F(TexturedObj, CutsTheEndsOfASeamThatLeaveOneFanNoMore) {
   const auto loaded = read(std::string(kSquare) + kMiddles + "f 1/1 2/2 4/4\nf 1/1 4/3 3/3\n");
@@ -168,7 +169,7 @@ TEST_F(TexturedObj, HasThePictureThatIsEverywhereForATexture) {
   expectAtlas("newmtl a\nmap_Kd -clamp on four.png\n", "usemtl a\nf 1/1 2/2 4/4\n");
 }
 
-// Each output file is in a folder of its own, so that no reader finds another one's image.
+// Each output file is in a folder of its own, so that no reader finds another file's image.
 TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
   writePngFile(dir_ / "four.png", 2, 2, kFour);
   test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd four.png\n");
@@ -203,7 +204,7 @@ TEST_F(TexturedObj, GoesWithItsPictureIntoOtherFiles) {
   }
 }
 
-// A PLY triangle with texture coordinates, and `comments` in its header.
+// Returns a PLY triangle with texture coordinates, and `comments` in its header.
 std::string texturedPly(const std::string& comments) {
   return "ply\nformat ascii 1.0\n" + comments +
          "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
@@ -250,8 +251,8 @@ TEST_F(TexturedObj, MayBeAPlyThatNamesItsPicture) {
   EXPECT_TRUE(readPly("comment texture four pixels.png\n").mesh.texture.empty());
 }
 
-// Two squares of two faces each, in the form that MeshLab writes: each corner of a face has its own
-// texture coordinates.
+// Two squares of two faces each, as MeshLab writes them: each corner of a face has its own texture
+// coordinates.
 TEST_F(TexturedObj, MayBeAPlyWhoseFacesHaveSeveralPictures) {
   writePngFile(dir_ / "a.png", 1, 1, {255, 0, 0});
   writePngFile(dir_ / "b.png", 1, 1, {0, 0, 255});
@@ -292,8 +293,8 @@ TEST_F(TexturedObj, MayBeAPlyWhoseFacesHaveSeveralPictures) {
   EXPECT_TRUE(none.mesh.texture.empty()) << "no corner has coordinates";
 }
 
-// Image and material files are written without being named by the user, so they must not replace
-// others.
+// Users do not name the image and material files that are written, so these must not replace other
+// files.
 TEST_F(TexturedObj, WritesOverNothingBesideItsFile) {
   writePngFile(dir_ / "four.png", 2, 2, kFour);
   test::writeText(dir_ / "a.mtl", "newmtl a\nmap_Kd four.png\n");
@@ -314,7 +315,7 @@ TEST_F(TexturedObj, WritesOverNothingBesideItsFile) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "d.obj.png")) << "goes when the mesh cannot be";
 }
 
-// One vertex whose faces use 100 different texture coordinates.
+// The faces at one vertex use 100 different texture coordinates.
 TEST_F(TexturedObj, HasAnyNumberOfCoordinatesAtOneVertex) {
   std::string text = kSquare, faces;
   for (int i = 1; i <= 100; ++i) {

@@ -14,7 +14,8 @@
 namespace merlin::render {
 namespace {
 
-// Under a sanitizer each case takes twenty times as long, and OpenMesh itself is not instrumented.
+// With a sanitizer each case takes twenty times as long, while OpenMesh itself is not instrumented,
+// so only every third case is run.
 #ifdef MERLIN_ANY_SANITIZER
 constexpr std::size_t kDamagedEvery = 3;
 #else
@@ -37,7 +38,7 @@ class OpenMeshReader : public testing::Test {
     const auto read_mesh = read(name, content);
     return read_mesh ? "" : read_mesh.error().what.substr((dir_ / name).size());
   }
-  // The tetrahedron in another format, as OpenMesh writes it.
+  // Returns the tetrahedron in another format, as OpenMesh writes it.
   std::string tetrahedronAs(const std::string& ending, OpenMesh::IO::Options options = {}) {
     std::string plain = kTetrahedron;
     plain.erase(4, 12);  // removes the comment, which OpenMesh itself does not read
@@ -143,7 +144,7 @@ TEST_F(OpenMeshReader, TheBrightestColourOfAnOffFileTellsWhetherAllAreFractions)
   EXPECT_EQ(colours("0.0 0 0", "51 255 0"), (Floats{0, 0, 0, 0.2F, 1, 0}));
 }
 
-// The colours of the triangles' corners, a line for each triangle.
+// Returns the colours of the triangles' corners, one list for each triangle.
 std::vector<std::vector<float>> coloursAtCorners(const mesh::Mesh& mesh) {
   std::vector<std::vector<float>> all(mesh.triangleCount());
   const mesh::Feature* const colour = mesh.find("colour");
@@ -292,8 +293,8 @@ TEST_F(OpenMeshReader, TellsTheSizeBeforeItReads) {
   EXPECT_FALSE(mesh::meshFileSize(dir_ / "lie.off"));
 }
 
-// Truncated or damaged files give a mesh or one error, and a mesh no larger than the file's bytes
-// allow.
+// Truncated or damaged files give either one error, or a mesh that is no larger than the file's
+// bytes allow.
 TEST_F(OpenMeshReader, EveryPrefixAndEveryDamagedByteEndsWell) {
   using OpenMesh::IO::Options;
   const std::pair<std::string, std::string> files[] = {

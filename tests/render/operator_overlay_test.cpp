@@ -1,5 +1,5 @@
-// The plates over the operator's tile: their places, their content, and that they leave no pixels
-// behind.
+// The plates over the operator's tile: their places, their content, and that no pixels of them
+// remain after they are erased.
 #include "render/text/operator_overlay.h"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ tiles::TilePlan planOf(int width, int height) {
   return *tiles::planTiles(settings);
 }
 
-// A frame of noise, and an overlay on it.
+// A frame of noise, and an overlay that draws on it.
 struct Wall {
   explicit Wall(int width = 640, int height = 480)
       : plan(planOf(width, height)),
@@ -62,7 +62,7 @@ struct Wall {
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(4 * (y * plan.frame_width + x));
   }
-  // Number of pixels of a tile in the canvas that differ from the picture.
+  // Returns the number of pixels of a tile in the canvas that differ from the picture.
   int changedIn(std::size_t tile) const {
     const tiles::Tile& t = plan.tiles[tile];
     int changed = 0;
@@ -109,7 +109,7 @@ TEST(OperatorOverlay, EraseRestoresEachByte) {
   }
 }
 
-// 320 x 240 is the smallest tile with plates; there the two overlap.
+// The smallest tile with plates has 320 x 240 pixels; there the two plates overlap.
 TEST(OperatorOverlay, EraseRestoresWhereThePlatesOverlap) {
   Wall wall(320, 240);
   for (int i = 0; i < 4; ++i)
@@ -155,8 +155,8 @@ TEST(OperatorOverlay, AWallThatStandsIsPresentedAnewOnlyIfTheFactsDiffer) {
   EXPECT_TRUE(wall.overlay->hasChanged());
 }
 
-// The last frame before a standstill may follow the one before so soon that the facts are not read
-// for it: for example the first frame of another content.
+// The last frame before a standstill, for example the first frame of another content, may follow
+// the frame before so soon that the facts are not read for it.
 TEST(OperatorOverlay, WhatTheLastFrameDidNotReadIsLookedAtSoonAfterIt) {
   Wall wall;
   wall.overlay->draw(wall.canvas);
@@ -215,7 +215,8 @@ TEST(OperatorOverlay, AnyTextStaysOnItsPlate) {
   EXPECT_EQ(wall.canvas, wall.before);
 }
 
-// Number of red pixels of the plates. With these facts, only the bars of late frames are red.
+// Returns the number of red pixels of the plates. With these facts, only the bars of late frames
+// are red.
 int redPixels(const OperatorFacts& facts) {
   const int sizes[] = {13, 20};
   const GlyphAtlas atlas = *GlyphAtlas::make(fontFile(), sizes);
@@ -229,7 +230,7 @@ int redPixels(const OperatorFacts& facts) {
 
 TEST(OperatorPlate, ALateFrameIsRedInTheChart) {
   OperatorFacts facts = someFacts();
-  facts.devices.pop_back();  // its dot is red
+  facts.devices.pop_back();  // removes the device whose dot is red
   for (ChartColumn& column : facts.chart) column = {60, false};
   EXPECT_EQ(redPixels(facts), 0);
   facts.chart[100] = {140, true};

@@ -1,4 +1,5 @@
-// Outputs: the shared frame as another process reads it, and PNG files as libpng reads them.
+// Outputs: the frame in shared memory as another process reads it, and PNG files as libpng reads
+// them.
 #include <atomic>
 #include <csignal>
 #include <cstring>
@@ -45,12 +46,13 @@ tiles::TilePlan smallPlan() {
 constexpr std::size_t kFrameBytes = 4 * 128 * 96;
 const SystemClock kClock;
 
-// Presents a frame of the size of smallPlan().
+// Presents a frame that has the size of smallPlan().
 void present(out::Output& output, const Pixels& pixels, const out::FrameInfo& info) {
   EXPECT_TRUE(output.present({128, 96, pixels}, info));
 }
 
-// In frame n every byte is n, except the first one of each row, which is the row's number.
+// Returns frame n, in which every byte is n, except for the first byte of each row, which is the
+// row's number.
 Pixels frameOf(std::uint64_t n) {
   Pixels pixels(kFrameBytes, static_cast<std::uint8_t>(n));
   for (std::size_t y = 0; y < 96; ++y) pixels[y * 4 * 128] = static_cast<std::uint8_t>(y);
@@ -108,7 +110,7 @@ TEST(Framebuffer, ReadsBackWhatOthersRead) {
   EXPECT_EQ(read->at(0).found.digest, out::digestOf({128, 96, pixels, 512}));
 }
 
-// For example that of a second daemon with the name of the first one.
+// The other generation may be that of a second daemon with the same name.
 TEST(Framebuffer, AnotherGenerationUnderItsNameIsForeign) {
   const auto sink = out::SharedFrameOutput::make(name("mine"), smallPlan(), 7, kClock);
   ASSERT_TRUE(sink) << sink.error().what;
@@ -206,7 +208,8 @@ TEST(Framebuffer, IsGoneWithItsWriterAndThereCanBeOnlyOne) {
   EXPECT_EQ(out::captureFrame(name("one")).error().code, Errc::kNotFound);
 }
 
-// A framebuffer as a malicious program might leave it: a valid header, changed by `damage`.
+// Reads a framebuffer as a malicious program might leave it, a valid header changed by `damage`;
+// returns the error.
 template <typename Damage>
 Error captureDamaged(Damage damage) {
   const std::string at = name("bad");
@@ -247,7 +250,7 @@ TEST(Framebuffer, DescribesItself) {
       << out.output;
 }
 
-// Another program of the same user overwrites the segment.
+// Another program of the same user has overwritten the segment.
 TEST(Framebuffer, RubbishOverTheHeaderDoesNotLeadTheWriterAstray) {
   const auto sink = out::SharedFrameOutput::make(name("rubbish"), smallPlan(), 1, kClock);
   ASSERT_TRUE(sink);
@@ -317,7 +320,7 @@ TEST(Png, NamesTheFileThatCannotBeWritten) {
   EXPECT_NE(written.error().what.find("/nowhere/at/all.png"), std::string::npos);
 }
 
-// Simulates a full disk by a limit of 2 kB on the size of a file.
+// A limit of 2 kB on the size of a file simulates a full disk.
 TEST(Png, FullDiskLeavesNothingHalfWritten) {
   const test::TempDir folder;
   ASSERT_NE(::signal(SIGXFSZ, SIG_IGN), SIG_ERR);
@@ -357,7 +360,7 @@ TEST(PngOutput, WritesNoMoreOftenThanAsked) {
   EXPECT_TRUE(test::eventually([&] { return present(output, 4, seconds += 60) && red() == 4; }));
 }
 
-// Without this, the file would keep a frame of the motion if the motion ended within the interval.
+// Otherwise, if a motion ended within the interval, the file would keep a frame of the motion.
 TEST(PngOutput, WantsAFrameOnceItMayTakeOneIfItLeftOutTheLast) {
   const test::TempDir folder;
   ThreadWatch watch;

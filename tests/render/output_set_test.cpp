@@ -1,4 +1,4 @@
-// A wall's outputs together with the stages before them; single outputs are fakes.
+// A wall's outputs, which are fakes here, together with the stages before them.
 #include "render/out/output_set.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Shows each frame `delay` after it was finished; or fails; or leaves the frame out.
+// An output that shows each frame `delay` after the frame was finished, or fails, or leaves the
+// frame out.
 struct FakeOutput final : out::Output {
   Result<std::optional<Timestamp>> present(const out::Signal& signal,
                                            const out::FrameInfo& info) override {
@@ -136,7 +137,7 @@ TEST_F(OutputSetTest, OneThatCannotBeMendedDoesNotKeepTheOthersFromBeingMended) 
   EXPECT_EQ(set_->mend().error().what, "gone; gone as well");
 }
 
-// Writes its number into the first byte of the canvas.
+// An overlay that writes its number into the first byte of the canvas.
 struct FakeOverlay final : frame::Overlay {
   explicit FakeOverlay(std::uint8_t number) : number_(number) {}
   bool hasChanged() const override { return changed; }
@@ -209,7 +210,7 @@ TEST_F(OutputSetTest, TheFirstDisplayThatTellsItsBlanksLeads) {
 }
 
 struct Delivered : OutputSetTest {
-  // Makes the delivery; `correction` is that of the first output.
+  // Makes the delivery; `correction` belongs to the first output.
   void deliverWith(std::unique_ptr<frame::Correction> correction,
                    frame::SignalWatcher* watcher = nullptr) {
     std::vector<std::unique_ptr<frame::Correction>> corrections;
@@ -242,7 +243,7 @@ TEST_F(Delivered, AnotherCorrectionTakesItsPlaceFromTheNextFrameOn) {
   EXPECT_EQ(shown(), meant_);
 }
 
-// Draws into the output's places, unless it cannot.
+// A correction that draws into the memory that the output names, if `can_draw` is true.
 struct Drawn final : frame::Correction {
   explicit Drawn(bool can) : can_draw(can) {}
   out::Signal apply(const out::Signal& canvas) override {
@@ -284,7 +285,7 @@ TEST_F(Delivered, ACorrectionThatCanDrawDrawsWhereTheOutputShowsIt) {
   EXPECT_TRUE(fakes_[0]->was_drawn);
   EXPECT_EQ(correction.applied, 1);
 
-  watcher.asked = true;  // for merlin snapshot --output: in memory, all of it
+  watcher.asked = true;  // merlin snapshot --output needs the whole signal in memory
   shown();
   EXPECT_EQ(watcher.seen, 1);
   EXPECT_FALSE(watcher.seen_drawn || fakes_[0]->was_drawn);
@@ -318,7 +319,7 @@ TEST_F(OutputSetTest, TheFirstReasonWhySignalsAreCopiedIsTold) {
   EXPECT_EQ(set_->copyReason(), "a");
 }
 
-// Another thread's wish for a signal may end while the signal is made.
+// A watcher in another thread may stop wanting a signal while the signal is made.
 struct WatcherThatIsAskedOnce final : frame::SignalWatcher {
   bool wants(std::size_t i) const override { return i == 0 && times_asked++ == 0; }
   void see(std::size_t, const out::Signal& signal, const out::FrameInfo&) override {
@@ -351,7 +352,7 @@ TEST_F(Delivered, NothingIsBegunForACorrectionThatCannotDrawOrAFrameThatIsLeftOu
   EXPECT_EQ(fakes_[0]->times_begun, 0);
 }
 
-// Of a chain, the last link makes the signal.
+// In a chain of corrections, the last link makes the signal.
 TEST_F(Delivered, TheLastOfSeveralCorrectionsDraws) {
   auto last = std::make_unique<Drawn>(true);
   auto first = std::make_unique<Inverted>();
@@ -386,7 +387,7 @@ TEST_F(Delivered, AReplacementIsAskedWhetherItCanDrawBeforeAnythingIsBegun) {
   EXPECT_TRUE(fakes_[0]->was_drawn) << "and drawing goes on";
 }
 
-// Counts how many there are, and says where one is destroyed.
+// Counts how many objects exist, and notes where one is destroyed.
 struct Counted final : frame::Correction {
   explicit Counted(int& alive) : alive_(alive) { ++alive_; }
   ~Counted() override { --alive_; }

@@ -15,7 +15,7 @@ Result<Image> overviewOf(const test::PyramidSpec& spec) {
 }
 
 TEST(Overview, IsTheCoarsestLevelThatIsLargeEnough) {
-  // Levels of 3000, 1500, 750, 375, 187 columns.
+  // The levels have 3000, 1500, 750, 375 and 187 columns.
   const auto image = overviewOf({.width = 3000, .height = 200});
   ASSERT_TRUE(image) << image.error().what;
   EXPECT_EQ(image->width, 750);

@@ -1,5 +1,5 @@
-// The operator's panel: what its controls request, where they are, and what pointer and ball do to
-// them.
+// The operator's panel: what its controls request, where they are, and how they react to pointer
+// and ball.
 #include <algorithm>
 #include <set>
 
@@ -381,7 +381,7 @@ TEST_F(PanelInputTest, ABallThatIsNotUsedForHalfAMinuteLeaves) {
   EXPECT_EQ(acts(), Acted{});
 }
 
-// A client sends events without end; the number of requests that wait is limited.
+// A client sends events without end, but the number of waiting requests is limited.
 TEST_F(PanelInputTest, ActsThatNobodyTakesAreBounded) {
   for (int i = 0; i < 1000; ++i) {
     point(C::kBlank, true);

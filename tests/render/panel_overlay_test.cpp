@@ -1,5 +1,5 @@
-// The pixels of the operator's panel: their place, when they are drawn anew, and that none is left
-// behind.
+// The pixels of the operator's panel: their place, when they are drawn anew, and that none remains
+// after the panel is erased.
 #include "render/panel/panel_overlay.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ tiles::TilePlan planOf(int width, int height) {
   return *tiles::planTiles(settings);
 }
 
-// A frame of noise, and the panel on it.
+// A frame of noise, and a panel that is drawn on it.
 struct Wall {
   explicit Wall(int width = 640, int height = 480) : plan(planOf(width, height)) {
     options.contents = {{"scan", true}, {"map", false}};
@@ -45,7 +45,8 @@ struct Wall {
   const std::uint8_t* pixel(const std::vector<std::uint8_t>& of, int x, int y) const {
     return &of[static_cast<std::size_t>(4 * (y * plan.frame_width + x))];
   }
-  // Numbers of pixels inside and outside the panel's place that differ from the picture.
+  // Returns the numbers of pixels inside and outside the panel's place that differ from the
+  // picture.
   std::pair<int, int> changed() const {
     const Rect at = place->inFrame();
     std::pair<int, int> counts;

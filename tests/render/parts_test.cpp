@@ -30,7 +30,7 @@ void addMesh(Mesh& mesh, const Mesh& other, float size, float x) {
   for (const std::uint32_t v : other.triangles) mesh.triangles.push_back(first + v);
 }
 
-// Each triangle with its own three vertices.
+// Returns the mesh with three vertices of its own for each triangle.
 Mesh soupOf(const Mesh& mesh) {
   Mesh soup;
   for (const std::uint32_t v : mesh.triangles) {
@@ -71,7 +71,7 @@ TEST(Parts, TheInnerWallOfAHollowCubeFacesInwardsRightly) {
   addMesh(hollow, insideOut(test::cube()), 0.5F, 0);  // the larger part need not come first
   addMesh(hollow, test::cube(), 1, 0);
   expectFacing(hollow, 2, 0, 0);
-  Mesh touching;  // at x = -1
+  Mesh touching;  // the inner cube touches the outer one at x = -1
   addMesh(touching, insideOut(test::cube()), 0.5F, -0.5F);
   addMesh(touching, test::cube(), 1, 0);
   expectFacing(touching, 2, 0, 0);
@@ -107,7 +107,7 @@ TEST(Parts, TheBackOfABodyWithTwoSidesIsItsInnerWall) {
   expectFacing(both, 2, 0, 0);
 }
 
-// The plate is tilted and has the larger box, but the cube in it has the larger volume.
+// The tilted plate has the larger bounding box, but the cube in it has the larger volume.
 TEST(Parts, OnlyALargerPartHasAnInnerWall) {
   Mesh plate = test::cube();
   for (std::size_t i = 0; i < plate.positions.size(); i += 3)
@@ -145,7 +145,7 @@ TEST(Parts, VerticesAtOnePlaceConnectWhereTheSurfaceEnds) {
   expectFacing(soup, 1, 0, 0);
 }
 
-// As readers leave a mesh: the vertices that the two bodies share exist twice.
+// The vertices that the two bodies share exist twice, as readers make them.
 TEST(Parts, BodiesThatShareAnEdgeAreTwoParts) {
   Mesh mesh = test::cube();
   addMesh(mesh, insideOut(test::cube()), 1, 2);
@@ -184,7 +184,8 @@ TEST(Parts, WhatIsNoNumberJoinsNothing) {
   expectFacing(soup, 0, 0, 0);
 }
 
-// The limits are those of parts.h, for 8 vertices and for 36 at which the surface ends.
+// The limits are those of parts.h, for a cube of 8 vertices and for a soup with 36 vertices at the
+// surface's border.
 TEST(Parts, AreNotLookedForWithLessMemoryThanThatTakes) {
   EXPECT_FALSE(partsWithin(12 * 8 - 1, test::cube()));
   EXPECT_FALSE(partsWithin(12 * 8 + 76 - 1, test::cube()));
@@ -197,7 +198,7 @@ TEST(Parts, AreNotLookedForWithLessMemoryThanThatTakes) {
   EXPECT_EQ(facingOf(*found).inwards, 1u);
 }
 
-// The normal of a cube's vertex is its position, scaled.
+// Adds normals of this length: the normal of a cube's vertex is its position, scaled.
 Mesh withNormals(Mesh mesh, float length) {
   Feature normal{"normal", 3, mesh.positions};
   for (float& x : normal.values) x *= length;

@@ -64,7 +64,8 @@ TEST(Flip, IsNoneOfAFaceThatHadNoArea) {
   EXPECT_EQ(r.log.children[0], (Children{1, 4}));
 }
 
-// Flat except for vertex 4, which is `height` above the rest; the first collapse moves 4 to 0.
+// Returns a mesh that is flat except for vertex 4, which is `height` above the rest; the first
+// collapse moves 4 to 0.
 mesh::Mesh tent(float height) {
   mesh::Mesh mesh = window(2);
   moveTo(mesh, 4, 1, 1, height);

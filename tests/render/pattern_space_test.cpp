@@ -15,7 +15,7 @@ namespace {
 
 using Floats = std::vector<float>;
 
-// A grid of 3 x 4 units, so that the diagonal of its bounding box is 5.
+// Returns a grid of 3 x 4 units, so that the diagonal of its bounding box is 5.
 mesh::Mesh richGrid() {
   mesh::Mesh mesh = test::grid(3, 4);
   const std::size_t n = mesh.vertexCount();
@@ -127,8 +127,8 @@ TEST(Weights, OfNineteenNinetyEight) {  // figure 5.2
                                                                             {"curvature", 1.0F}}));
 }
 
-// Geometry, normal, the data's own feature, boundary and curvature ([GOURLEY98] 5.2); a mesh
-// without the feature is weighted without it.
+// The weights are those of geometry, normal, the data's own feature, boundary and curvature
+// ([GOURLEY98] 5.2); for a mesh without the feature, that weight is omitted.
 TEST(Weights, OfEachDataSetOfNineteenNinetyEight) {
   const struct {
     const char* name;

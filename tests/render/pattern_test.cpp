@@ -15,8 +15,8 @@ using namespace test;  // collapses.h
 //  0---1---2---3
 mesh::Mesh strip() { return test::grid(3, 2); }
 
-// Neighbours differ much in "order", except 5 and 6, which differ by 1, and 4, which is 2 from
-// their mean.
+// Returns the strip with a feature "order" in which neighbours differ much, except for 5 and 6,
+// which differ by 1, and 4, which differs by 2 from their mean.
 mesh::Mesh orderedStrip() {
   mesh::Mesh mesh = strip();
   addFeature(mesh, "order", {100, 200, 300, 400, 2.5F, 0, 1, 500, 600, 700, 800, 900});

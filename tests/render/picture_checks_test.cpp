@@ -25,7 +25,7 @@ Pixels picture(std::uint8_t n) {
   return pixels;
 }
 
-// Shows what it is given, unless a test changes that.
+// A display that shows what it is given, unless a test changes that.
 struct FakeDisplay final : Output {
   Result<std::optional<Timestamp>> present(const Signal& signal, const FrameInfo& info) override {
     if (takes) shown.assign(signal.pixels.begin(), signal.pixels.end());

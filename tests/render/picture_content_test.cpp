@@ -1,5 +1,5 @@
 // Pictures as a content: which tiles are chosen, requested and drawn. The drawn pixels are compared
-// with the picture itself, scaled or mapped onto the sphere directly.
+// with the picture itself, which the test scales or maps onto the sphere.
 #include "render/content/picture/picture_content.h"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ std::shared_ptr<const Picture> pictureOf(const test::PyramidSpec& spec,
   return *picture;
 }
 
-// A picture whose colours change smoothly and are different everywhere.
+// Returns the colour at a pixel of a picture whose colours change smoothly and differ everywhere.
 test::Rgb waves(int x, int y) {
   const auto wave = [](double phase) {
     return static_cast<std::uint8_t>(127.5 + 120 * std::sin(phase));
@@ -80,8 +80,7 @@ tiles::TilePlan planOf(double field_of_view_deg) {
   return *tiles::planTiles(s);
 }
 
-// A square view of a plane at distance 1, whose picture is 2 x 2 m; after `zoom` 2 it shows half of
-// that.
+// Returns the view that the plan's first tile has of a content with the given pose.
 ContentView viewOf(const tiles::TilePlan& plan, const Eigen::Isometry3f& T_eye_content) {
   const tiles::Tile& t = plan.tiles[0];
   return {0,
@@ -103,7 +102,7 @@ class PictureTest : public testing::Test {
                                          std::size_t{kSide} * kSide, PictureMemory{memory, 1});
   }
 
-  // The coarsest level of all tiles that are drawn.
+  // Returns the coarsest level of all tiles that are drawn.
   int levelShown() const {
     int level = 0;
     for (const TilePiece& piece : content_->drawList().pieces[0])
@@ -191,7 +190,7 @@ TEST_F(PictureTest, KeepsWithinItsMemory) {
   EXPECT_GT(textures, kMemory / 3);
 }
 
-// A picture of 400,000 x 250,000 pixels. Only its levels matter here, so there is no file.
+// The picture has 400,000 x 250,000 pixels. Only its levels matter here, so there is no file.
 TEST(TileChoice, OfA100GigapixelPictureIsAsSmallAsTheView) {
   std::vector<image::PyramidLevel> levels;
   for (std::int64_t w = 400'000, h = 250'000;; w /= 2, h /= 2) {
@@ -210,7 +209,8 @@ TEST(TileChoice, OfA100GigapixelPictureIsAsSmallAsTheView) {
   }
 }
 
-// At any zoom, on a wall of four tiles that show different parts of the picture.
+// The default memory is checked at any zoom, on a wall of four tiles that show different parts of
+// the picture.
 TEST(PictureMemory, ByDefaultIsEnoughForFullDetailOfAnyWall) {
   const std::vector<image::PyramidLevel> levels = [] {
     std::vector<image::PyramidLevel> all;
@@ -249,7 +249,7 @@ TEST(TileChoice, EveryPixelOfAPictureHasOneTileInEachLevel) {
   EXPECT_EQ(rectOf(levels, {0, 2, 1}).left, 512);
 }
 
-// Draws with one context of EGL.
+// Draws with one EGL context.
 class DrawnPictureTest : public testing::Test {
  protected:
   void show(const test::PyramidSpec& spec, const tiles::TilePlan& plan, double radius_m,
@@ -268,7 +268,8 @@ class DrawnPictureTest : public testing::Test {
   const std::uint8_t* at(int x, int y) {
     return &renderer_->pixels()[static_cast<std::size_t>(4 * (kSide * y + x))];
   }
-  // The largest difference between a drawn pixel and what `expected` computes for its centre.
+  // Returns the largest difference between a drawn pixel and what `expected` computes for its
+  // centre.
   template <typename Expected>
   int worst(const Expected& expected) {
     int difference = 0;
@@ -289,8 +290,8 @@ class DrawnPictureTest : public testing::Test {
   std::unique_ptr<frame::FrameRenderer> renderer_;
 };
 
-// A picture of 1024 x 1024 fills the view of 256 x 256 after a zoom by four: one texel a pixel. The
-// seams of its tiles lie at 0 and 256 pixels, moved by 100.
+// A picture of 1024 x 1024 pixels fills the view of 256 x 256 pixels after a zoom by four, with one
+// texel in each pixel. The seams of its tiles lie at 0 and 256 pixels, moved by 100.
 TEST_F(DrawnPictureTest, IsThePictureToOneLevelWithoutSeams) {
   show({.width = 1024, .height = 1024, .colour = waves}, planOf(90), std::sqrt(2.0));
   const float pixel_m = 2.0F / 1024;
@@ -303,7 +304,8 @@ TEST_F(DrawnPictureTest, IsThePictureToOneLevelWithoutSeams) {
   EXPECT_LE(worst(expected), 2);
 }
 
-// Magnified 8 times, filtering goes across the seam between two tiles as anywhere else.
+// At a magnification of 8, filtering must work across the seam between two tiles as it does
+// elsewhere.
 TEST_F(DrawnPictureTest, FiltersAcrossTheSeamsOfTiles) {
   const auto steps = [](int x, int y) {
     return test::Rgb{static_cast<std::uint8_t>(x / 2 % 256), static_cast<std::uint8_t>(y / 2 % 256),
@@ -336,7 +338,7 @@ TEST_F(DrawnPictureTest, APictureSmallerThanTheViewLeavesTheRestAsBackground) {
   EXPECT_EQ(at(128, 94)[0], 0);
 }
 
-// The colour of a panorama in a given direction (x right, y up, the eye looks along -z).
+// Returns the colour of a panorama in a given direction (x right, y up; the eye looks along -z).
 test::Rgb panoramaAt(const Eigen::Vector3d& direction, int width, int height) {
   const Eigen::Vector3d d = direction.normalized();
   const double u = std::atan2(d.x(), -d.z()) / (2 * std::numbers::pi) + 0.5;
@@ -364,7 +366,7 @@ test::PyramidSpec panoramaSpec() {
 class PanoramaTest : public DrawnPictureTest,
                      public testing::WithParamInterface<std::array<double, 2>> {};
 
-// Straight ahead, across the seam at 180 degrees, and both poles.
+// The directions are straight ahead, across the seam at 180 degrees, and both poles.
 TEST_P(PanoramaTest, IsWhatEachDirectionShows) {
   const auto [yaw_deg, pitch_deg] = GetParam();
   show(panoramaSpec(), planOf(60), 1);

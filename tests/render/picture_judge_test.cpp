@@ -1,4 +1,4 @@
-// Tests the verdict on the picture that an output shows, compared with the one that it was meant to
+// The verdict on the picture that an output shows, compared with the picture that it was meant to
 // show.
 #include "render/out/picture/picture_judge.h"
 
@@ -18,7 +18,8 @@ using Pixels = std::vector<std::uint8_t>;
 constexpr int kWidth = 200, kHeight = 96;
 const Timestamp kNow{seconds(1000)};
 
-// A picture in which every pixel differs from its neighbours, and from that of the next frame.
+// Returns a picture in which every pixel differs from its neighbours, and from the same pixel of
+// the next frame.
 Pixels picture(int frame) {
   Pixels pixels(static_cast<std::size_t>(kWidth * kHeight) * 4);
   for (std::size_t i = 0; i < pixels.size(); ++i)
@@ -102,7 +103,7 @@ TEST(PictureDigestTest, PicturesSmallerThanItsCellsAndNone) {
 
 class PictureJudgeTest : public testing::Test {
  protected:
-  // Frame n was presented this long ago.
+  // Notes that frame n was presented `ago` before now.
   void meant(int n, Duration ago) { meant_.push_back({digest(picture(n)), kNow - ago}); }
   PictureVerdict judge(const FoundPicture& f,
                        const std::optional<PictureDigest>& last_right = {}) const {

@@ -49,7 +49,7 @@ TEST_P(PlyDamage, OneWrongByteNeverLoadsHalf) {
   EXPECT_GT(refused, 100 * file.size());
 }
 
-// The ASCII file above with `from` replaced by `to`, and the resulting error.
+// A fault of the ASCII file above: `from` is replaced by `to`, which gives this error.
 struct Fault {
   const char* name;
   const char* from;
@@ -142,8 +142,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"length not a number", "3 0 1 3", "nan 0 1 3",
                           "face 1, property vertex_indices: nan is not the length of a list"}));
 
-// The reader must not allocate for more elements than the file can hold: these would take 48 GB or
-// more.
+// The reader must not allocate memory for more elements than the file can hold; these would take 48
+// GB or more.
 TEST(PlyCounts, BeyondTheFilesSizeAreRefusedFirst) {
   for (const Form form : kForms) {
     for (const char* count : {"4000000000", "18446744073709551615", "6148914691236517206"}) {

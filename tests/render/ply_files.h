@@ -1,4 +1,4 @@
-// Shared by the tests of PLY: small files in all three forms, built number by number.
+// Shared by the tests of PLY: small files in all three forms, built from single numbers.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace merlin::test {
 
 using namespace std::string_literals;
-// Reads these bytes as readMesh() does, without tidying the mesh.
+// Reads these bytes as readMesh() does, but without tidying the mesh.
 inline Result<render::mesh::LoadedMesh> read(const std::string& bytes) {
   auto loaded = render::mesh::ply::parse(bytes);
   if (!loaded) return loaded;
@@ -20,7 +20,7 @@ inline Result<render::mesh::LoadedMesh> read(const std::string& bytes) {
   return loaded;
 }
 
-// Replaces every occurrence of `from`.
+// Returns the text with every occurrence of `from` replaced by `to`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -70,7 +70,8 @@ inline std::string header(Form form, const std::string& properties) {
          "end_header\n";
 }
 
-// A square of a quad and a triangle, with every property that MERLIN knows.
+// Returns a file of a square that consists of a quad and a triangle, with every property that
+// MERLIN knows.
 inline std::string squareFile(Form form) {
   Body body(form);
   for (int v = 0; v < 4; ++v) {

@@ -53,7 +53,7 @@ TEST_P(PlyForms, MayHaveCarriageReturnsInTheirHeader) {
   expectSquare(loaded->mesh);
 }
 
-// A property of each type, by both of the type's names, with the last value of its range.
+// A property of each type, with both of the type's names, and with the largest value of the type.
 TEST_P(PlyForms, HaveEightTypesOfTwoNames) {
   const auto last = [&](const std::string& type, auto value) {
     Body body(GetParam());
@@ -156,7 +156,7 @@ TEST(PlyRead, CutsAFaceThatIsNotConvexWithinItself) {
   EXPECT_EQ(nowhere->mesh.triangles, (Indices{1, 2, 9, 1, 9, 0}));
 }
 
-// Each number belongs to the next property, wherever lines end.
+// Each number belongs to the next property, wherever the lines end.
 TEST(PlyAscii, NamesTheRowThatHasMoreNumbersThanTheHeaderPromises) {
   const auto fault = [](const std::string& text) {
     const auto loaded = read(text);
@@ -175,7 +175,8 @@ TEST(PlyAscii, NamesTheRowThatHasMoreNumbersThanTheHeaderPromises) {
   EXPECT_EQ(fault(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\nmore\n"), "");
 }
 
-// Strips of the square 0 1 3 2 and one more corner: all triangles face the same way as the first.
+// Strips of the square 0 1 3 2 and of one more corner: all triangles must face the same way as the
+// first one.
 TEST(PlyRead, StripsBecomeTrianglesThatFaceOneWay) {
   const auto strips = [](const std::string& rows, const std::string& list) {
     return read(
@@ -267,7 +268,7 @@ TEST(PlyRead, CountsWholeNumbersThatAFloatHasNot) {
   EXPECT_EQ(loaded->notes, Notes{"2 integers beyond 2^24 were rounded to floats"});
 }
 
-// Names with bytes that would control a terminal or that JSON cannot hold.
+// These names have bytes that would control a terminal or that JSON cannot hold.
 TEST(PlyRead, RefusesNamesThatAreNoText) {
   for (const char* name : {"he\x1b[31mat", "he\xff", "he\x7f", "\xc2\x9bheat", "\xc3"}) {
     const auto refused = read(replaced(kAscii, "property double heat", "property double "s + name));

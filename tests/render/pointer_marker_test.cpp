@@ -17,7 +17,7 @@ class PointerMarkerTest : public testing::Test {
     return 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(plan_.frame_width) +
                 static_cast<std::size_t>(x));
   }
-  // Whether the marker covers the pixel; untouched pixels are grey (90).
+  // Returns whether the marker covers the pixel; pixels that are not covered are grey (90).
   bool marked(int x, int y) const { return pixels_[at(x, y)] != 90; }
   std::size_t markedPixels() const {
     std::size_t n = 0;
@@ -51,8 +51,8 @@ TEST_F(PointerMarkerTest, StraightAheadIsTheMiddleOfTheCentreTile) {
   EXPECT_EQ(pixels_[at(960, 240) + 3], 90) << "alpha stays";
 }
 
-// Each of several hands has its own disc. When the discs are erased, the picture is as before, also
-// where they overlapped.
+// Each of several hands has its own disc. Erasing the discs must restore the picture, also where
+// they overlapped.
 TEST_F(PointerMarkerTest, SeveralHandsHaveDiscsOfTheirOwn) {
   const std::vector<std::uint8_t> before = pixels_;
   marker_.pointAt({Vector3f(0, 0, -2), Vector3f(0.02F, 0, -2), Vector3f(0.3F, 0, -2)});
@@ -66,8 +66,8 @@ TEST_F(PointerMarkerTest, SeveralHandsHaveDiscsOfTheirOwn) {
   EXPECT_EQ(pixels_, before);
 }
 
-// 20 degrees to the left is the seam between the left tile (upper left in the frame) and the centre
-// tile.
+// The seam between the left tile (upper left in the frame) and the centre tile is 20 degrees to the
+// left.
 TEST_F(PointerMarkerTest, ADiscOverASeamIsInBothTiles) {
   const float seam = 20 * std::numbers::pi_v<float> / 180 - 0.001F;
   draw(Vector3f(-std::sin(seam), 0, -std::cos(seam)));

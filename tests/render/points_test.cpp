@@ -109,8 +109,8 @@ TEST(Las, WithheldPointsAndNoiseAreLeftOut) {
   EXPECT_EQ(cloudOf(bytes).size(), 2U);
 }
 
-// A LAS file with these variable length records of the user LASF_Projection between header and
-// points.
+// Returns a LAS file with these variable length records of the user LASF_Projection between header
+// and points.
 std::string withRecords(std::string bytes,
                         const std::vector<std::pair<int, std::string>>& records) {
   std::string all;
@@ -365,8 +365,8 @@ std::vector<std::uint32_t> neighboursOf(const std::vector<float>& positions) {
   return neighbours;
 }
 
-// The points and the outward normals of an ellipsoid, whose half axis in z is `flat`, its centre at
-// (x, 0, 0).
+// The points and the outward normals of an ellipsoid with its centre at (x, 0, 0); its half axis in
+// z is `flat`, the others are 1.
 struct Ellipsoid {
   explicit Ellipsoid(double flat, double x = 0) {
     for (const auto& p : sphere(400)) {
@@ -381,7 +381,7 @@ struct Ellipsoid {
   std::vector<double> normals;
 };
 
-// Turns normals about at random, and expects that they become as they were.
+// Turns normals about at random, and expects that the orientation restores all of them.
 void expectTurnedBack(const Ellipsoid& of, std::size_t trees) {
   auto normals = of.normals;
   Random random(4);
@@ -406,7 +406,7 @@ TEST(Normals, OfThePartsOfACloudFaceOutwardsEach) {
 
 TEST(Normals, OfTheTwoSidesOfAThinPartFaceAway) { expectTurnedBack(Ellipsoid(0.1), 1); }
 
-// Expects a cloud whose arrays fit one another, or an error of one sentence.
+// Expects either a cloud whose arrays have matching sizes, or an error of one sentence.
 void expectSound(const std::string& bytes) {
   const auto cloud = points::parseCloud(bytes);
   if (!cloud) {

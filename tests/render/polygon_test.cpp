@@ -1,4 +1,5 @@
-// Faces of more than three corners: which of them become triangle fans, and how the others are cut.
+// Faces of more than three corners: which of them become triangle fans, and how the others are cut
+// into triangles.
 #include "render/mesh/polygon.h"
 
 #include <array>
@@ -13,14 +14,15 @@ namespace {
 using Floats = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;
 
-// Twice the signed area of a triangle of the cut: positive if it is counter-clockwise in x and y.
+// Returns twice the signed area of a triangle of the cut: positive if it is counter-clockwise in x
+// and y.
 double areaOf(const Floats& p, const std::uint32_t* t) {
   const auto at = [&](std::size_t k, std::size_t axis) { return double{p[3 * t[k] + axis]}; };
   return (at(1, 0) - at(0, 0)) * (at(2, 1) - at(0, 1)) -
          (at(1, 1) - at(0, 1)) * (at(2, 0) - at(0, 0));
 }
 
-// Expects triangles that all face up and whose areas add up to `area`; so they do not overlap.
+// Expects triangles that all face up and whose areas add up to `area`, so that they do not overlap.
 void expectCut(const Floats& polygon, double area) {
   const Indices cut = mesh::cutPolygon(polygon);
   ASSERT_EQ(cut.size(), polygon.size() - 6);
@@ -83,7 +85,7 @@ TEST(CutPolygon, WithoutACutStaysAFan) {
   EXPECT_EQ(mesh::cutPolygon(Floats{}), Indices{});
 }
 
-// A star with this many corners, half of which are concave; its centre is (0, 0).
+// Returns a star with this many corners, half of which are concave; its centre is (0, 0).
 Floats star(std::size_t corners) {
   Floats p;
   for (std::size_t k = 0; k < corners; ++k) {

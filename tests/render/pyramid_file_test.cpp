@@ -1,5 +1,5 @@
-// The reader of pyramids: the files that it accepts, and that no file makes it crash, loop or use
-// much memory.
+// The reader of pyramids: which files it accepts, and that no file makes it crash, loop or use much
+// memory.
 #include "render/image/pyramid_file.h"
 
 #include <fstream>
@@ -123,7 +123,7 @@ TEST(PyramidFile, RefusesAPictureThatLiesAboutItsSize) {
       << errorOf(bytes);
 }
 
-// 400,000 x 250,000 pixels by the header, without the tiles.
+// The header declares 400,000 x 250,000 pixels, but the file does not have the tiles.
 TEST(PyramidFile, RefusesAHeaderOf100GigapixelsWithFewTiles) {
   std::string bytes = pyramidBytes();
   const std::size_t directory = directoriesOf(bytes)[0];
@@ -131,8 +131,8 @@ TEST(PyramidFile, RefusesAHeaderOf100GigapixelsWithFewTiles) {
   test::detail::putAt(bytes, fieldAt(bytes, directory, 257), 250'000);
   test::largest_allocation = 0;
   EXPECT_NE(errorOf(bytes), "");
-  // Now the tables have as many entries as the header implies, and so end beyond the end of the
-  // file.
+  // Now the tables have as many entries as the header implies, and therefore extend beyond the end
+  // of the file.
   for (const int tag : {324, 325})
     test::detail::putAt(bytes, fieldAt(bytes, directory, tag) - 8, 1563 * 977);
   EXPECT_NE(errorOf(bytes).find("end beyond the file's"), std::string::npos) << errorOf(bytes);
@@ -184,7 +184,8 @@ void readAll(std::string bytes) {
   }
 }
 
-// Small enough that every byte can be damaged: two levels, and tiles that compress well.
+// Returns a pyramid of two levels that is small enough to damage each of its bytes: its tiles
+// compress well.
 std::string smallFile() {
   return pyramidBytes({.width = 300, .height = 2, .colour = [](int, int) {
                          return test::Rgb{9, 9, 9};

@@ -1,4 +1,5 @@
-// The edges of one vertex: costs and positions against plain sums over planes in double precision.
+// The edges of one vertex: costs and positions compared with plain sums over planes in double
+// precision.
 #include "render/reduce/quadric/quadric_evaluate.h"
 
 #include <cmath>
@@ -23,8 +24,8 @@ struct Bench : test::QuadricBench {
     return Eigen::Map<const Eigen::Vector3f>(surface[v].position).cast<double>();
   }
 
-  // Sum of twice the area times the squared distance, over the planes of v's triangles and of its
-  // border edges.
+  // Returns the sum of twice the area times the squared distance of p, over the planes of v's
+  // triangles and of its border edges.
   double distanceTo(std::uint32_t v, const Vec& p) const {
     double sum = 0;
     for (const reduce::Corner& c : surface.star(surface[v])) {
@@ -144,8 +145,8 @@ TEST(QuadricEvaluate, QuadricsFirstThenEdgesIsTheSame) {
   }
 }
 
-// Sum over v's triangles of area times (g p + d - s)^2, for a channel that is linear on each
-// triangle.
+// Returns the sum over v's triangles of area times (g p + d - s)^2, for a channel that is linear on
+// each triangle.
 double channelError(const Bench& bench, std::uint32_t v, std::size_t k, const Vec& p, double s) {
   double sum = 0;
   for (const reduce::Corner& c : bench.surface.star(bench.surface[v])) {
@@ -177,7 +178,7 @@ void expectChannelsCostWhatTheirBestValueLeaves(std::size_t channels) {
       const Vec to = bench.at(v) + Vec(bench.costs.x[e], bench.costs.y[e], bench.costs.z[e]);
       double plain = bench.distanceTo(v, to) + bench.distanceTo(x, to);
       for (std::size_t k = 0; k < channels; ++k) {
-        // A parabola in s; its minimum follows from three values.
+        // The sum is a parabola in s; its minimum follows from three values.
         const auto f = [&](double s) {
           return channelError(bench, v, k, to, s) + channelError(bench, x, k, to, s);
         };
@@ -191,7 +192,7 @@ void expectChannelsCostWhatTheirBestValueLeaves(std::size_t channels) {
 
 TEST(QuadricEvaluate, ChannelsCostWhatTheirBestValueLeaves) {
   expectChannelsCostWhatTheirBestValueLeaves(2);
-  // More channels than the evaluation keeps between its two passes.
+  // There are more channels than the evaluation keeps between its two passes.
   expectChannelsCostWhatTheirBestValueLeaves(9);
 }
 

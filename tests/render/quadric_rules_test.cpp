@@ -24,7 +24,7 @@ struct Bench : test::QuadricBench {
   }
 };
 
-// A surface so rough that a good part of all collapses would flip a face.
+// Returns a surface so rough that many of all collapses would flip a face.
 mesh::Mesh roughSurface(std::uint32_t seed) { return test::noisyGrid(40, 40, 2.0, seed); }
 
 TEST(QuadricRules, EveryProcessorGivesTheSameVerdict) {
@@ -72,7 +72,7 @@ TEST(QuadricRules, LanesSeeTheFlipsThatFacesDo) {
 }
 
 TEST(QuadricRules, TheEndsShareNoNeighbourBesideTheirTriangles) {
-  // A tube with three vertices around: each ring is a triangle of edges without a face.
+  // A tube with three vertices around: the three edges of each ring are a triangle without a face.
   mesh::Mesh tube;
   for (std::uint32_t k = 0; k < 30; ++k) {
     const double angle = 2.0943951 * (k % 3);

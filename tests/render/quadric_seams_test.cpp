@@ -38,8 +38,8 @@ struct Levels {
 
 using Place = std::array<float, 3>;
 
-// For each border vertex, except for those at the tube's two ends: how many vertices coincide at
-// its position.
+// Returns, for each border vertex except for those at the tube's two ends, how many vertices
+// coincide at its position.
 std::map<Place, int> seamOf(const mesh::Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
@@ -74,7 +74,8 @@ TEST(QuadricSeams, ShrinkAndNeverGape) {
   EXPECT_LT(before, kHigh / 3);
 }
 
-// The smallest cosine between the normals of coincident vertices; -1 if no vertices coincide.
+// Returns the smallest cosine between the normals of coincident vertices; -1 if no vertices
+// coincide.
 float leastCosine(const mesh::Mesh& mesh) {
   std::map<Place, const float*> first;
   float least = 1;
@@ -115,7 +116,7 @@ TEST(QuadricSeams, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one->log.features, two->log.features);
 }
 
-// With user-locked vertices, both sides of a seam may be meant, so seams stay fixed.
+// If a user locks vertices, both sides of a seam may be meant, so seams must not move.
 TEST(QuadricSeams, StayWhereVerticesAreLocked) {
   const mesh::Mesh mesh = tube(true);
   std::vector<bool> locked(mesh.vertexCount());

@@ -1,5 +1,5 @@
-// The cost `quadric` as a whole: what it preserves, when it stops, and that threads do not change
-// the result.
+// The cost `quadric` as a whole: what it preserves, when it stops, and that the number of threads
+// does not change the result.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -71,7 +71,7 @@ mesh::Mesh bumpyBall() {
   return withNormals(ball);
 }
 
-// The error at a twentieth of the triangles.
+// Returns the error of the level with a twentieth of the triangles.
 compare::Deviation errorOf(const mesh::Mesh& mesh, const reduce::Reduction& r) {
   compare::CompareSettings settings;
   settings.samples = 20'000;
@@ -97,7 +97,7 @@ TEST(Quadric, FastIsNearlyAsGood) {
   EXPECT_NE(fast.log.about.find("fast=true"), std::string::npos);
 }
 
-// A mesh with enough vertices for a reduction in two parts.
+// Returns a mesh with enough vertices for a reduction in two parts.
 mesh::Mesh wide() { return withNormals(test::noisyGrid(170, 170, 0.2, 7)); }
 
 TEST(Quadric, IsTheSameBytesForAnyNumberOfThreads) {
@@ -164,7 +164,7 @@ TEST(Quadric, SeamsOfItsPartsAreNotSeen) {
   EXPECT_LT(*std::max_element(fields.begin(), fields.end()), 3 * mean);
 }
 
-// A sphere, and 20 cubes of a hundredth of its size.
+// Returns a sphere, and 20 cubes of a hundredth of its size.
 mesh::Mesh specks() {
   mesh::Mesh mesh = test::sphere(4);
   for (int i = 0; i < 20; ++i) {
@@ -175,7 +175,7 @@ mesh::Mesh specks() {
   return withNormals(mesh);
 }
 
-// Number of the small cubes of specks() that are left at 120 triangles.
+// Returns the number of the small cubes of specks() that are left at 120 triangles.
 std::size_t specksLeft(const mesh::Mesh& mesh, const reduce::Reduction& r) {
   const mesh::Mesh coarse = levelOf(mesh, r, 120);
   std::set<int> alive;
@@ -190,7 +190,7 @@ TEST(Quadric, ComponentsStayUntilNothingElseIsLeft) {
   const mesh::Mesh mesh = specks();
   const reduce::Reduction r = reduced(mesh, {.preserve_components = true});
   EXPECT_EQ(specksLeft(mesh, r), 20u);
-  // When nothing else is left to collapse, components are removed too.
+  // When no other collapse is left, components are removed too.
   EXPECT_LE(r.report.triangles, 2u);
 }
 
@@ -302,7 +302,7 @@ TEST(Quadric, TakesTheFarthestAndTheSmallestCoordinates) {
   }
 }
 
-// A plane in which the feature `name` jumps from 0 to 1 at x = 10.
+// Returns a plane in which the feature `name` jumps from 0 to 1 at x = 10.
 mesh::Mesh step(const std::string& name) {
   mesh::Mesh mesh = withNormals(test::grid(20, 20));
   mesh::Feature f{name, 1, {}};
@@ -312,7 +312,7 @@ mesh::Mesh step(const std::string& name) {
   return mesh;
 }
 
-// The mean error of feature 1 over the remaining vertices.
+// Returns the mean error of feature 1 over the remaining vertices.
 double stepError(const mesh::Mesh& coarse) {
   const mesh::Feature& f = coarse.features[1];
   double sum = 0;
@@ -343,7 +343,7 @@ TEST(Quadric, LabelsAreNeverMixed) {
   for (const float x : r.log.features[1]) EXPECT_TRUE(x == 0 || x == 1) << x;
 }
 
-// Hills with two labels, separated by a wavy border.
+// A mesh with two labels, separated by a wavy border.
 TEST(Quadric, LockedLabelsKeepTheEdgeBetweenThem) {
   constexpr std::uint32_t kSide = 40;
   mesh::Mesh mesh = withNormals(test::grid(kSide, kSide));
@@ -356,7 +356,8 @@ TEST(Quadric, LockedLabelsKeepTheEdgeBetweenThem) {
   }
   mesh.features.push_back(label);
   const mesh::Mesh coarse = levelOf(mesh, reduced(mesh), 160);
-  // Distance from the wave in x, summed over the ends of edges between labels; their number.
+  // `off`: distance in x from the wavy border, summed over the ends of edges between labels;
+  // `ends`: their number.
   double off = 0, ends = 0;
   for (std::size_t i = 0; i < coarse.triangles.size(); ++i) {
     const std::uint32_t a = coarse.triangles[i];

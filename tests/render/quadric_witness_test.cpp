@@ -1,4 +1,4 @@
-// Witnesses: their distances, compared with a plain search in double precision, and that they keep
+// Witnesses: their distances are compared with a plain search in double precision, and they keep
 // their positions.
 #include "render/reduce/quadric/quadric_witness.h"
 
@@ -30,8 +30,8 @@ struct Bench : test::QuadricBench {
     const float* p = surface[v].position;
     return {p[0], p[1], p[2]};
   }
-  // Squared distance of the witness of `of` to what remains of both stars when edge (v, x) is
-  // collapsed to `to`.
+  // Returns the squared distance of the witness of `of` from the triangles that remain of both
+  // stars after edge (v, x) is collapsed to `to`.
   double plainDistance2(std::uint32_t of, std::uint32_t v, std::uint32_t x,
                         const compare::Vector& to) const {
     const std::array<float, 3> from = surface[of].witness.get();

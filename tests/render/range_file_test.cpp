@@ -1,4 +1,4 @@
-// Range files: what MERLIN's own readers return for good, damaged and hostile bytes. All files are
+// Range files: what MERLIN's own readers return for valid, damaged and hostile bytes. All files are
 // synthetic.
 #include "render/range/io/range_file.h"
 
@@ -34,13 +34,13 @@ using namespace render::range;
 
 class RangeFile : public testing::Test {
  protected:
-  // Reads `bytes` as a file of this name.
+  // Reads `bytes` as a file with this name.
   Result<LoadedRange> read(const std::string& bytes, const RangeOptions& options = {},
                            const std::string& name = "a.pgm") {
     writeText(dir_ / name, bytes);
     return readRange(dir_ / name, options);
   }
-  // The error's text without the folder's path.
+  // Returns the error's text without the folder's path.
   std::string fault(const std::string& bytes, const RangeOptions& options = {},
                     const std::string& name = "a.pgm") {
     const auto loaded = read(bytes, options, name);
@@ -327,8 +327,8 @@ TEST_F(RangeFile, AndFromAsciiPcd) {
             "a.pgm: the file ends after 3 of 4 points");
 }
 
-// Points with the coordinates of a map. If they were relative to 0 0 0, a float would have no
-// digits for details below half a metre.
+// The points have the coordinates of a map. Relative to 0 0 0, a float would have no digits for
+// details below half a metre.
 TEST_F(RangeFile, OrganisedPointsOfAMapKeepTheirDigits) {
   const auto header = [](const std::string& viewpoint) {
     return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"
@@ -363,7 +363,7 @@ TEST_F(RangeFile, OrganisedPointsOfAMapKeepTheirDigits) {
   EXPECT_FALSE(isMirrored(far->image)) << "seen from above, the first row is the northern one";
 }
 
-// Literal runs only, which any compressor may write.
+// Compresses to literal runs only, which the format allows.
 std::string packed(const std::string& bytes) {
   std::string out;
   for (std::size_t at = 0; at < bytes.size(); at += 32) {
@@ -391,7 +391,8 @@ std::string pcdCompressed() {
 TEST_F(RangeFile, AndFromCompressedPcd) { expectPcd(read(pcdCompressed())); }
 
 TEST(Lzf, LiteralsAndReferences) {
-  const std::uint8_t bytes[] = {2, 'a', 'b', 'c', 0x20, 2, 0xE0, 3, 0};  // is abc, abc, c x 12
+  // these bytes are abc, abc, then c twelve times
+  const std::uint8_t bytes[] = {2, 'a', 'b', 'c', 0x20, 2, 0xE0, 3, 0};
   const auto text = unpackLzf(bytes, 18);
   ASSERT_TRUE(text);
   EXPECT_EQ(std::string(text->begin(), text->end()), "abcabccccccccccccc");
@@ -449,7 +450,7 @@ TEST_F(RangeFile, ARawFileMayBeginWithTheBytesOfAByteOrderMark) {
   EXPECT_EQ(loaded->image.range[0], 0xEF);
 }
 
-// The least float, which many programs write, has more digits than a float; others write nan.
+// Many programs write the least float, which has more digits than a float holds; others write nan.
 TEST_F(RangeFile, TheValueOfAnEsriGridsVoidsMayBeAnyNumber) {
   const auto withVoid = [](const std::string& word) {
     return "ncols 2\nnrows 2\ncellsize 30\nNODATA_value " + word + "\n1 2 3 ";
@@ -626,8 +627,8 @@ TEST_F(RangeFile, ItsRangesAreMetresWhereSomethingSaysSo) {
   EXPECT_TRUE(inMetres("", options));
 }
 
-// In the form of the Stanford 3D Scanning Repository: seen from far away along z, rows from the
-// bottom. 3 x 2 pixels, the fifth of which has no vertex.
+// A file as the Stanford 3D Scanning Repository has it: seen from far away along z, rows from the
+// bottom. It has 3 x 2 pixels; the fifth one has no vertex.
 const std::string kStanford =
     "ply\nformat ascii 1.0\nobj_info num_cols 3\nobj_info num_rows 2\nelement vertex 5\nproperty "
     "float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar "
@@ -723,7 +724,8 @@ TEST_F(RangeFile, FaultsOfAGridNameThePixelOrTheVertex) {
             "a.ply: the vertices have no property z");
 }
 
-// In the form that merlin-import writes: 3 x 2 heights, cells of 0.5 x 0.25 degrees at latitude 60.
+// Returns a file as merlin-import writes it: 3 x 2 heights, cells of 0.5 x 0.25 degrees at latitude
+// 60.
 std::string gridOf(const GridHead& head) {
   std::string bytes;
   EXPECT_TRUE(writeGrid(
@@ -814,7 +816,8 @@ void expectGoodEnd(const Result<LoadedRange>& loaded) {
   EXPECT_EQ(text.find("a.pgm: ") != std::string::npos, !loaded.ok()) << text;
 }
 
-// Uses the reader for the bytes' format: the bytes are parsed, or refused with one sentence.
+// Reads the bytes with the reader for their format; expects that they are parsed, or refused with
+// one sentence.
 void expectParsed(const std::string& bytes) {
   const auto expectSentence = [&](const auto& parsed, std::size_t pixels) {
     EXPECT_TRUE(parsed ? pixels > 0 : parsed.error().what.size() > 10) << bytes;
@@ -828,8 +831,8 @@ void expectParsed(const std::string& bytes) {
   }
 }
 
-// Whatever the bytes are, reading ends with an image that has a return or with a sentence that
-// names the file.
+// Whatever the bytes are, reading ends either with an image that has a return, or with a sentence
+// that names the file.
 TEST_F(RangeFile, EveryPrefixAndEveryDamagedByteEndsWell) {
   const std::string files[] = {
       kHeader + "# beam: 1 2\n# cell: 3\n# minimum: 1\n# maximum: 9\n2 2\n65535\n" +

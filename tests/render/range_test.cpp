@@ -1,4 +1,4 @@
-// Range images: geometry against closed forms, filters, and triangulation.
+// Range images: geometry compared with closed forms, filters, and triangulation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -255,7 +255,7 @@ TEST(Triangulation, FacesTheScannerWhateverTheOrderOfItsColumns) {
 }
 
 // For every pattern of returns in 4 x 4 pixels, and for a pseudo-random set of long edges, the
-// triangulation has already done what the general repair would do.
+// general repair must find nothing to change in the triangulation.
 TEST(Triangulation, AnyPatternOfHolesIsManifold) {
   for (unsigned bits = 0; bits < 65536; bits += 7) {
     RangeImage image = flatImage(4, 4, Scanner::kElevation);

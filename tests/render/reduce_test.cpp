@@ -21,7 +21,7 @@ mesh::Mesh withNormals(mesh::Mesh mesh) {
   return mesh;
 }
 
-// A mesh of 441 vertices and 800 triangles.
+// Returns a mesh of 441 vertices and 800 triangles.
 mesh::Mesh hills() { return withNormals(test::noisyGrid(20, 20, 0.1, 1)); }
 
 reduce::Reduction reduced(const mesh::Mesh& mesh, reduce::ReduceSettings settings = {}) {
@@ -183,8 +183,8 @@ TEST(Reduce, RefusesWeightsAndLimitsThatAreNone) {
   EXPECT_EQ(faultOf({.max_error_percent = kNaN}), "error nan % is not 0 or more");
 }
 
-// Number of collapses that merge different labels when hills with the labels 0 (x < 10) and 1 are
-// reduced to 5 % of their triangles.
+// Returns the number of collapses that merge different labels when hills with the labels 0 (x < 10)
+// and 1 are reduced to 5 % of their triangles.
 long crossings(float weight) {
   mesh::Mesh mesh = hills();
   Floats labels;
@@ -205,7 +205,7 @@ TEST(Reduce, DoesNotCrossALabelOfHighWeight) {
   EXPECT_GT(crossings(0), 10);
 }
 
-// The Euler characteristic V - E + F of the mesh.
+// Returns the Euler characteristic V - E + F of the mesh.
 long eulerNumber(const mesh::Mesh& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -241,8 +241,8 @@ TEST(Reduce, LeavesALastTriangle) {
   expectSound(two, r);
 }
 
-// Three fins at one edge; faces twice and reversed; a cube and a single triangle; coincident
-// vertices.
+// The mesh has three fins at one edge, faces that occur twice and reversed, a cube and a single
+// triangle, and coincident vertices.
 TEST(Reduce, TakesWhatIsNoManifold) {
   mesh::Mesh fins;
   fins.positions = {0, 0, 0, 0, 0, 1, 1, 0, 0, -1, 1, 0, -1, -1, 0};

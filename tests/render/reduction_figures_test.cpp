@@ -1,5 +1,4 @@
-// Figures of the reduction of a real scan, that of the demo: error, quality, memory. None of them
-// is a time.
+// Figures of the reduction of the demo's real scan: error, quality, memory. None of them is a time.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -33,8 +32,8 @@ reduce::Reduction reduced(const std::string& cost) {
   return *std::move(result);
 }
 
-// The certified largest distance from the scan at a share of its triangles, in percent of the
-// diagonal of its box.
+// Returns the certified largest distance from the scan at `percent` per cent of its triangles, in
+// percent of the diagonal of its box.
 double maxErrorPercent(const reduce::Reduction& r, double percent) {
   const lod::Dendrogram model = lod::buildDendrogram(scan(), r.log);
   const auto triangles =
@@ -49,7 +48,8 @@ double maxErrorPercent(const reduce::Reduction& r, double percent) {
   return 100 * compared->symmetric().max.high / compared->diagonal;
 }
 
-// [GOURLEY98] 5.3: below 1 % of the diagonal, models are good, at a reduction by 95 to 97 %.
+// According to [GOURLEY98] 5.3, models with an error below 1 % of the diagonal are good, which a
+// reduction by 95 to 97 % reached. The comments give the measured values.
 TEST(ReductionFigures, TheDefaultCostIsFarBelowOnePercentAt97Percent) {
   const reduce::Reduction r = reduced("quadric");
   EXPECT_LT(maxErrorPercent(r, 5), 0.3);  // 0.23
@@ -62,8 +62,8 @@ TEST(ReductionFigures, TheCostOf1998IsBelowOnePercentAt97Percent) {
   EXPECT_LT(maxErrorPercent(r, 3), 1);    // 0.96
 }
 
-// [GOURLEY98] 4.3.1: the estimate of a new vertex is never less than those of the two that it
-// replaces, and the report's is the largest of all.
+// According to [GOURLEY98] 4.3.1, the estimated error of a new vertex is never less than those of
+// the two vertices that it replaces; the error in the report is the largest of all.
 TEST(ReductionFigures, TheErrorOf1998AddsUp) {
   const reduce::Reduction r = reduced("pattern");
   const auto errorOf = [&](std::uint32_t node) {
@@ -81,7 +81,8 @@ TEST(ReductionFigures, TheErrorOf1998AddsUp) {
   EXPECT_EQ(r.report.error, *std::max_element(r.log.error.begin(), r.log.error.end()));
 }
 
-// In 1998 an edge took 1.8 to 2 KB ([GOURLEY98] 5.2). Here the heap's peak, with the log.
+// In 1998 an edge took 1.8 to 2 KB ([GOURLEY98] 5.2). The test measures the heap's peak, which
+// includes the log.
 TEST(ReductionFigures, AnEdgeTakesLessThanATenthOfTheMemoryOf1998) {
   const double edges = 1.5 * static_cast<double>(scan().triangleCount());
   const std::size_t peak = test::peakBytesOf([] { reduced("pattern"); });
@@ -89,7 +90,7 @@ TEST(ReductionFigures, AnEdgeTakesLessThanATenthOfTheMemoryOf1998) {
 #if !defined(MERLIN_ANY_SANITIZER)
   EXPECT_GT(static_cast<double>(peak) / edges, 50) << "nothing was counted";
 #endif
-  // What is reserved for a reduction before it runs, without the log.
+  // Returns what is reserved for a reduction before it runs, without the log.
   const auto needPerEdge = [&](const char* cost) {
     const auto need = reduce::needOf(mesh::sizeOf(scan()), {.cost = cost});
     return static_cast<double>(need.whole) / edges;

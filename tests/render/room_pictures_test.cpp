@@ -1,10 +1,10 @@
-// For each preset but the arcs (whose angles tests/render/room_test.cpp checks), the tiles together
-// show one view: each tile equals a part of one larger rendering in its panel's plane, and
-// neighbours meet at their seams.
+// For each preset except the arcs (whose angles tests/render/room_test.cpp checks), the tiles
+// together must show one view: each tile equals a part of one larger rendering in its panel's
+// plane, and neighbours meet at their seams.
 //
-// The test prints its figures. If MERLIN_PICTURES=FOLDER is set, it writes the seams there, for
-// people to look at: both tiles side by side, and below them the one rendering in the left tile's
-// plane.
+// The test prints its figures. If the environment variable MERLIN_PICTURES is set, it writes
+// pictures of the seams into that folder, for people to look at: both tiles side by side, and below
+// them the one rendering in the left tile's plane.
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -37,8 +37,8 @@ mesh::Mesh scaled(mesh::Mesh mesh, float factor) {
   return mesh;
 }
 
-// A hall with a bumpy wall around the eye, and a hundred balls and cubes of different colours in
-// it.
+// Returns a hall with a bumpy wall around the eye, in which there are a hundred balls and cubes of
+// different colours.
 mesh::Mesh hall() {
   Random random(11);
   const auto uniform = [&](double low, double high) {
@@ -105,7 +105,7 @@ class Painter {
   std::shared_ptr<const frame::DrawContexts> contexts_ = *frame::DrawContexts::make({});
 };
 
-// A rectangle in the room, which the eye sees from its front.
+// A rectangle in the room, whose front the eye sees.
 struct Rectangle {
   Vector3d corner, across, up;  // lower left; lower and left edge [m]
 
@@ -113,8 +113,8 @@ struct Rectangle {
       : corner(&t.screen_m[0]),
         across(Vector3d(&t.screen_m[3]) - corner),
         up(Vector3d(&t.screen_m[6]) - corner) {}
-  // A part of the rectangle, or one that extends beyond it: left, lower edge, width and height as
-  // shares of this one's.
+  // Returns a part of the rectangle, or a rectangle that extends beyond it: left, lower edge, width
+  // and height as shares of the rectangle's size.
   Rectangle part(double left, double lower, double width, double height) const {
     Rectangle r = *this;
     r.corner += left * across + lower * up;
@@ -122,13 +122,13 @@ struct Rectangle {
     r.up *= height;
     return r;
   }
-  // The point in the room of a pixel position, counted from the upper left corner of a picture of
-  // width x height.
+  // Returns the point in the room of a pixel position, counted from the upper left corner of a
+  // picture of width x height pixels.
   Vector3d at(double x, double y, int width, int height) const {
     return corner + x / width * across + (1 - y / height) * up;
   }
-  // The pixel position (x, y) at which the ray from the eye through `point` meets the rectangle's
-  // plane; false if that is behind the eye.
+  // Sets (x, y) to the pixel position at which the ray from the eye through `point` meets the
+  // rectangle's plane; returns false if that is behind the eye.
   bool meets(const Vector3d& point, int width, int height, double& x, double& y) const {
     const Vector3d normal = across.cross(up);
     const double along = corner.dot(normal) / point.dot(normal);
@@ -157,7 +157,7 @@ struct Count {
   double share() const { return pixels > 0 ? static_cast<double>(off) / pixels : 0; }
 };
 
-// Whether a pixel next to (x, y) differs from it, which means that an edge goes through there.
+// Returns whether a pixel next to (x, y) differs from it, so that an edge passes there.
 bool isAtEdge(const Image& image, int x, int y) {
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -192,8 +192,8 @@ test::Rgba mixed(const test::Rgba& a, const test::Rgba& b, double share) {
   return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), 255};
 }
 
-// The colour interpolated between the four nearest pixels; the pixels' centres are at x and y of a
-// half.
+// Returns the colour interpolated between the four nearest pixels; pixel (x, y) has its centre at
+// (x + 0.5, y + 0.5).
 test::Rgba sampleAt(const Image& image, double x, double y) {
   const double fx = std::clamp(x - 0.5, 0.0, image.width - 1.001);
   const double fy = std::clamp(y - 0.5, 0.0, image.height - 1.001);
@@ -269,7 +269,8 @@ TEST_P(PresetPictures, AreEachAPartOfOneRenderingInTheirPlane) {
   print("tiles against a rendering half as large again", all);
 }
 
-// A point of the edge that two panels share is at the edge of both tiles, and at the same height.
+// A point of the edge that two panels share must be at the edge of both tiles, and at the same
+// height.
 TEST_P(PresetPictures, ShowASharedEdgeAtOnePlace) {
   const tiles::TilePlan plan = *tiles::planTiles(wall_);
   const auto seams = seamsOf(wall_);
@@ -303,7 +304,7 @@ void append(std::vector<std::uint8_t>& pixels, const test::Rgba& p) {
     pixels.push_back(static_cast<std::uint8_t>(value));
 }
 
-// Writes the left tile and the right tile, resampled onto the left one's plane, and below them the
+// Writes the left tile and the right tile, resampled onto the left tile's plane, and below them the
 // one rendering.
 void writeSeam(const Image& left, const Image& one, const Rectangle& plane, const Image& right,
                const Rectangle& screen, const std::string& name) {
@@ -359,7 +360,7 @@ TEST_P(PresetPictures, GoOnBeyondTheirSeams) {
   EXPECT_LE(all.off_in_surfaces, kMostOff * all.pixels);
 }
 
-// Each pixel of the result is the mean of `times` x `times` pixels.
+// Returns a smaller image in which each pixel is the mean of `times` x `times` pixels.
 Image reduced(const Image& image, int times) {
   Image small{image.width / times, image.height / times, {}};
   for (int y = 0; y < small.height; ++y) {
@@ -378,8 +379,9 @@ Image reduced(const Image& image, int times) {
   return small;
 }
 
-// As above, with both renderings eight times as fine in each direction, so that edges have the same
-// place and softness in both. Compares a strip of a quarter of a tile beyond each seam.
+// Compares the tile beyond each seam with one rendering, both eight times as fine in each
+// direction, so that edges have the same place and softness in both. Only a strip of a quarter of a
+// tile is compared.
 TEST_P(PresetPictures, GoOnBeyondTheirSeamsAlsoAtEdges) {
   constexpr int kFiner = 8, kStrip = kWidth / 4;
   Count all;
@@ -419,7 +421,7 @@ INSTANTIATE_TEST_SUITE_P(Rooms, PresetPictures,
                                          room::RoomPreset::kHexagon),
                          nameOfCase);
 
-// Panels in one plane: all tiles together are one rendering.
+// If all panels are in one plane, all tiles together equal one rendering.
 TEST(CoplanarPictures, AreTogetherOneRendering) {
   Painter painter;
   for (const room::RoomPreset preset : {room::RoomPreset::kFlat, room::RoomPreset::kSix}) {
@@ -445,7 +447,7 @@ TEST(CoplanarPictures, AreTogetherOneRendering) {
   }
 }
 
-// Pictures of 320 pixels each; each shares 96 of them with its neighbour.
+// The pictures are 320 pixels wide; each shares 96 columns with its neighbour.
 TEST(CoplanarPictures, ThatOverlapAreTogetherOneRendering) {
   Painter painter;
   room::RoomSettings room;

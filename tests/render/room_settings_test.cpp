@@ -11,7 +11,7 @@
 namespace merlin::render {
 namespace {
 
-// Two panels of 2 x 1.5 m, hinged at 160 degrees; the eye is 3 m in front of the left one.
+// Returns two panels of 2 x 1.5 m, hinged at 160 degrees; the eye is 3 m in front of the left one.
 room::RoomSettings twoPanels() {
   room::RoomSettings room;
   room.panels = {{"left", 2, 1.5, 0, {-2, 0, -3}}, {"right", 2, 1.5, 160}};

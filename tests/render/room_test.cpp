@@ -1,4 +1,4 @@
-// Tiles computed from a room's description: seams, the viewer's place, presets, the canvas.
+// Tiles computed from the description of a room: seams, the viewer's place, presets, the canvas.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -50,7 +50,8 @@ room::RoomSettings presetRoom(room::RoomPreset name) {
   return room;
 }
 
-// Direction from the eye through a point of the tile's image; x and y in -1..1, right and up.
+// Returns the direction from the eye through a point of the tile's image; x and y are in -1..1, to
+// the right and up.
 Vector3d directionOf(const tiles::Tile& tile, float x, float y) {
   const Vector3f inside((x + tile.projection(0, 2)) / tile.projection(0, 0),
                         (y + tile.projection(1, 2)) / tile.projection(1, 1), -1);
@@ -144,7 +145,7 @@ TEST(Room, ProjectorsMayOverlap) {
   const Wall wall = wallOf(room);
   const Vector3d seam = Vector3d(0.2, 0.5, -1.5).normalized();
   EXPECT_LT((directionOf(wall.tile("left"), 1, 1) - seam).norm(), 1e-6);
-  // In the right tile, the same point is 0.4 m of 1.2 m from the left edge.
+  // In the right tile, the same point is 0.4 m from the left edge, of a width of 1.2 m.
   EXPECT_LT((directionOf(wall.tile("right"), 2 * 0.4F / 1.2F - 1, 1) - seam).norm(), 1e-6);
   const auto overlaps = room::tileOverlaps(wall.plan);
   ASSERT_EQ(overlaps.size(), 1u);
@@ -166,7 +167,7 @@ TEST(Room, APanelBehindAnotherDoesNotOverlapIt) {
   EXPECT_TRUE(room::tileOverlaps(wallOf(room).plan).empty());
 }
 
-// Each direction around the viewer, at eye height, is in exactly one tile.
+// Each direction around the viewer, at eye height, must be in exactly one tile.
 TEST(RoomPresets, AHexagonClosesAroundTheViewer) {
   const Wall wall = wallOf(presetRoom(room::RoomPreset::kHexagon));
   double total_deg = 0;
@@ -197,8 +198,8 @@ TEST(RoomPresets, APictureOfTheWallBeginsBehindTheViewer) {
   EXPECT_EQ(around.plan.wall_width, 6 * 640);
 }
 
-// In the wall's picture the tiles are in rows and columns as the frames are in the room, also for
-// projectors that overlap and wherever the viewer looks.
+// In the picture of the wall, the tiles must be in rows and columns as the frames are in the room,
+// also for projectors that overlap, and wherever the viewer looks.
 TEST(RoomPresets, FramesAboveOneAnotherAreSoInAPictureOfTheWall) {
   const char* const order[] = {"upper_left", "upper_centre", "upper_right",
                                "lower_left", "lower_centre", "lower_right"};
@@ -219,7 +220,7 @@ TEST(RoomPresets, FramesAboveOneAnotherAreSoInAPictureOfTheWall) {
 }
 
 TEST(RoomPresets, MeasuringErrorsMoveNoFrameToAnotherRow) {
-  for (const double nudge_m : {-0.01, -1e-6, 1e-6, 0.01}) {  // by which the upper row is moved
+  for (const double nudge_m : {-0.01, -1e-6, 1e-6, 0.01}) {  // the upper row is moved by this much
     room::RoomSettings room = room::withPanels(presetRoom(room::RoomPreset::kSix));
     room.panels[0].lower_left_m[0] += nudge_m;
     room.panels[0].lower_left_m[1] += nudge_m;
@@ -230,7 +231,8 @@ TEST(RoomPresets, MeasuringErrorsMoveNoFrameToAnotherRow) {
   }
 }
 
-// One wide display below two, and one above the middle of three.
+// In one wall, a wide display is below two others; in the other wall, one display is above the
+// middle one of three.
 TEST(Room, APictureOfTheWallHasColumnsAsTheRoomHas) {
   room::RoomSettings wide;
   wide.panels = {{"screen", 4, 3, 0, {-2, -1.5, -3}}};
@@ -264,7 +266,7 @@ struct Front {
   room::RoomPreset name;
   std::size_t panels;
   const char* front;
-  double distance_m, horizontal_deg;  // of the front panel
+  double distance_m, horizontal_deg;  // distance and width [degrees] of the front panel
 };
 
 // Distances computed by hand: 0.8 m / tan(half the angle between panels). For a flat wall the

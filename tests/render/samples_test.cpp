@@ -1,4 +1,5 @@
-// The sample content, the sample output and the sample reader fulfil the contracts of their ports.
+// The sample content, the sample output and the sample reader must fulfil the contracts of their
+// ports.
 #include <sstream>
 #include <vector>
 
@@ -14,7 +15,7 @@
 namespace merlin::render {
 namespace {
 
-// A plan with one tile of 64 x 64 pixels, which a plane of 2 x 2 m fills exactly.
+// Returns a plan with one tile of 64 x 64 pixels, which a plane of 2 x 2 m fills exactly.
 tiles::TilePlan onePlane() {
   tiles::TilesSettings s;
   s.tile_width = s.tile_height = s.frame_width = s.frame_height = 64;
@@ -36,7 +37,7 @@ class ChequersTest : public testing::Test {
       std::make_unique<content::Chequers>(), plan_, *frame::DrawContexts::make({}), clock_);
 };
 
-// 8 x 8 squares of 8 pixels at step 3, then 2 x 2 squares of 32 pixels at step 5.
+// At step 3 there are 8 x 8 squares of 8 pixels, at step 5 there are 2 x 2 squares of 32 pixels.
 TEST_F(ChequersTest, IsDrawnAtAnyStep) {
   const content::DetailAxis& detail = renderer_->content().detail();
   EXPECT_EQ(detail.stepWithin(64), 3u);

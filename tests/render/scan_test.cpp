@@ -51,7 +51,8 @@ scan::Scan scanned(const Mesh& mesh, const scan::ScanSettings& settings, unsigne
   return result.ok() ? *std::move(result) : scan::Scan{};
 }
 
-// A scanner at the origin with orthogonal rays, 90 x 90 degrees, one metre from the wall().
+// Returns settings of a scanner at the origin with orthogonal rays, 90 x 90 degrees, one metre from
+// the wall().
 scan::ScanSettings ahead(std::size_t width, std::size_t height) {
   scan::ScanSettings settings;
   settings.width = width;
@@ -126,12 +127,12 @@ TEST(Ray, MeetsTheNearestTriangleOfAllOnItsWay) {
   EXPECT_GT(met, 500);
 }
 
-// A mesh that was scanned, written, read, and triangulated as merlin mesh import does it.
+// A mesh that was scanned, written, read, and triangulated, as merlin mesh import does.
 struct RoundTrip {
   range::RangeImage image;
   Mesh mesh;
-  double range_step = 0;  // of ranges in the file [units]
-  double step = 0;        // between pixels at the farthest range [units]
+  double range_step = 0;  // step of the ranges in the file [units]
+  double step = 0;        // distance between neighbouring pixels at the farthest range [units]
 };
 RoundTrip roundTrip(const Mesh& mesh, Scanner scanner) {
   const TempDir dir;
@@ -153,8 +154,8 @@ RoundTrip roundTrip(const Mesh& mesh, Scanner scanner) {
   return trip;
 }
 
-// Each vertex lies within half a step of the file's ranges from the model, and each point of the
-// model's surface within a step between pixels from the mesh.
+// Expects that each vertex lies within half a step of the file's ranges from the model, and that
+// each point of the model's surface lies within one step between pixels from the mesh.
 void expectWithinTheStep(const char* shape, const Mesh& model, Scanner scanner) {
   const RoundTrip trip = roundTrip(model, scanner);
   ASSERT_GT(trip.mesh.triangleCount(), 4000u);
@@ -274,7 +275,8 @@ TEST(ScanFaults, TheSeedDecidesAndTheThreadsDoNot) {
 
 TEST(ScanFaults, AScannerThatLooksElsewhereIsAnError) {
   scan::ScanSettings settings = ahead(8, 8);
-  settings.geometry.T_world_scanner = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};  // away from it
+  // the scanner looks away from the wall
+  settings.geometry.T_world_scanner = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
   EXPECT_EQ(scan::scan({wall()}, settings, {}).error().what, "none of the rays meets the mesh");
   settings.geometry.horizontal_rad = 4;
   EXPECT_EQ(scan::scan({wall()}, settings, {}).error().code, Errc::kInvalidArgument);

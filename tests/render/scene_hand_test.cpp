@@ -1,4 +1,5 @@
-// The tracked hand grabs, carries and releases the model; noise of the tracker is no motion.
+// The tracked hand grabs, carries and releases the model; noise of the tracker does not count as
+// motion.
 #include <gtest/gtest.h>
 
 #include "daemon/base/random.h"
@@ -18,10 +19,11 @@ const Vector3f kX = Vector3f::UnitX(), kY = Vector3f::UnitY(), kZ = Vector3f::Un
 const Vector3f kStart(0, 0, -2);      // the model's default position
 const Vector3f kHand(0.4F, 0.1F, 0);  // an arbitrary position in the tracker's frame
 
-// The tracker's axes are those of the wall; the model moves three times as far as the hand.
+// Settings in which the tracker's axes are those of the wall, and the model moves three times as
+// far as the hand.
 scene::SceneSettings plain() { return {.tracker_axes = {1, 2, 3}, .hand_gain = 3}; }
 
-// A scene in which the hand has just grabbed the model.
+// Returns a scene in which the hand has just grabbed the model.
 ScenePlay grabbed(const scene::SceneSettings& settings = plain(),
                   const Matrix3f& hand_turn = Matrix3f::Identity()) {
   ScenePlay play(settings);
@@ -68,7 +70,7 @@ TEST(SceneHand, TurnsTheModelAsItTurnsAboutTheModelsCentre) {
   expectAt(play, kStart + 0.3F * kY, turnedBy(-90, {1, 1, 0}) * turnedBy(30, kY));
 }
 
-// The default mapping: the wall's x is the tracker's -y, its y is -z, its z is x.
+// By default, the wall's x is the tracker's -y, its y the tracker's -z, its z the tracker's x.
 TEST(SceneHand, ItsAxesAreMapped) {
   const struct { Vector3f tracker, wall; } axes[] = {{-kY, kX}, {-kZ, kY}, {kX, kZ}};
   for (const auto& axis : axes) {
@@ -94,8 +96,8 @@ TEST(SceneHand, CarriesAlongTheAxesOfAViewerWhoHasTurned) {
   expectAt(play, {2.3F, 0, 0}, turnedBy(30, kX) * turnedBy(-90, kY));
 }
 
-// Without the action, and without the tracker, the model is released. It stays where it is, and
-// does not jump to the hand at the next grab.
+// If the action ends or the tracker fails, the model is released. It stays where it is, and must
+// not jump to the hand at the next grab.
 TEST(SceneHand, WithoutTheActionOrTheTrackerItLetsGo) {
   for (const int gone : {0, 1}) {
     ScenePlay play = grabbed();

@@ -4,8 +4,8 @@
 namespace merlin::test {
 namespace {
 
-// The tracker's axes are those of the wall, and its transmitter is 0.5 m below the eye. The model
-// is a sphere of radius 0.5 m at 2 m distance; the wall is 3 m away.
+// Returns settings in which the tracker's axes are those of the wall, and its transmitter is 0.5 m
+// below the eye. The model is a sphere of radius 0.5 m at 2 m distance; the wall is 3 m away.
 SceneSettings pointing() {
   SceneSettings s;
   s.model_radius_m = 0.5;
@@ -29,7 +29,7 @@ void expectPoint(const Vector3f& got, const Vector3f& want) {
   EXPECT_LT((got - want).norm(), 1e-4F) << got.transpose() << ", not " << want.transpose();
 }
 
-// Seen from eye height, the ray is the viewing axis, which enters the sphere 1.5 m away.
+// From eye height, the ray is the viewing axis, which enters the sphere 1.5 m away.
 TEST(ScenePointing, TheRayEntersTheModelsSphere) {
   const ScenePlay play = pointingFrom({0, 0.5F, 0});
   const auto& pointed = play.scene.view().pointed;

@@ -67,7 +67,7 @@ TEST(SceneStep, IsAppliedOnceWhateverTheFrameTakes) {
   }
 }
 
-// This lets a drag in a window, a VNC client or the page move a picture, too.
+// With this, a drag in a window, in a VNC client or on the page also moves a picture.
 TEST(SceneStep, ThatWouldTurnAPlaneMovesItAsAFingerDoes) {
   ScenePlay play({.model_radius_m = 2});
   play.scene.setNavigation(content::Navigation::kPlane);

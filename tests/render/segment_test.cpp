@@ -21,7 +21,8 @@ segment::Segmentation segmented(mesh::Mesh mesh, const segment::SegmentSettings&
   return result ? *result : segment::Segmentation{};
 }
 
-// A cube of n x n x n cells whose sides share vertices; `side` is 0..5, or 6 on edges and corners.
+// Returns a cube of n x n x n cells whose sides share vertices. `side`: for each vertex the number
+// of its side, 0..5, or 6 on edges and corners.
 mesh::Mesh fineCube(std::uint32_t n, std::vector<int>& side) {
   mesh::Mesh mesh = test::grid(n, n);
   const std::size_t vertices = mesh.vertexCount(), corners = mesh.triangles.size();
@@ -70,7 +71,7 @@ TEST(Segment, FindsTheSixSidesOfACubeByTheirNormals) {
   for (const std::size_t size : s.sizes) EXPECT_GE(size, 121u);
 }
 
-// A flat mesh with red and green stripes, so that only the colour distinguishes them.
+// Returns a flat mesh with red and green stripes, which only the colour distinguishes.
 mesh::Mesh stripes() {
   mesh::Mesh mesh = test::grid(11, 5);
   mesh::Feature colour{"colour", 3, {}};
@@ -122,7 +123,7 @@ TEST(Segment, JoinsComponentsThatAreTooMany) {
   EXPECT_EQ(s.sizes[0] + s.sizes[1], 28u);
 }
 
-// Coincident vertices on both sides of a seam belong to one surface.
+// Coincident vertices on both sides of a seam must belong to one surface.
 TEST(Segment, CrossesSeams) {
   const mesh::Mesh mesh = test::together(test::grid(2, 1), test::moved(test::grid(2, 1), 2, 0, 0));
   EXPECT_EQ(segmented(mesh, {.segments = 1}).sizes, (Sizes{12}));

@@ -14,8 +14,8 @@ namespace {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-// A fan of five vertices without collapses. The dendrogram renumbers its nodes, so a node is found
-// by its value.
+// Returns a fan of five vertices without collapses. The dendrogram renumbers its nodes, so the
+// tests find a node by its value.
 lod::Dendrogram fan(std::vector<mesh::Feature> features) {
   mesh::Mesh mesh;
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0};

@@ -22,7 +22,7 @@ inline stereo::StereoSettings inMode(stereo::StereoMode mode,
   return s;
 }
 
-// One tile of 640 x 480 pixels beside the operator's tile.
+// Returns settings with one tile of 640 x 480 pixels beside the operator's tile.
 inline tiles::TilesSettings oneTile() {
   tiles::TilesSettings tiles;
   tiles.frame_height = 480;

@@ -1,5 +1,5 @@
-// Impossible stereo settings: each is refused, and the message gives the reason and a remedy.
-// Settings that are probably not meant are doubted.
+// Impossible stereo settings are refused, and the message gives the reason and a remedy. Settings
+// that are probably a mistake cause a warning.
 #include "tests/render/stereo_settings.h"
 
 #include <functional>

@@ -77,14 +77,14 @@ TEST(TestCard, TheGridReachesTheBorderAndItsCirclesAreRound) {
     EXPECT_EQ(c.inTile(x, 239), kWhitePixel);
   }
   EXPECT_EQ(c.inTile(1, 11), kBlackPixel) << "one pixel wide";
-  // 319 pixels from the first to the last of 17 lines.
+  // The 17 lines cover 319 pixels from the first to the last.
   EXPECT_EQ(c.inTile(20, 10), (Rgb{200, 200, 200}));
   EXPECT_EQ(c.inTile(40, 10), (Rgb{200, 200, 200}));
   EXPECT_EQ(c.inTile(30, 11), kBlackPixel);
-  // The middle is between two pixels each way.
+  // The middle lies between two pixels in each direction.
   for (const int x : {159, 160}) EXPECT_EQ(c.inTile(x, 5), (Rgb{0, 255, 0}));
   for (const int y : {119, 120}) EXPECT_EQ(c.inTile(5, y), (Rgb{0, 255, 0}));
-  // The circle of radius 120: at 45 degrees, on all four sides.
+  // A circle of radius 120 passes these points, at 45 degrees on all four sides.
   const int d = 84;  // 120 / sqrt 2, the pixel before
   for (const int x : {159 - d, 160 + d}) {
     for (const int y : {119 - d, 120 + d}) EXPECT_EQ(c.inTile(x, y), kWhitePixel) << x << " " << y;
@@ -126,8 +126,8 @@ TEST(TestCard, RampsGoFromZeroToFull) {
   EXPECT_EQ(c.inTile(290, 220), (Rgb{253, 253, 253}));
 }
 
-// Two projectors of 320 pixels over 1.6 m each, of which 0.3 m overlap: not a whole number of
-// cells.
+// Returns one of two projectors with 320 pixels over 1.6 m each. They overlap by 0.3 m, which is
+// not a whole number of cells.
 testcard::CardTile projector(double left_m) {
   testcard::CardTile t = tile();
   t.part = {left_m, 0, 1.6, 1.2, 2.9, 1.2};
@@ -136,7 +136,7 @@ testcard::CardTile projector(double left_m) {
 
 TEST(TestCard, LinesAndRampsOfTilesThatOverlapLieOnOneAnother) {
   const double pixel_m = 1.6 / 320;
-  const auto places = [&](double left_m) {  // of the lines within the overlap, in metres
+  const auto places = [&](double left_m) {  // places of the lines within the overlap [m]
     const Canvas c = drawn(testcard::Card::kGrid, projector(left_m));
     std::vector<double> found;
     for (int x = 1; x < 319; ++x) {
@@ -182,7 +182,7 @@ TEST(TestCard, NamesAreAsLargeAsTheTileAllowsAndHaveTheirLinesBelow) {
   t.lines = {"output beamer 1", "320 x 240"};
   const Canvas c = drawn(testcard::Card::kNames, t);
   // Each of the 4 characters of "left" is 8 font pixels wide, and the name may take 80 % of 320
-  // pixels, so each font pixel is 8 pixels wide and high.
+  // pixels, so each font pixel becomes 8 pixels wide and high.
   int pixels = 0;
   for (const char letter : t.name) {
     for (const std::uint8_t row : testcard::glyph(letter)) pixels += std::popcount(row);
@@ -250,7 +250,8 @@ class CardTiles : public testing::Test {
     output_.tiles = {placed};
     return testcard::cardTiles(plan_, {out::OutputSettings{}, output_}, {})[0];
   }
-  // Which corner of the tile each corner of the output's picture is, in the picture's order.
+  // Returns which corner of the tile each corner of the output's picture is, in the picture's
+  // order.
   std::array<std::size_t, 4> corners() const {
     std::array<std::size_t, 4> all{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -276,7 +277,7 @@ TEST_F(CardTiles, SayWhichOutputShowsThemAndOnWhichPanelTheyAre) {
   EXPECT_EQ(tiles[1].lines, (std::vector<std::string>{"320 x 240", "panel p 2"}));
 }
 
-// Two projectors on one screen, without a blend in the settings.
+// Two projectors on one screen, with no blend in the settings.
 TEST(CardTilesOnAScreen, HaveTheirPartAndTheStripsOfTheirNeighbours) {
   tiles::TilesSettings settings;
   settings.frame_width = 640;
@@ -323,8 +324,8 @@ TEST_F(CardTiles, StripsAndCornersAreThoseOfTheTileAlsoIfItIsTurned) {
   EXPECT_EQ(strips(leftAs({"", 0, 0, out::Mirror::kNone, out::Turn::k180})),
             (std::array{0, 40, 30, 0}));
   EXPECT_EQ(corners(), (std::array<std::size_t, 4>{3, 2, 1, 0}));
-  // Turned clockwise: the tile's top is the output's right side, the tile's left side the output's
-  // top.
+  // Turned clockwise, the tile's top is at the output's right side, and the tile's left side at the
+  // output's top.
   EXPECT_EQ(strips(leftAs({"", 0, 0, out::Mirror::kNone, out::Turn::k90})),
             (std::array{0, 30, 0, 40}));
   EXPECT_EQ(corners(), (std::array<std::size_t, 4>{2, 0, 3, 1}));

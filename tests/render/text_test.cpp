@@ -1,4 +1,4 @@
-// Text as pixels: where it is drawn, and that no bytes make it draw outside of its box.
+// Text as pixels: where it is drawn, and that no bytes can make it draw outside of its box.
 #include "render/text/text.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ const GlyphAtlas& atlas() {
 }
 Font font(std::size_t size = 0) { return {&atlas(), size}; }
 
-// Transparent pixels.
+// An image of transparent pixels, to draw on.
 struct Picture {
   explicit Picture(int w = 200, int h = 60)
       : width(w), height(h), rgba(std::size_t{4} * static_cast<std::size_t>(w * h)) {}
@@ -33,7 +33,7 @@ struct Picture {
   std::uint8_t alpha(int x, int y) const {
     return rgba[static_cast<std::size_t>(4 * (y * width + x) + 3)];
   }
-  // The smallest rectangle that contains all drawn pixels.
+  // Returns the smallest rectangle that contains all drawn pixels.
   Rect drawn() const {
     int left = width, top = height, right = 0, bottom = 0;
     for (int y = 0; y < height; ++y) {

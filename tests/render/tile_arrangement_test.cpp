@@ -24,7 +24,7 @@ class TileArrangementTest : public testing::Test {
     for (const char c : std::string("ABCghDEFij"))
       canvas_.insert(canvas_.end(), {static_cast<std::uint8_t>(c), 1, 2, 255});
   }
-  // The output's rows as text; a pixel outside all tiles is a dot.
+  // Returns the output's rows as text; a pixel outside all tiles is a dot.
   std::string shown(const std::vector<out::PlacedTile>& tiles) {
     std::vector<out::OutputSettings> outputs = {{out::OutputKind::kPng, "", "a.png"}};
     outputs[0].tiles = tiles;

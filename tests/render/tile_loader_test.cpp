@@ -1,4 +1,4 @@
-// The thread that loads tiles: it loads the requested tiles, the most urgent first, within its
+// The thread that loads tiles: it loads the most urgent requested tiles first, keeps within its
 // memory, and reports files that it cannot read.
 #include "render/content/picture/tile_loader.h"
 
@@ -27,7 +27,7 @@ std::vector<TilePlace> allOf(const Picture& picture) {
   return places;
 }
 
-// A clock that a test moves while the loader's thread reads it.
+// A clock that a test advances while the loader's thread reads it.
 class SteppedClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return Timestamp(Duration(now_ns_.load())); }
@@ -38,7 +38,7 @@ class SteppedClock final : public Clock {
   std::atomic<std::int64_t> now_ns_{1'000'000'000};
 };
 
-// A file whose level 0 cannot be read as long as `fails` is true.
+// A file whose level 0 cannot be read while `fails` is true.
 class FlakyAccess final : public image::RandomAccess {
  public:
   // `fails`: whether reading fails now; `tries`: number of attempts to read.
@@ -97,7 +97,7 @@ TEST_F(TileLoaderTest, HoldsNoMoreThanItsMemory) {
 TEST_F(TileLoaderTest, SaysOnceForAPictureWhatCannotBeReadAndDoesNotTryItAtOnceAgain) {
   std::string bytes = test::pyramidBytes();
   // The compressed tiles of level 0, which begin at byte 16, are replaced by noise; the coarsest
-  // level stays.
+  // level remains readable.
   const auto whole = pictureOf(bytes);
   for (std::size_t i = 20; i < 2000; ++i) bytes[i] = static_cast<char>(i * 31);
   const auto picture = pictureOf(bytes);

@@ -1,4 +1,4 @@
-// The tile plan of the 1998 wall ([GOURLEY98] 2.4): rectangles, adjacent frusta, the operator's
+// The tile plan of the wall of 1998 ([GOURLEY98] 2.4): rectangles, adjacent frusta, the operator's
 // view.
 #include "render/tiles/tile_plan.h"
 
@@ -29,7 +29,8 @@ tiles::TilePlan planned(const tiles::TilesSettings& settings = {}) {
   return *std::move(plan);
 }
 
-// Projects a point in eye coordinates: x right and y up, -1..1 in the tile; z is the depth.
+// Projects a point in eye coordinates. Returns x to the right and y up, both -1..1 in the tile, and
+// the depth z.
 Vector3f drawnAt(const Matrix4f& projection, const Matrix4f& view, const Vector3f& eye) {
   const Eigen::Vector4f clip = projection * view * eye.homogeneous();
   EXPECT_GT(clip.w(), 0) << "behind the eye";
@@ -39,14 +40,14 @@ Vector3f drawnAt(const tiles::Tile& tile, const Vector3f& eye) {
   return drawnAt(tile.projection, tile.view, eye);
 }
 
-// A point in eye coordinates: `left_deg` left of straight ahead, `up` metres above the eye, at
-// `distance`.
+// Returns a point in eye coordinates: `left_deg` to the left of straight ahead, `up` metres above
+// the eye, at `distance` metres.
 Vector3f pointAt(float left_deg, float up, float distance) {
   const float angle = left_deg * kRadian;
   return {-distance * std::sin(angle), up, -distance * std::cos(angle)};
 }
 
-// The column of the whole wall's image at which a tile draws the point.
+// Returns the column, in the image of the whole wall, at which a tile draws the point.
 float columnOf(const tiles::Tile& tile, const Vector3f& eye) {
   return static_cast<float>(tile.wall_x) +
          (drawnAt(tile, eye).x() + 1) / 2 * static_cast<float>(tile.width);
@@ -80,8 +81,8 @@ TEST(TilePlan, IsFourQuadrantsAsShipped) {
   }
 }
 
-// A point at the right edge of the left tile is at the left edge of the centre tile, at the same
-// height.
+// A point at the right edge of the left tile must be at the left edge of the centre tile, at the
+// same height.
 TEST(TilePlan, FrustaTouchAndDoNotOverlap) {
   const tiles::TilePlan plan = planned();
   const tiles::Tile &left = plan.tiles[0], &centre = plan.tiles[1], &right = plan.tiles[2];
@@ -112,8 +113,8 @@ TEST(TilePlan, TilesLookWhereTheirNameSays) {
   }
 }
 
-// From the image's left edge at 60 degrees to its right edge the column increases without a jump at
-// the seams, whatever the field of view.
+// From the image's left edge at 60 degrees to its right edge, the column must increase without a
+// jump at the seams, whatever the field of view.
 TEST(TilePlan, TheWallsPictureGoesOnAcrossItsSeams) {
   for (const float fov : {10.0F, 40.0F, 60.0F, 100.0F}) {
     tiles::TilesSettings settings;
@@ -125,8 +126,7 @@ TEST(TilePlan, TheWallsPictureGoesOnAcrossItsSeams) {
       const tiles::Tile& tile = plan.tiles[static_cast<std::size_t>(std::min(step / 1000, 2))];
       const float column = columnOf(tile, pointAt(left_deg, 0, 3));
       ASSERT_GT(column, last) << fov << " " << left_deg;
-      // A step of a thousandth of a tile's field of view is widest at the tile's edge, and nowhere
-      // wider than there.
+      // A step of a thousandth of a tile's field of view is widest at the edge of the tile.
       const float steepest = 0.001F * fov * kRadian / 2 * 640 / std::tan(fov / 2 * kRadian) /
                              std::pow(std::cos(fov / 2 * kRadian), 2.0F);
       ASSERT_TRUE(step == 0 || column - last < 1.05F * steepest) << fov << " " << left_deg;
@@ -224,7 +224,7 @@ TEST(OperatorView, LooksFromTheFrontAndDoesNotTurn) {
   EXPECT_TRUE(centre.isApprox(Vector3f(0, 0, -std::numbers::sqrt2_v<float>), 1e-6F)) << centre;
 }
 
-// Three tiles of 40 degrees around the eye see 60 degrees to either side, up to far_m.
+// Three tiles of 40 degrees around the eye see 60 degrees to either side, up to the distance far_m.
 TEST(SeesBox, OfTheWallsTilesOnlyAndByTheirFrusta) {
   const tiles::TilePlan plan = planned({});
   const auto sees = [&](const Vector3f& centre, float half = 0.5F) {
@@ -274,8 +274,8 @@ TEST(TilePlan, TilesThatLookUpwardsAreAboveInTheWallsPicture) {
   EXPECT_EQ(plan.wall_height, 960);
 }
 
-// In the wall's picture no tile covers another one and all are inside, whatever their directions
-// are.
+// In the wall's picture no tile covers another one, and all tiles are inside the picture, whatever
+// their directions are.
 TEST(TilePlan, NoTileCoversAnotherInTheWallsPicture) {
   Random random(4);
   for (int wall = 0; wall < 500; ++wall) {
@@ -355,8 +355,8 @@ TEST(TilePlan, AnOffAxisFrustumHasItsEdgesAtItsAngles) {
   EXPECT_NEAR(drawnAt(tile, pointAt(0, -3 * std::tan(20 * kRadian), 3)).y(), -1, 1e-5);
 }
 
-// A hinged wall: two screens of 1.6 x 1.2 m at an angle of 120 degrees, with the eye off-centre. A
-// point is drawn where the line from the eye to the point crosses the screen.
+// A hinged wall has two screens of 1.6 x 1.2 m at an angle of 120 degrees, with the eye off-centre.
+// A point must be drawn where the line from the eye to the point crosses the screen.
 TEST(TilePlan, AScreenIsLookedThroughAtItsCorners) {
   const Vector3f lower_left(-1.4F, -0.7F, -1.1F), hinge(0.0F, -0.7F, -1.9F),
       lower_right(1.4F, -0.7F, -1.1F), up(0, 1.2F, 0);
@@ -425,7 +425,7 @@ TEST(TilePlan, FrustaThatAreNoneAreRefused) {
             std::string::npos);
 }
 
-// The position, in clip coordinates of the tile, of a point of a content whose middle is at
+// Returns the position, in clip coordinates of the tile, of a point of a content whose middle is at
 // `centre`.
 Vector3f shownAt(const tiles::Tile& tile, const Vector3f& centre, float radius,
                  const Vector3f& point) {
@@ -476,7 +476,7 @@ TEST(OwnViews, OfAFreeCameraAreItsPerspective) {
   EXPECT_NEAR(at({1, 1, -3.5F}).y(), 1, 1e-5) << "up: away from the person, tan = 3 / 4";
 }
 
-// The default free camera equals a tile of the wall that looks straight ahead.
+// The default free camera must equal a tile of the wall that looks straight ahead.
 TEST(OwnViews, OfACameraAtTheEyeAreTheWalls) {
   tiles::TilesSettings s;
   s.tiles = {{"wall", tiles::TileKind::kWall, 0, 0, 0},
@@ -487,8 +487,8 @@ TEST(OwnViews, OfACameraAtTheEyeAreTheWalls) {
   EXPECT_EQ(plan.tiles[0].view, plan.tiles[1].view);
 }
 
-// A view that is fitted to the whole content does not count as seeing it; a free camera that sees
-// it does.
+// A view that is fitted to the whole content does not count as seeing the content; a free camera
+// that sees it does.
 TEST(OwnViews, OfTheWholeContentDoNotCountAsSeeingIt) {
   tiles::TilesSettings s;
   s.tiles = {{"wall", tiles::TileKind::kWall, 0, 0, 0},

@@ -139,7 +139,8 @@ INSTANTIATE_TEST_SUITE_P(Places, WrongTiles, testing::ValuesIn(kPlaces), nameOf)
 INSTANTIATE_TEST_SUITE_P(Views, WrongTiles, testing::ValuesIn(kViews), nameOf);
 INSTANTIATE_TEST_SUITE_P(Figures, WrongTiles, testing::ValuesIn(kFigures), nameOf);
 
-// Allowed: two operator tiles with the same turn, and tiles anywhere in the frame.
+// These settings are allowed: two operator tiles with the same turn, and tiles anywhere in the
+// frame.
 TEST(TilesSettings, MayBeOdd) {
   tiles::TilesSettings settings;
   settings.tiles[0].kind = tiles::TileKind::kOperator;

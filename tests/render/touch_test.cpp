@@ -1,4 +1,5 @@
-// Fingers on a touch surface: how their common motion is measured, and how the content follows it.
+// Fingers on a touch surface: how their common motion is measured, and how the content follows that
+// motion.
 #include "render/scene/touch.h"
 
 #include <cmath>

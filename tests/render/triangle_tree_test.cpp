@@ -55,7 +55,7 @@ TEST(NearestOnTriangle, HoldsForTheFarthestAndTheSmallestCoordinates) {
   }
 }
 
-// An independent check: no point of a dense set on the triangle is nearer.
+// As an independent check, no point of a dense set on the triangle may be nearer.
 TEST(NearestOnTriangle, IsNoFartherThanAnyPointOfIt) {
   Random random(1);
   for (int trial = 0; trial < 300; ++trial) {
@@ -82,8 +82,8 @@ TEST(NearestOnTriangle, IsNoFartherThanAnyPointOfIt) {
   }
 }
 
-// Random triangles, small and large. A third have integer corners, so that many share points or are
-// equal; one in eleven has no area.
+// Returns random triangles, small and large. A third of them have integer corners, so that many
+// share points or are equal; one in eleven has no area.
 mesh::Mesh soup(std::size_t triangles, std::uint64_t seed) {
   mesh::Mesh mesh;
   Random random(seed);
@@ -141,8 +141,8 @@ TEST(TriangleTree, HasEachTriangleOnce) {
   EXPECT_EQ(triangles, all);
 }
 
-// Triangles whose distances grow exponentially, and thousands at one position: if nodes were split
-// by area alone, each split would separate one triangle.
+// The distances between triangles grow exponentially, and thousands are at one position: if nodes
+// were split by area alone, each split would separate one triangle.
 TEST(TriangleTree, StaysShallowWhereTrianglesAreSpreadUnevenly) {
   mesh::Mesh mesh;
   for (int t = 0; t < 20000; ++t) {

@@ -1,4 +1,4 @@
-// ViewCut spends the budget of triangles where the tiles look, and does not exceed it.
+// ViewCut spends the budget of triangles where the tiles look, and never exceeds it.
 #include "render/lod/view_cut.h"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ lod::Dendrogram dendrogramOf(mesh::Mesh mesh) {
   return lod::buildDendrogram(mesh, reduction->log);
 }
 
-// A camera at (x, y, height) that looks straight down; 60 degrees wide, 640 pixels.
+// Returns the view of a camera at (x, y, height) that looks straight down; it is 60 degrees and 640
+// pixels wide.
 lod::TileView fromAbove(float x, float y, float height) {
   constexpr float kNear = 0.1F, kFar = 1000, kTan = 0.57735F;
   Eigen::Matrix4f projection = Eigen::Matrix4f::Zero();
@@ -51,7 +52,8 @@ class OverHills : public ::testing::Test {
     }
     return cut_.levels()[best];
   }
-  // The triangle count of the level at the first position, divided by that at the second position.
+  // Returns the triangle count of the level at the first position, divided by that at the second
+  // position.
   double finerAt(float x, float y, float other_x, float other_y) const {
     return static_cast<double>(dendrogram_.trianglesAt(levelAt(x, y))) /
            static_cast<double>(dendrogram_.trianglesAt(levelAt(other_x, other_y)));
@@ -109,7 +111,8 @@ TEST_F(OverHills, AsMuchAsThereIsMeansAllThatIsSeen) {
   EXPECT_EQ(levelAt(10, 10), clusters_.finestLevel());
 }
 
-// A parallel projection of the square of `side` cells about (x, y), straight down; 640 pixels.
+// Returns a parallel projection, straight down, of the square of `side` cells about (x, y), 640
+// pixels wide.
 lod::TileView mapOf(float x, float y, float side) {
   Eigen::Matrix4f clip = Eigen::Matrix4f::Identity();
   clip(0, 0) = clip(1, 1) = 2 / side;
@@ -136,15 +139,15 @@ TEST_F(OverHills, AParallelProjectionIsFineWhereItLooks) {
   }
 }
 
-// In a map of everything all places have the same scale, as for an eye that is far away.
+// In a map of the whole model, all places have the same scale, as for an eye that is far away.
 TEST_F(OverHills, AParallelProjectionOfAllIsCutEvenly) {
   const lod::TileView tile = mapOf(30, 30, 80);
   EXPECT_FALSE(cut_.choose(std::span(&tile, 1), 1500));
 }
 
-// The wall's eye is near one corner, another camera near the opposite one. What either sees from
-// near is fine; each view gets the detail that it would get alone, reduced only because the two
-// share the budget.
+// The wall's eye is near one corner, another camera near the opposite corner. What either sees from
+// near must be fine; each view gets the detail that it would get alone, reduced only because the
+// two share the budget.
 TEST_F(OverHills, AnotherCameraIsNotServedByTheWallsEye) {
   const lod::TileView both[] = {fromAbove(10, 10, 8), fromAbove(50, 50, 8)};
   ASSERT_TRUE(cut_.choose(std::span(both, 1), 1500));
@@ -155,8 +158,8 @@ TEST_F(OverHills, AnotherCameraIsNotServedByTheWallsEye) {
   EXPECT_GE(dendrogram_.trianglesAt(levelAt(50, 50)), alone * 9 / 10);
 }
 
-// Seen from above alone, the lower side of a ball is coarse. With a camera below, it is as fine as
-// the upper side.
+// Seen from above alone, the lower side of a ball is coarse. With a camera below it, the lower side
+// must be as fine as the upper side.
 TEST(ViewCut, ASideThatFacesAwayFromTheEyeIsFineForACameraBehind) {
   const lod::Dendrogram d = dendrogramOf(test::sphere(5));
   const lod::Clusters clusters(d, {.clusters = 64});

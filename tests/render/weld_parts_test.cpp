@@ -1,4 +1,4 @@
-// Parts that are one surface become one (render/mesh/weld_parts.h).
+// Parts that form one surface are joined into one (render/mesh/weld_parts.h).
 #include "render/mesh/weld_parts.h"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ std::size_t componentsOf(const Mesh& mesh) {
   return n;
 }
 
-// The part of each triangle, found from the labels of its welded corners.
+// Returns the part of each triangle, found from the labels of its welded corners.
 Floats partsOf(const Mesh& mesh) {
   Floats parts;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
@@ -128,8 +128,8 @@ TEST(WeldParts, LeavesWhatIsNotOneSurface) {
   EXPECT_EQ(weldParts(unlabelled).vertices, 0u);
 }
 
-// A mesh made to be hard: first all triangles meet at one vertex position, at last all vertices are
-// at one position.
+// A mesh that is made to be hard: first all triangles meet at one vertex position, finally all
+// vertices are at one position.
 TEST(WeldParts, BearsAMeshThatIsMadeForIt) {
   Mesh mesh{{}, {{"label", 1, {}}}, {}};
   for (std::uint32_t p = 0; p < 3000; ++p) {

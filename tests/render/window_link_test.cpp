@@ -1,5 +1,5 @@
 // What an output of kind window does without a desktop: its settings, its geometry, the commands
-// from mouse and keys, and the link to programs that play merlin-window.
+// from mouse and keys, and the link to programs that take the place of merlin-window.
 #include "render/out/window/window_link.h"
 
 #include <atomic>
@@ -92,7 +92,8 @@ TEST(WindowCommands, AHeldKeyRepeatsMotionsOnly) {
   EXPECT_EQ(pressed({.name = "Right", .repeats = true}).size(), 1u);
 }
 
-// A drag along the window's height turns by half a turn: to the right about y, down about x.
+// A drag over the window's whole height turns by half a turn: a drag to the right about y, a drag
+// down about x.
 TEST(WindowCommands, MotionsAddUpToOneCommand) {
   WindowCommands commands;
   commands.drag(Drag::kTurn, 10, 0, 360);
@@ -106,7 +107,7 @@ TEST(WindowCommands, MotionsAddUpToOneCommand) {
   EXPECT_EQ(commands.take(), Strings{}) << "it is back where it began";
 }
 
-// A command's limit holds for every motion, so that `move` never refuses one.
+// The sum of motions is limited to what one command may have, so that `move` never refuses it.
 TEST(WindowCommands, NoMotionIsLargerThanOneCommandMayBe) {
   WindowCommands commands;
   commands.drag(Drag::kTurn, 1e6, -1e6, 0);
@@ -133,7 +134,7 @@ TEST(PictureSlots, AReaderSeesWhatTheWriterWrites) {
               Errc::kMalformed);
 }
 
-// A clock that a test moves while the link's thread reads it.
+// A clock that a test advances while the link's thread reads it.
 class SharedClock final : public Clock {
  public:
   Timestamp now() const noexcept override { return fromNanoseconds(now_ns_); }
@@ -160,7 +161,7 @@ class WindowLinkTest : public testing::Test {
     return test::eventually([&] { return link_->fault().find(fault) != std::string::npos; });
   }
 
-  // Waits until the link's thread has gone round its loop more than 20 times.
+  // Waits until the link's thread has repeated its loop more than 20 times.
   bool looksAgain() {
     const auto rounds = [&] { return watch_.threads().front().progress; };
     const auto before = rounds();
@@ -197,8 +198,8 @@ TEST_F(WindowLinkTest, AProgramThatCannotBeStartedIsNamed) {
   EXPECT_TRUE(becomes((dir_ / "program") + " cannot be started: Permission denied"));
 }
 
-// The program neither reads nor answers. Presenting goes on, the health says so, and the end does
-// not wait for the program.
+// The program neither reads nor answers. Presenting must go on, the health must report it, and the
+// end must not wait for the program.
 TEST_F(WindowLinkTest, AProgramThatHangsHoldsNothingUp) {
   start("echo $$ >" + (dir_ / "pid") + "; exec sleep 1000");
   ASSERT_TRUE(show());
@@ -216,7 +217,8 @@ TEST_F(WindowLinkTest, AProgramThatHangsHoldsNothingUp) {
   EXPECT_EQ(::kill(second, 0), -1) << "it has ended with its output";
 }
 
-// All pixels of a frame have one value. The program reads its slot repeatedly before it answers.
+// All pixels of a frame have the same value. The program reads its slot repeatedly before it
+// answers.
 TEST_F(WindowLinkTest, AFramesPixelsStayUntilTheProgramHasAnswered) {
   const std::string script = dir_ / "double.py", torn = dir_ / "torn", seen = dir_ / "seen";
   test::writeText(script, R"(

@@ -39,7 +39,7 @@ Vertices neighbours(const reduce::WorkingMesh& mesh, std::uint32_t v) {
   return all;
 }
 
-// The ends of edges before the collapse, as pairs.
+// Returns the ends of edges before the collapse, as pairs.
 Pairs endsOf(const reduce::WorkingMesh& before, std::span<const std::uint32_t> edges) {
   Pairs ends;
   for (const std::uint32_t e : edges) ends.insert({before.ends(e)[0], before.ends(e)[1]});
@@ -80,7 +80,8 @@ TEST(WorkingMesh, TellsBoundaryFromInner) {
   for (std::uint32_t v = 0; v < 10; ++v) EXPECT_EQ(mesh.isBoundary(v), v > 1) << v;
 }
 
-// Two tetrahedra share an edge: four triangles meet there, and none of the vertices is on a border.
+// Two tetrahedra share an edge: four triangles meet there, and none of the edge's vertices is on a
+// border.
 TEST(WorkingMesh, TakesAnEdgeOfManyTrianglesForNoBorder) {
   const reduce::WorkingMesh mesh(meshOf(6, {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2,  //
                                             0, 1, 4, 0, 4, 5, 0, 5, 1, 1, 5, 4}));
@@ -116,7 +117,8 @@ TEST(WorkingMesh, ABoundaryCollapseRemovesOneFaceAndMergesOnePair) {
   EXPECT_TRUE(mesh.isBoundary(6));
 }
 
-// 0 1 2 and 2 3 4 touch at 2. When triangle 0 1 2 is removed, its edge 0-2 is removed too.
+// The triangles 0 1 2 and 2 3 4 touch at 2. When triangle 0 1 2 is removed, its edge 0-2 is removed
+// too.
 TEST(WorkingMesh, AnEdgeGoesWithItsOnlyTriangle) {
   const reduce::WorkingMesh before(meshOf(5, {0, 1, 2, 2, 3, 4}));
   reduce::WorkingMesh mesh = before;
@@ -183,8 +185,8 @@ TEST(LinkCondition, FailsOnTwoFacesOfTheSameCorners) {
   EXPECT_FALSE(mayCollapse(meshOf(4, {0, 1, 2, 0, 2, 1, 1, 2, 3}), 0, 1));
 }
 
-// The edges of the rim are removed one by one. The lists of the central vertex have to be as if
-// each edge had been taken out at once.
+// The edges of the rim are removed one by one. The lists of the central vertex must be as if each
+// edge had been taken out at once.
 TEST(WorkingMesh, LongListsHoldWhatIsGoneUntilTheyAreTidied) {
   constexpr std::uint32_t kRim = 200;
   std::vector<std::uint32_t> triangles;

@@ -1,5 +1,5 @@
-// BorrowedStream: forwards every call to a stream owned by the test, where the code under test
-// wants a stream of its own.
+// BorrowedStream: forwards every call to a stream that the test owns, for code under test that
+// takes ownership of its stream.
 #pragma once
 
 #include "drivers/port/byte_stream.h"

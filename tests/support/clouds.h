@@ -1,4 +1,4 @@
-// Synthetic point clouds for tests, as the bytes of files.
+// Synthetic point clouds for tests, mostly as the bytes of point cloud files.
 #pragma once
 
 #include <array>
@@ -25,8 +25,9 @@ inline void setDouble(std::string& bytes, std::size_t at, double v) {
   set32(bytes, at + 4, static_cast<std::uint32_t>(bits >> 32));
 }
 
-// A LAS file: its header, then `points` records that are zero except for these raw coordinates:
-// point p is at (p, 10 p, 100 p). The scale is 0.01, the offset (500000, 5000000, 100).
+// Returns a LAS file: its header, then `points` records that are zero except for their raw
+// coordinates: those of point p are (p, 10 p, 100 p). The scale is 0.01, the offset (500000,
+// 5000000, 100). `minor`: minor version of LAS, 2, 3 or 4. `format`: point record format, 0 to 10.
 inline std::string las(int minor, std::size_t format, std::uint32_t points) {
   constexpr std::size_t kRecords[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
   const std::size_t header = minor == 2 ? 227 : minor == 3 ? 235 : 375;
@@ -56,7 +57,8 @@ inline std::string las(int minor, std::size_t format, std::uint32_t points) {
   return bytes;
 }
 
-// A PCD file of two points with a colour, a normal and the feature "heat".
+// Returns an ASCII PCD file of two points with a colour, a normal and the feature "heat".
+// `viewpoint`: the viewer's position, "x y z"; `points`: one line of values for each point.
 inline std::string pcdCloud(const std::string& viewpoint, const std::string& points) {
   return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb normal_x normal_y normal_z heat\n"
          "SIZE 4 4 4 4 4 4 4 4\nTYPE F F F U F F F F\nCOUNT 1 1 1 1 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
@@ -64,7 +66,7 @@ inline std::string pcdCloud(const std::string& viewpoint, const std::string& poi
          viewpoint + " 1 0 0 0\nPOINTS 2\nDATA ascii\n" + points;
 }
 
-// A small file of each format, for tests that damage it.
+// Returns one small valid file for each supported format or version, for tests that damage them.
 inline std::vector<std::string> goodClouds() {
   return {las(2, 3, 4),
           las(3, 5, 2),
@@ -75,7 +77,7 @@ inline std::vector<std::string> goodClouds() {
           "float z\nend_header\n0 0 0\n1 0 0\n"};
 }
 
-// Points spread evenly over the unit sphere, by the golden angle.
+// Returns points that are spread evenly over the unit sphere by means of the golden angle.
 inline std::vector<std::array<double, 3>> sphere(int points) {
   const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
   std::vector<std::array<double, 3>> made;

@@ -14,7 +14,7 @@ namespace merlin::test {
 
 inline constexpr int kWidth = 320, kHeight = 200;
 
-// A picture of random bytes, RGBA.
+// Returns an RGBA image of random bytes; every call with the same size returns the same image.
 inline std::vector<std::uint8_t> noise(int width, int height) {
   std::mt19937 random(1);
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(4 * width * height));
@@ -26,7 +26,8 @@ inline std::vector<std::uint8_t> grey(int width, int height, std::uint8_t level)
   return std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), level);
 }
 
-// Settings with moved corners (a keystone) and a mesh with barrel distortion.
+// Returns settings with moved corners (a keystone) and a mesh with barrel distortion, valid for an
+// output of kWidth x kHeight pixels.
 inline render::correct::CorrectionSettings bent(render::correct::MeshInterpolation between,
                                                 int columns = 5, int rows = 4) {
   render::correct::CorrectionSettings s;
@@ -45,7 +46,8 @@ inline render::correct::CorrectionSettings bent(render::correct::MeshInterpolati
   return s;
 }
 
-// Settings with every correction at once.
+// Returns settings in which every correction is active: corners, mesh, blending, colour and black
+// level.
 inline render::correct::CorrectionSettings everything() {
   render::correct::CorrectionSettings s = bent(render::correct::MeshInterpolation::kBicubic);
   s.blend = {60, 40, 0, 30, 2.3};

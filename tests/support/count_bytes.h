@@ -1,6 +1,7 @@
 // Replaces the global operator new with one that counts the bytes in use. Include it in exactly one
-// source file of a program, and not beside count_allocations.h. Sanitizers have operators of their
-// own or pad what is allocated, so nothing is counted there. HugeArray takes its memory elsewhere.
+// source file of a program that does not include count_allocations.h. Sanitizers replace operator
+// new or pad what is allocated, so nothing is counted in their builds. A HugeArray is not counted,
+// since it does not allocate with operator new.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +16,9 @@
 namespace merlin::test {
 inline std::atomic<std::size_t> bytes_used{0}, most_bytes_used{0};
 
-// The largest number of bytes that `work` had in use at once, in addition to those before it; 0 in
-// a sanitizer's build. Counts those of one thread.
+// Returns the largest number of bytes that were in use at once while `work` ran, beyond those in
+// use before; 0 in a sanitizer's build. Allocations of all threads are counted, so no other thread
+// may allocate meanwhile.
 template <typename Work>
 std::size_t peakBytesOf(const Work& work) {
   const std::size_t before = bytes_used;

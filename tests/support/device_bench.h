@@ -32,7 +32,8 @@ struct DeviceBench {
     return Ok{};
   }
 
-  // Duration of silence after which the device fails; `most` if it does not fail within `most`.
+  // Returns how long the device tolerates silence before it fails; `most` if it does not fail
+  // within `most`.
   Duration timeToFail(Device& device, Duration most) {
     const Timestamp from = clock.now();
     return pollFor(device, most) ? most : clock.now() - from;

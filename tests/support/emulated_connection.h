@@ -14,7 +14,7 @@ namespace merlin::test {
 template <typename VirtualClock>
 class EmulatedConnection final : public ByteStream {
  public:
-  // `answer_time`: how long the greeting takes after the connection, and the answer after a
+  // `answer_time`: the delay of the greeting after the connection, and of an answer after its
   // command.
   EmulatedConnection(EmulatedProjector& device, VirtualClock& clock,
                      Duration answer_time = Duration::zero())

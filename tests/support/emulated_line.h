@@ -1,5 +1,5 @@
-// EmulatedLine: an emulated device that runs in a thread of its own at one end of a socket pair.
-// The test can make the line fail: pulled, babbling or frozen. Uses real time and real descriptors.
+// EmulatedLine: an emulated device that runs in its own thread at one end of a socket pair. The
+// test can make the line fail: pulled, babbling or frozen. Uses real time and real descriptors.
 #pragma once
 
 #include <atomic>
@@ -43,7 +43,8 @@ class EmulatedLine {
   EmulatedLine(const EmulatedLine&) = delete;
   EmulatedLine& operator=(const EmulatedLine&) = delete;
 
-  // Opens a new connection, which replaces the previous one; kNotFound while pulled.
+  // Opens a new connection, which replaces the previous one. Errors: kNotFound while the line is
+  // pulled; kIo if there is no socket pair.
   Result<std::unique_ptr<ByteStream>> open() {
     int ends[2];
     writes_ = 0;
@@ -60,7 +61,8 @@ class EmulatedLine {
   }
 
   // Closes the connection, so that the driver reconnects. `fault` begins once the driver has
-  // written `writes` times on the new connection; the device still receives that last write.
+  // written `writes` times on the new connection; the device still receives the last of these
+  // writes.
   void failInDialogue(Fault fault, int writes) {
     armed_fault_ = fault;
     armed_writes_ = writes;
@@ -158,7 +160,8 @@ class EmulatedLine {
     if (fd < 0 || !fds[1].revents) return;
     std::byte received[256];
     const ssize_t n = ::read(fd, received, sizeof received);
-    hung_up_ = n == 0;  // the driver closed its end: nothing to read until it opens again
+    // the driver closed its end, so there is nothing to read until open() is called again
+    hung_up_ = n == 0;
     if (n > 0 && fault_ == Fault::kNone)
       emulator_->receive(std::span(received, static_cast<std::size_t>(n)), clock_.now());
   }
@@ -170,7 +173,8 @@ class EmulatedLine {
   UniqueFd wake_;
   std::mutex mutex_;
   UniqueFd device_end_;
-  // Used by the thread alone; incremented when it has to fetch device_end_ again.
+  // The next two are used by the thread alone. The number is incremented when the thread has to
+  // fetch device_end_ again.
   std::uint64_t generation_ = 0;
   bool hung_up_ = false;
   std::atomic<Fault> fault_{Fault::kNone}, armed_fault_{Fault::kNone};

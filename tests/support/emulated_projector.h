@@ -1,5 +1,5 @@
-// EmulatedProjector: a projector that speaks PJLink, with warm-up and cool-down, as a function from
-// bytes to bytes. ProjectorServer: such a projector at a TCP port, which misbehaves as a test asks.
+// EmulatedProjector: a PJLink projector with warm-up and cool-down, as a function from bytes to
+// bytes. ProjectorServer: such a projector at a TCP port, which misbehaves as the test chooses.
 #pragma once
 
 #include <atomic>
@@ -24,10 +24,11 @@ class EmulatedProjector {
   explicit EmulatedProjector(std::string password = {}) : password_(std::move(password)) {}
 
   Duration warm_up = std::chrono::seconds(30), cool_down = std::chrono::seconds(90);
-  std::string refusal;  // "ERR3": the answer to every command that switches; empty: it obeys
-  std::string log;      // each command that switched it, "1" or "0"
+  // answer to every command that switches the power, for example "ERR3"; empty: the projector obeys
+  std::string refusal;
+  std::string log;  // each command that switched the power: '1' (on) or '0' (off)
   std::string errors = "000000", lamps = "1234 1", name = "Epsilon";
-  std::string inputs;  // each input that was selected, in order
+  std::string inputs;  // each input that was selected, in order, with a blank after each
 
   // Ends the warm-up or cool-down at once.
   void endPhase() { phase_until_ = {}; }
@@ -38,7 +39,7 @@ class EmulatedProjector {
     return authenticated_ ? "PJLINK 0\r" : "PJLINK 1 498e4a67\r";
   }
 
-  // The answer to one line; `line` has no line end.
+  // Returns the answer to one line; `line` is without its line end.
   std::string answer(std::string line, Timestamp now) {
     if (!authenticated_) {
       const std::string digest = pjlink::md5Hex("498e4a67" + password_);
@@ -58,7 +59,7 @@ class EmulatedProjector {
     return line.substr(0, 6) + "=ERR1\r";
   }
 
-  // The power state: '0' off, '1' on, '2' cooling, '3' warming.
+  // Returns the power state: '0' off, '1' on, '2' cooling, '3' warming.
   char power(Timestamp now) {
     if (now >= phase_until_ && power_ == '3') power_ = '1';
     if (now >= phase_until_ && power_ == '2') power_ = '0';
@@ -83,7 +84,7 @@ class EmulatedProjector {
   Timestamp phase_until_{};
 };
 
-// Listens at 127.0.0.1 on a port of its own; serves one connection after another.
+// Listens at 127.0.0.1 on a port that the system assigns; serves one connection after another.
 class ProjectorServer {
  public:
   enum Manner {
@@ -103,7 +104,7 @@ class ProjectorServer {
     thread_ = {};
     listener_.reset();
   }
-  // Listens again, at the same port.
+  // Listens again, at the same port as before vanish().
   void appear() {
     listener_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     const int yes = 1;
@@ -120,7 +121,7 @@ class ProjectorServer {
     thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
   }
 
-  // Changes the projector, at any time.
+  // Calls `change` with the projector, under the mutex; may be called at any time.
   template <typename Change>
   void set(const Change& change) {
     const std::lock_guard lock(mutex_);
@@ -130,7 +131,7 @@ class ProjectorServer {
   std::string port;
   std::atomic<Manner> manner{kPolite};
   std::atomic<int> connections{0};
-  // The server's thread and set() use it under mutex_; others only after vanish().
+  // Used by the server's thread and set() under mutex_; other code may use it only after vanish().
   EmulatedProjector projector;
 
  private:

@@ -1,4 +1,4 @@
-// Records of an input device of the kernel, as the port evdev: carries them.
+// Makes records of a Linux input device, in the format of a port of kind evdev:.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,8 @@
 
 namespace merlin::test {
 
-// `low`, `high` and `resolution` matter only in the description of an axis.
+// Returns the bytes of one record. `low`, `high` and `resolution` matter only in the description of
+// an axis.
 inline std::string evdevRecord(EvdevRecord::Kind kind, int code = 0, std::int32_t value = 0,
                                std::int32_t low = 0, std::int32_t high = 0,
                                std::int32_t resolution = 0) {
@@ -26,7 +27,7 @@ inline std::string evdevRecord(EvdevRecord::Kind kind, int code = 0, std::int32_
   return out;
 }
 
-// A record that gives the name of the device or of a key.
+// Returns the bytes of a record that gives the name of the device or of a key.
 inline std::string evdevNamed(EvdevRecord::Kind kind, int code, std::string_view text) {
   EvdevRecord r;
   r.kind = kind;

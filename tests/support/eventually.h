@@ -1,5 +1,5 @@
-// eventually(): for tests with real processes and threads. Polls a condition until it is true or
-// the deadline has passed, so that a test does not depend on the machine's speed.
+// eventually(): polls a condition until it is true or the deadline has passed, so that a test with
+// real processes and threads does not depend on the machine's speed.
 #pragma once
 
 #include <chrono>

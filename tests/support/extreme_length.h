@@ -9,8 +9,8 @@
 
 namespace merlin::test {
 
-// Writes such a number, big-endian or little-endian, over the four bytes from `at` on, or over
-// those that are there. `Bytes`: a string or vector of bytes.
+// Writes such a number, big-endian or little-endian at random, over the four bytes from `at` on, or
+// over as many as remain up to the end. `Bytes`: a string or vector of bytes.
 template <typename Bytes>
 void writeExtremeLength(Bytes& bytes, std::size_t at, Random& random) {
   constexpr std::uint32_t kLengths[] = {0xFFFFFFFC, 0xFFFFFFFF, 0x80000000, 0x7FFFFFFF, 0};

@@ -44,8 +44,8 @@ inline Connector projector(Id id, const std::string& name) {
           .crtcs = 0b11};
 }
 
-// The state of the fake card that tests read and change. It outlives the card, which open() makes
-// anew.
+// The state of the fake card, which tests read and change. It outlives the card, since every call
+// of open() makes a new card.
 struct Bench {
   std::vector<Connector> connectors{projector(11, "A-1"), projector(12, "A-2")};
   bool there = true, other_is_master = false, has_vblank = false, answers_flips = true;
@@ -56,11 +56,11 @@ struct Bench {
   std::vector<std::vector<Lit>> commits;
   std::vector<Flip> flips;
   std::map<Id, std::vector<std::uint8_t>*> buffers;
-  bool shares = false;                    // the memory of buffers that are made from now on
-  std::map<const DmaBuf*, Id> buffer_of;  // by their shared memory
+  bool shares = false;  // whether buffers that are made from now on share their memory
+  std::map<const DmaBuf*, Id> buffer_of;  // buffer for each shared memory
   Timestamp flip_time{};
 
-  // For each CRTC, the first byte in the middle of the picture that it shows: its blue channel.
+  // For each CRTC, the first byte (blue) of the pixel in the middle of the picture that it shows.
   std::map<Id, int> shown;
   std::map<Id, ScannedOut> scanned;  // for each CRTC, what the kernel would report
   std::function<void()> on_read;     // called each time a buffer is read
@@ -102,7 +102,7 @@ struct FakeScanout final : Scanout {
     if (!bench.there) return Error{Errc::kIo, "the card has gone"};
     return bench.scanned[crtc];
   }
-  // Reads only buffers of 640x480.
+  // Reads only buffers of 640 x 480 pixels.
   Result<PictureDigest> read(Id buffer, int width, int height) override {
     const PictureDigest digest =
         digestOf({width, height, *bench.buffers.at(buffer), 640 * 4, PixelOrder::kBgrx});

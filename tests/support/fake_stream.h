@@ -1,6 +1,6 @@
-// FakeStream: a ByteStream on a FakeClock. Its other end is an emulator or bytes given by feed().
+// FakeStream: a ByteStream on a FakeClock. Its other end is an emulator, or bytes given by feed().
 //
-// read() advances the clock to the moment when the next byte comes, or by the whole time-out. It
+// read() advances the clock to the moment when the next byte arrives, or by the whole time-out. It
 // starts no thread and does not block.
 #pragma once
 
@@ -20,10 +20,10 @@ class FakeStream final : public ByteStream {
   FakeStream(FakeClock& clock, emulate::Emulator* emulator) : clock_(clock), emulator_(emulator) {}
 
   void feed(std::string_view bytes) { input_ += bytes; }
-  // Whether bytes wait to be read.
+  // True if there are bytes that have not been read.
   bool pending() const { return !input_.empty(); }
   void close() { closed_ = true; }
-  // like a cable unplugged at the device: nothing is received from now on
+  // From now on nothing is received, as if the cable were unplugged at the device.
   void mute() { emulator_ = nullptr; }
   void plug(emulate::Emulator* emulator) { emulator_ = emulator; }
 

@@ -1,5 +1,5 @@
-// A wall on a virtual clock: a painter whose frames take as long as a model of the renderer says, a
-// feed that delivers what the test sets, and the loop that connects them.
+// FakeWall: the wall's real loop on a virtual clock, with a fake painter, whose frames take a
+// simulated time, and a fake feed, which delivers the input that the test sets.
 #pragma once
 
 #include <functional>
@@ -23,8 +23,9 @@ inline const Duration kPeriod = fromSeconds(1.0 / 30);
 
 const Dendrogram& model();
 
-// A frame takes 4 ms plus `per_triangle` for each triangle. Full detail takes `slices` slices of 3
-// ms; any other step takes as many as its triangles need.
+// A painter whose frame takes 4 ms plus `per_triangle` for each triangle. A refined frame of full
+// detail takes `slices` slices of 3 ms; at any other step it takes as many slices as its triangles
+// need.
 class FakePainter final : public render::frame::FramePainter {
  public:
   FakePainter(test::FakeClock& clock, Duration per_triangle, int slices)
@@ -49,7 +50,8 @@ class FakePainter final : public render::frame::FramePainter {
   float furthest_seen_m = 50;
   std::function<void()> on_draw = [] {};
   bool gives_way = false;
-  // What is missing in its frames. Data that have arrived are drawn in the next refined frame.
+  // What is missing in the frames drawn. Data that have arrived are drawn in the next refined
+  // frame.
   render::content::Pending left_out = render::content::Pending::kNothing;
   render::content::Pending pending() const noexcept override { return left_out; }
   int refined = 0;  // number of times that a frame of full detail was begun
@@ -64,7 +66,8 @@ class FakePainter final : public render::frame::FramePainter {
   std::vector<render::frame::FrameStep> steps_;
 };
 
-// Pushes the ball while `pushed` is true; asks the loop to stop after `until`.
+// Its input turns the ball while `pushed` is true, and adds the actions and the hand that the test
+// sets.
 class FakeFeed final : public InputFeed {
  public:
   WallInput read(Timestamp now) override;
@@ -72,9 +75,10 @@ class FakeFeed final : public InputFeed {
   Duration age() const noexcept override { return milliseconds(7); }
 
   bool pushed = true;
-  WallInput actions;  // actions that are held, and those requested since the last read
+  WallInput actions;  // held actions, and actions requested since the last read
   std::optional<TrackerSample> hand;
-  Duration ahead{};  // how far poses are to be predicted
+  // the last value passed to lookAhead(): how far ahead poses are to be predicted
+  Duration ahead{};
   std::function<void(Timestamp)> on_begin;
   std::vector<Timestamp> begins;
 };
@@ -102,7 +106,8 @@ class FakeWall : public testing::Test {
                     const render::governor::GovernorSettings& settings = {});
   ~FakeWall() override;
 
-  // Runs for `seconds` of virtual time.
+  // Runs the loop until `seconds` of virtual time have passed. `on_begin` is called whenever the
+  // loop reads its input, with the time of reading.
   void run(double seconds, const std::function<void(Timestamp)>& on_begin = {});
   WallParts parts();
   shm::WallStats stats() const { return *stats_->read(); }

@@ -7,7 +7,8 @@
 
 namespace merlin::test {
 
-// One line for each finding, in the form in which merlind prints it, for a file named "f.json".
+// Returns one line for each finding, in the form in which merlind prints it for a file named
+// "f.json".
 inline std::string findingsOf(const LoadedSettings& loaded) {
   std::string text;
   for (const Finding& finding : loaded.findings) text += toText("f.json", finding) + "\n";

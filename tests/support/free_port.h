@@ -5,8 +5,8 @@
 
 namespace merlin::test {
 
-// The number of a port that the system has just assigned and that is closed again; 0 if there is
-// none.
+// Returns the number of a TCP port that the system assigned and that has been closed again; 0 if
+// there is none.
 inline int freePort() {
   const auto probe = net::listenTcp("127.0.0.1", 0);
   return probe ? net::portOf(probe->get()) : 0;

@@ -1,11 +1,11 @@
-// A simulated renderer for the governor's tests and benchmark: a formula gives the time that a
-// frame takes under a load that varies as a trace says, on a virtual clock. Also computes the
-// figures for which MERLIN states limits (late frames, settling time, oscillation).
+// A simulated renderer for the governor's tests and benchmark. On a virtual clock, a formula gives
+// the time that a frame takes, under a load given by a trace. Also computes the figures for which
+// MERLIN states limits (late frames, settling time, oscillation).
 //
 // A frame of T triangles takes (a + f c T^p) e^noise seconds. The trace gives a and the factor f; c
 // and p were fitted to four views of 640 x 480 pixels on llvmpipe (4,000,000 triangles: 236 ms);
-// the noise has a standard deviation of 3 per cent. A hiccup adds 5 to 20 ms to a frame (its share:
-// Plant::hiccups). For one seed, a frame's noise is the same under every control law.
+// the noise has a standard deviation of 3 per cent. The share Plant::hiccups of the frames has a
+// hiccup, which adds 5 to 20 ms. For one seed, a frame's noise is the same under every control law.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace merlin::test {
 
 inline constexpr double kPeriod_s = 1.0 / 30;
 inline constexpr std::size_t kFrames = 1200, kStep = 300, kRelease = 600;
-// The first second is not counted, since no control law knows the machine's speed yet.
+// The first second [frames] is not counted, since no control law knows the machine's speed yet.
 inline constexpr std::size_t kFirstSecond = 30;
 
 struct Load {
@@ -32,14 +32,15 @@ struct Load {
 using Trace = std::vector<Load>;
 
 inline Trace steadyTrace() { return Trace(kFrames); }
-// From frame kStep to frame kRelease a triangle costs `ratio` times as much, and the fixed part of
-// a frame is `fixed_s`.
+// Returns a trace in which, from frame kStep to frame kRelease, a triangle costs `ratio` times as
+// much and the fixed part of a frame is `fixed_s` [s].
 inline Trace stepTrace(double ratio, double fixed_s = 0.004) {
   Trace trace(kFrames);
   std::fill(trace.begin() + kStep, trace.begin() + kRelease, Load{fixed_s, ratio});
   return trace;
 }
-// The cost of a triangle rises to twice its value and falls back, with a period of four seconds.
+// Returns a trace in which the cost of a triangle rises to twice its value and falls again, with a
+// period of four seconds.
 inline Trace rampTrace() {
   Trace trace(kFrames);
   for (std::size_t i = 0; i < kFrames; ++i) {
@@ -67,7 +68,7 @@ struct Plant {
   }
 };
 
-// One entry for each deadline.
+// The result of a simulation, with one entry in each list for each deadline.
 struct Outcome {
   std::vector<double> triangles, work_s;
   std::vector<bool> late;
@@ -158,7 +159,8 @@ inline std::size_t framesToSettle(const Outcome& o) {
   return framesUntil(kStep, kRelease, [&](std::size_t i) { return !o.late[i]; });
 }
 
-// Frames after the load's end until 90 per cent of the triangles before the step are drawn again.
+// Number of frames after the end of the step in the load until 90 per cent of the triangles before
+// the step are drawn again.
 inline std::size_t framesToRecover(const Outcome& o) {
   const auto* t = o.triangles.data();
   const double before = std::accumulate(t + kStep - 100, t + kStep, 0.0) / 100;
@@ -166,7 +168,7 @@ inline std::size_t framesToRecover(const Outcome& o) {
                      [&](std::size_t i) { return o.triangles[i] >= 0.9 * before; });
 }
 
-// The mean of (p95 - p5) / mean over windows of 100 frames, computed from the triangle counts.
+// Mean of (p95 - p5) / mean of the triangle counts, over windows of 100 frames.
 inline double oscillation(const Outcome& o) {
   double sum = 0;
   std::size_t windows = 0;

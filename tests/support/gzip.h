@@ -1,4 +1,4 @@
-// Compresses bytes as gzip does, for tests of code that decompresses them.
+// Compresses bytes to the gzip format, for tests of code that decompresses them.
 #pragma once
 
 #include <stdexcept>

@@ -55,7 +55,7 @@ inline render::mesh::Mesh coneOf(std::size_t triangles, double height) {
 inline render::mesh::Mesh flatFan(std::size_t triangles) { return coneOf(triangles, 0); }
 inline render::mesh::Mesh cone(std::size_t triangles) { return coneOf(triangles, 1); }
 
-// Two vertices, each shared by half of the triangles.
+// A double pyramid: its two apexes are each shared by half of the triangles.
 inline render::mesh::Mesh bipyramid(std::size_t triangles) {
   render::mesh::Mesh mesh;
   addPoint(mesh, 0, 0, 1);
@@ -66,7 +66,7 @@ inline render::mesh::Mesh bipyramid(std::size_t triangles) {
   return mesh;
 }
 
-// All triangles share one edge.
+// A book: all triangles share one edge.
 inline render::mesh::Mesh book(std::size_t triangles) {
   render::mesh::Mesh mesh;
   addPoint(mesh, 0, 0, -1);
@@ -77,7 +77,7 @@ inline render::mesh::Mesh book(std::size_t triangles) {
   return mesh;
 }
 
-// Flat stars of 2,000 triangles each; their triangles fold over when the centre moves.
+// Flat stars of 2,000 triangles each; triangles fold over when a star's centre moves.
 inline render::mesh::Mesh stars(std::size_t triangles) {
   constexpr std::size_t kEach = 2000;
   render::mesh::Mesh mesh;
@@ -105,7 +105,7 @@ inline render::mesh::Mesh soup(std::size_t triangles) {
   return mesh;
 }
 
-// A strip of triangles that are a million times longer than wide.
+// A strip of very thin triangles, a million times longer than wide.
 inline render::mesh::Mesh slivers(std::size_t triangles) {
   render::mesh::Mesh mesh;
   for (std::size_t i = 0; i <= triangles / 2; ++i) {
@@ -119,7 +119,8 @@ inline render::mesh::Mesh slivers(std::size_t triangles) {
   return mesh;
 }
 
-// A grid in which 64 vertices each share one position.
+// A noisy grid whose coordinates are divided by 8 and rounded down, so that about 32
+// vertices share each position.
 inline render::mesh::Mesh coincident(std::size_t triangles) {
   render::mesh::Mesh mesh = regular(triangles);
   for (float& x : mesh.positions) x = std::floor(x / 8);

@@ -1,5 +1,5 @@
-// HTTP requests written by hand, as a browser, a program or a hostile client sends them to the
-// page.
+// HTTP requests made by hand, such as a browser, a program or a hostile client sends to the status
+// page's server.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace merlin::test {
 
-// Connects to the page; the result is invalid if nobody listens. The receive buffer is small, so
-// that the server soon notices a client that does not read.
+// Connects to the page's server; the result is invalid if nothing listens at `port`. The receive
+// buffer is small, so that the server soon notices a client that does not read.
 inline UniqueFd connectToPage(int port) {
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const int small = 4096;
@@ -37,7 +37,7 @@ inline void sendText(const UniqueFd& fd, const std::string& text) {
   (void)!::send(fd.get(), text.data(), text.size(), MSG_NOSIGNAL);
 }
 
-// Everything that the server sends until it closes the connection.
+// Returns everything that the server sends until it closes the connection.
 inline std::string receiveAll(const UniqueFd& fd) {
   std::string text;
   char buffer[8192];
@@ -61,12 +61,12 @@ inline HttpAnswer parseAnswer(const std::string& text) {
   return answer;
 }
 
-// A connection that is kept for several requests, as browsers do.
+// A connection that is kept open for several requests, as browsers do.
 class KeptConnection {
  public:
   explicit KeptConnection(int port) : fd_(connectToPage(port)) {}
 
-  // Sends a request; returns the status of the answer, or 0 if the connection is closed.
+  // Requests `path`; returns the status of the answer, or 0 if the connection is closed.
   int get(const std::string& path) {
     sendText(fd_, fmt::format("GET {} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", path));
     std::size_t head = 0;

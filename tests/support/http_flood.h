@@ -1,5 +1,5 @@
-// HttpFlood: clients that ask the page without a pause, each on a thread and a connection of its
-// own.
+// HttpFlood: clients that send requests to the page's server without a pause, each with its own
+// thread and connection.
 #pragma once
 
 #include <atomic>
@@ -19,10 +19,11 @@ class HttpFlood {
       threads_.emplace_back([this](const std::stop_token& stop) { loop(stop); });
   }
 
-  // Number of answers with the status "too many requests".
+  // Number of answers with the status 429, "too many requests".
   std::uint64_t refused() const noexcept { return refused_; }
 
-  // Stops the clients. Each ends once the server has answered it or closed its connection.
+  // Stops the clients and waits for them. Each ends once the server has answered it or closed its
+  // connection.
   void stop() { threads_.clear(); }
 
  private:

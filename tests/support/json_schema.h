@@ -1,7 +1,7 @@
-// JsonSchema: checks documents against a JSON schema, with the part of the schema language that
+// JsonSchema: checks documents against a JSON schema. It knows the part of the schema language that
 // daemon/status/status.schema.json uses: $ref into $defs, type, enum, properties, required,
 // additionalProperties, patternProperties, items, minItems, maxItems, anyOf. It is stricter than
-// the language: a member that is not described is a fault.
+// the language: a member that the schema does not describe is a fault.
 #pragma once
 
 #include <algorithm>
@@ -22,15 +22,15 @@ class JsonSchema {
 
   explicit JsonSchema(Json root) : root_(std::move(root)) {}
 
-  // The faults of the document, one sentence each; empty if the document conforms to `definition`,
-  // a member of $defs.
+  // Returns the faults of the document, one sentence each; empty if the document conforms to the
+  // schema's definition /$defs/`definition`.
   std::vector<std::string> faults(const std::string& definition, const Json& document) const {
     std::vector<std::string> found;
     check(root_.at("$defs").at(definition), document, definition, found);
     return found;
   }
 
-  // Every member that the schema describes, with its type, in the format of
+  // Returns every member that the schema describes, with its type, in the format of
   // tests/data/status_promises.txt.
   std::vector<std::string> members() const {
     std::vector<std::string> lines;

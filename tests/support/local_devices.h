@@ -1,5 +1,5 @@
-// LocalDevices: the devices' segment of the shared memory in the process's own memory, with its
-// table of fields, and its slots as a reader finds them.
+// LocalDevices: the devices' segment of the shared memory, in memory of the test's process, with
+// its table of fields and with its slots as a reader finds them.
 #pragma once
 
 #include <memory>

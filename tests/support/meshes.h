@@ -36,7 +36,7 @@ inline Mesh grid(std::uint32_t columns, std::uint32_t rows) {
   return mesh;
 }
 
-// The same grid, with normally distributed z of standard deviation `height`.
+// The mesh of grid(), with normally distributed z of standard deviation `height`.
 inline Mesh noisyGrid(std::uint32_t columns, std::uint32_t rows, double height,
                       std::uint64_t seed) {
   Mesh mesh = grid(columns, rows);
@@ -47,8 +47,8 @@ inline Mesh noisyGrid(std::uint32_t columns, std::uint32_t rows, double height,
   return mesh;
 }
 
-// A cube of 8 vertices at +-1 and 12 triangles. Bits of a vertex index: 0 is x > 0, 1 is y > 0, 2
-// is z > 0.
+// A cube with 8 vertices at +-1 and 12 triangles. In a vertex index, bit 0 means x > 0, bit 1 y >
+// 0, and bit 2 z > 0.
 inline Mesh cube() {
   Mesh mesh;
   for (int v = 0; v < 8; ++v) {
@@ -59,7 +59,7 @@ inline Mesh cube() {
   return mesh;
 }
 
-// Splits each triangle into four; the new vertices lie on the unit sphere.
+// Returns the mesh with each triangle split into four; the new vertices lie on the unit sphere.
 inline Mesh subdivided(Mesh mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
@@ -82,7 +82,8 @@ inline Mesh subdivided(Mesh mesh) {
   return mesh;
 }
 
-// A unit sphere: an octahedron, subdivided `times` times. 8 * 4^times triangles, closed, manifold.
+// A unit sphere, closed and manifold: an octahedron, subdivided `times` times, with 8 * 4^times
+// triangles.
 inline Mesh sphere(int times) {
   Mesh mesh;
   mesh.positions = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
@@ -91,9 +92,8 @@ inline Mesh sphere(int times) {
   return mesh;
 }
 
-// A wavy tube, rolled up from a sheet. With `cut`, the vertices along the seam are doubled, since
-// the texture coordinate there is 0 on one side and 1 on the other; else it has no texture
-// coordinates.
+// A wavy tube, rolled up from a sheet. With `cut`, it has texture coordinates, and the vertices
+// along the seam are doubled, since the coordinate there is 0 on one side and 1 on the other.
 inline Mesh tube(std::uint32_t around, std::uint32_t high, bool cut) {
   Mesh mesh;
   const std::uint32_t columns = around + (cut ? 1 : 0);
@@ -123,7 +123,7 @@ inline Mesh tube(std::uint32_t around, std::uint32_t high, bool cut) {
   return mesh;
 }
 
-// Returns both meshes in one mesh, as two components, without features.
+// Returns one mesh that has `a` and `b` as two components, without features.
 inline Mesh together(Mesh a, const Mesh& b) {
   const auto first = static_cast<std::uint32_t>(a.vertexCount());
   a.features.clear();

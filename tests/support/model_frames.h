@@ -10,8 +10,9 @@
 
 namespace merlin::test {
 
-// `contexts` may be shared with another renderer; if null, new ones are made. `model`, `plan` and
-// `clock` must outlive the renderer.
+// Makes the renderer. `contexts` may be shared with another renderer; if null, new ones are made.
+// `model`, `plan` and `clock` must outlive the renderer. Errors: those of making contexts or
+// renderer.
 inline Result<std::unique_ptr<render::frame::FrameRenderer>> rendererOf(
     const render::lod::Dendrogram& model, const render::tiles::TilePlan& plan,
     const render::frame::RenderSettings& settings, double radius_m, const Clock& clock,

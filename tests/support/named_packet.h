@@ -1,4 +1,5 @@
-// NamedPacket: a parameter of the damage tests; ctest lists it by its name instead of its bytes.
+// NamedPacket: a packet with a name, as a parameter of the damage tests; ctest then lists the test
+// by the name, not by the packet's bytes.
 #pragma once
 
 #include <ostream>

@@ -1,5 +1,6 @@
-// Linked into every test that is not marked THREADS in tests/CMakeLists.txt. The thread sanitizer
-// does not run such tests, so neither they nor the code they test may start a thread.
+// Makes pthread_create() abort the program. Linked into every test that is not marked THREADS in
+// tests/CMakeLists.txt: the thread sanitizer does not run such tests, so neither they nor the code
+// they test may start a thread.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
-// Open Sound Control 1.0 as a sender packs it: messages, bundles, and frames of TUIO 1.1. Written
-// by hand after the specifications; MERLIN itself sends none.
+// Open Sound Control 1.0 packets as a sender makes them: messages, bundles, and frames of TUIO 1.1.
+// They are written by hand after the specifications, since MERLIN itself sends none.
 #pragma once
 
 #include <bit>
@@ -23,7 +23,8 @@ inline std::string oscWord(std::uint32_t word) {
   return bytes;
 }
 
-// A string as OSC packs it: 1 to 4 zeros at its end make its length a multiple of four.
+// Returns a string as OSC packs it: 1 to 4 zero bytes are appended, so that the length is a
+// multiple of four.
 inline std::string oscText(std::string text) {
   text.append(4 - text.size() % 4, '\0');
   return text;
@@ -46,7 +47,7 @@ inline std::string oscMessage(const std::string& address, const std::vector<OscV
   return oscText(address) + oscText(tags) + bytes;
 }
 
-// A bundle with the time tag "immediately".
+// Returns a bundle with the time tag "immediately".
 inline std::string oscBundle(const std::vector<std::string>& elements) {
   std::string bytes = oscText("#bundle") + oscWord(0) + oscWord(1);
   for (const std::string& element : elements)
@@ -54,7 +55,7 @@ inline std::string oscBundle(const std::vector<std::string>& elements) {
   return bytes;
 }
 
-// The datagram as a record of a port of kind udp:.
+// Returns the datagram as a record in the format of a port of kind udp:.
 inline std::string datagram(std::string_view bytes, std::uint32_t sender = 1) {
   std::string out;
   append({sender, std::as_bytes(std::span(bytes))}, out);
@@ -66,7 +67,8 @@ struct TuioContact {
   float x, y;
 };
 
-// A TUIO frame of fingers. Those in `set` are alive too, besides `alive`.
+// Returns a TUIO frame of fingers. The contacts in `set` are new or have moved; those in `set` and
+// those in `alive` are listed as present.
 inline std::string tuioCursors(int frame, const std::vector<TuioContact>& set,
                                std::vector<int> alive = {}, const std::string& source = {}) {
   constexpr const char* kAddress = "/tuio/2Dcur";
@@ -83,7 +85,7 @@ inline std::string tuioCursors(int frame, const std::vector<TuioContact>& set,
   return oscBundle(elements);
 }
 
-// A TUIO frame with one marked object, of class 7 and rotated by 1.5 rad.
+// Returns a TUIO frame with one marked object, of class 7 and rotated by 1.5 rad.
 inline std::string tuioObject(int frame, const TuioContact& c) {
   constexpr const char* kAddress = "/tuio/2Dobj";
   return oscBundle({oscMessage(kAddress, {std::string("alive"), c.session}),

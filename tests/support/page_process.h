@@ -19,7 +19,7 @@ inline int freePagePort() {
 
 class PageProcess {
  public:
-  // `config`: a configuration file whose /page/port is `port`.
+  // `config`: a configuration file in which /page/port is `port`.
   PageProcess(const TempDir& dir, const std::string& config, const std::string& instance, int port)
       : token_file_(dir / (instance + "-page.token")),
         port_(port),
@@ -39,7 +39,7 @@ class PageProcess {
     if (!argument.empty()) body["argument"] = argument;
     return askPage(port_, postRequest("/api/command", token(), body.dump()));
   }
-  // The page's answer as JSON; discarded (is_discarded()) if the answer is no JSON.
+  // Returns the page's answer as JSON; is_discarded() is true for it if the answer is not JSON.
   nlohmann::json json(const std::string& path) const {
     return nlohmann::json::parse(get(path).body, nullptr, false);
   }

@@ -11,8 +11,8 @@
 
 namespace merlin::test {
 
-// Expects an image file that can be read and has at least `least` distinct colours; it must be
-// width x height pixels where `width` is not 0.
+// Expects an image file that can be read and has at least `least` distinct colours. If `width` is
+// not 0, the image must be width x height pixels.
 inline void expectPicture(const std::string& path, std::size_t least, int width = 0,
                           int height = 0) {
   const auto image = render::image::readImage(path);

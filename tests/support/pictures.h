@@ -1,4 +1,4 @@
-// RGBA images, rows from top to bottom, and how they differ.
+// RGBA images, with rows from top to bottom, and the comparison of such images.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ struct Rgba {
   friend bool operator==(const Rgba&, const Rgba&) = default;
 };
 
-// The largest absolute difference of red, green or blue, 0..255; alpha is ignored.
+// Returns the largest absolute difference of red, green or blue, 0..255; alpha is ignored.
 inline int difference(const Rgba& a, const Rgba& b) {
   return std::max(
       {std::abs(a.red - b.red), std::abs(a.green - b.green), std::abs(a.blue - b.blue)});

@@ -13,8 +13,8 @@
 
 namespace merlin::test {
 
-// Standard output and standard error go into one file, which output() reads; type() writes to
-// standard input.
+// A started program. Its standard output and standard error go into one file, which output() reads;
+// type() writes to its standard input.
 class Process {
  public:
   explicit Process(std::vector<std::string> arguments,
@@ -46,7 +46,7 @@ class Process {
   std::optional<int> status_;
 };
 
-// Runs a program to its end; see Process::wait() for `status`.
+// Result of a program that has ended; `status` is as returned by Process::wait().
 struct Outcome {
   int status = -1;
   std::string output;

@@ -1,4 +1,4 @@
-// PtyProcess: a real program on a terminal of its own, whose screen a test reads.
+// PtyProcess: a real program on its own pseudo-terminal, whose screen a test reads.
 #pragma once
 
 #include <map>
@@ -51,7 +51,7 @@ class PtyProcess {
   PtyProcess(const PtyProcess&) = delete;
   PtyProcess& operator=(const PtyProcess&) = delete;
 
-  // The terminal's present content.
+  // The terminal's content after the output so far.
   const TerminalScreen& screen() {
     readAll();
     return screen_;

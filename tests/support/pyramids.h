@@ -1,4 +1,5 @@
-// Pyramids in memory, in the form that MERLIN reads, and bytes to read them from.
+// Makes image pyramids in memory, in the TIFF form that MERLIN reads, and gives random access to
+// their bytes.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +40,9 @@ struct PyramidSpec {
   std::function<Rgb(int, int)> colour = [](int x, int y) {
     return Rgb{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), 128};
   };
-  bool subdirectories = false;  // true: subdirectories of the first; false: one after another
+  // true: directories of the reduced levels are subdirectories of the first one; false: one follows
+  // another
+  bool subdirectories = false;
   std::string description = "MERLIN picture";
 };
 
@@ -76,14 +79,14 @@ inline Pixels halved(const Pixels& whole) {
   return half;
 }
 
-// Appends the tiles of a level to the file; returns their offsets and sizes.
+// Appends the tiles of a level to the file; returns each tile's offset and size in bytes.
 inline std::vector<std::array<std::uint64_t, 2>> putTiles(std::string& file, const Pixels& level,
                                                           int tile) {
   std::vector<std::array<std::uint64_t, 2>> places;
   const auto n = static_cast<std::size_t>(tile);
   for (int top = 0; top < level.height; top += tile) {
     for (int left = 0; left < level.width; left += tile) {
-      std::vector<std::uint8_t> bytes(3 * n * n);  // black beyond the edges
+      std::vector<std::uint8_t> bytes(3 * n * n);  // the tile is black beyond the picture's edges
       for (int y = top; y < std::min(top + tile, level.height); ++y) {
         const int width = std::min(tile, level.width - left);
         std::copy_n(level.at(left, y), 3 * width,
@@ -99,7 +102,8 @@ inline std::vector<std::array<std::uint64_t, 2>> putTiles(std::string& file, con
   return places;
 }
 
-// Writes a directory. Values longer than 8 bytes are appended to the file before the directory.
+// Collects the entries of a TIFF directory and writes it. Values longer than 8 bytes are appended
+// to the file before the directory.
 class DirectoryWriter {
  public:
   explicit DirectoryWriter(std::string& file) : file_(file) {}
@@ -126,7 +130,8 @@ class DirectoryWriter {
     }
     entries_.push_back(entry);
   }
-  // Returns the offset of the directory. Its "next" field is then the last 8 bytes of the file.
+  // Appends the directory to the file; returns its offset. The directory's "next" field is then the
+  // last 8 bytes of the file.
   std::uint64_t write() {
     const std::uint64_t at = file_.size();
     put(file_, entries_.size(), 8);
@@ -173,7 +178,7 @@ inline std::uint64_t putDirectory(std::string& file, const Pixels& level, const 
 
 }  // namespace detail
 
-// The bytes of a BigTIFF pyramid with deflate tiles.
+// Returns the bytes of a BigTIFF pyramid with deflate-compressed tiles.
 inline std::string pyramidBytes(const PyramidSpec& spec = {}) {
   std::vector<detail::Pixels> levels{{spec.width, spec.height, {}}};
   for (int y = 0; y < spec.height; ++y) {
@@ -200,7 +205,8 @@ inline std::string pyramidBytes(const PyramidSpec& spec = {}) {
   return file;
 }
 
-// Offset of the value of a field of the directory that begins at `directory`.
+// Returns the offset of a field's value; `directory` is the offset of the directory that has the
+// field.
 inline std::size_t fieldAt(const std::string& bytes, std::size_t directory, int tag) {
   for (std::size_t at = directory + 8;; at += 20) {
     const int found =
@@ -215,7 +221,7 @@ inline std::size_t numberAt(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-// Offsets of all directories of a file whose levels follow one another.
+// Returns the offsets of all directories of a file whose levels follow one another.
 inline std::vector<std::size_t> directoriesOf(const std::string& bytes) {
   std::vector<std::size_t> all;
   for (std::size_t at = numberAt(bytes, 8); at != 0;) {

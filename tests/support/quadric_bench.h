@@ -1,4 +1,5 @@
-// A mesh in the representation of render/reduce/quadric, with channel values and edge costs.
+// QuadricBench: a mesh in the representation of render/reduce/quadric, with channel values and edge
+// costs.
 #pragma once
 
 #include "render/reduce/quadric/quadric_evaluate.h"

@@ -9,7 +9,8 @@
 
 namespace merlin::test {
 
-// An image whose ranges are all 1. kOrthogonal: 90 x 90 degrees. kElevation: cells of 1 x 1.
+// Returns an image whose ranges are all 1. kOrthogonal: the field of view is 90 x 90 degrees.
+// kElevation: the cells are 1 x 1.
 inline render::range::RangeImage flatImage(std::size_t width, std::size_t height,
                                            render::range::Scanner scanner) {
   render::range::RangeImage image;
@@ -21,7 +22,7 @@ inline render::range::RangeImage flatImage(std::size_t width, std::size_t height
   return image;
 }
 
-// A full turn of a scanner inside a cylinder of radius about 1.
+// Returns a full turn of a scanner inside a cylinder of radius about 1.
 inline render::range::RangeImage ring(std::size_t width, std::size_t height) {
   render::range::RangeImage image = flatImage(width, height, render::range::Scanner::kSpinning);
   image.geometry.horizontal_rad = 2 * std::numbers::pi;
@@ -30,7 +31,8 @@ inline render::range::RangeImage ring(std::size_t width, std::size_t height) {
   return image;
 }
 
-// The plane z = -1, seen from the origin; if `mirrored`, its columns run to the left.
+// Returns an image of the plane z = -1, seen from the origin; if `mirrored`, its columns run to the
+// left.
 inline render::range::RangeImage rays(std::size_t width, std::size_t height, bool mirrored) {
   render::range::RangeImage image = flatImage(width, height, render::range::Scanner::kRays);
   for (std::size_t p = 0; p < image.pixels(); ++p) {
@@ -43,7 +45,8 @@ inline render::range::RangeImage rays(std::size_t width, std::size_t height, boo
   return image;
 }
 
-// A wavy surface 2 units away with noise, a step, spikes and pixels without a return.
+// Returns an image of a wavy surface 2 to 4 units away, with noise, a step, spikes and pixels
+// without a return.
 inline render::range::RangeImage bumps(std::size_t width, std::size_t height) {
   render::range::RangeImage image = flatImage(width, height, render::range::Scanner::kOrthogonal);
   Random random(7);

@@ -23,7 +23,7 @@ struct RecordingSink final : SampleSink {
   std::vector<TrackerSample> tracker;
   std::vector<BallSample> ball;
   std::vector<TouchSample> touch;
-  DeviceKeys keys;                      // of the device that was opened last
+  DeviceKeys keys;                      // keys of the device that was opened last
   Timestamp due_at = Timestamp::max();  // set by the test
   std::vector<Timestamp> ticks;
 };

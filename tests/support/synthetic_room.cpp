@@ -31,7 +31,8 @@ void Projector::zoom(double margin) {
 }
 
 Eigen::Vector3d Projector::target(const Eigen::Vector2d& pixel) const {
-  Eigen::Vector2d at = pixel;  // of the uncorrected picture, whose places are known
+  // point of the uncorrected picture, for which placeOf() gives the place
+  Eigen::Vector2d at = pixel;
   for (int i = 0; i < 20; ++i) {
     const auto off = [&](double x, double y) { return lens.pixelOf(placeOf(x, y)); };
     const Eigen::Vector2d here = off(at.x(), at.y());

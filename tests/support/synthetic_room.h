@@ -1,8 +1,8 @@
-// A synthetic room: projectors with known pose, lens, gamma, colour and black level throw signals
-// onto plane panels, and a camera with known pose photographs them. All data are computed, none are
+// A synthetic room: projectors with known pose, lens, gamma, colour and black level project signals
+// onto plane panels, and a camera with known pose photographs them. All data are computed; none is
 // measured.
 //
-// Coordinates as in render/room: x to the right, y up, z towards the viewer [m].
+// Coordinates are those of render/room: x to the right, y up, z towards the viewer [m].
 #pragma once
 
 #include <array>
@@ -25,12 +25,13 @@ struct Panel {
   Eigen::Vector3d at(double x, double y) const { return upper_left + x * right + y * down; }
 };
 
-// A pinhole with radial distortion, for projectors and cameras alike. Pixels from the upper left.
+// A pinhole with radial distortion, for projectors and cameras. Pixel coordinates count from the
+// upper left.
 struct Lens {
   Eigen::Vector3d place;
   Eigen::Matrix3d R_lens_room;   // the lens looks along +z, x to the right, y down
   double focal = 1;              // [px]
-  Eigen::Vector2d centre{0, 0};  // [px]; lens shift moves it away from the raster's centre
+  Eigen::Vector2d centre{0, 0};  // [px]; lens shift moves it away from the middle of the raster
   double distortion = 0;         // factor of r^2, with r in focal lengths
 
   Eigen::Vector2d normalised(const Eigen::Vector3d& point) const {
@@ -41,14 +42,15 @@ struct Lens {
   Eigen::Vector2d pixelOf(const Eigen::Vector3d& point) const {
     return focal * normalised(point) + centre;
   }
-  // Direction of the ray through a pixel. REQUIRES: no distortion.
+  // Returns the direction of the ray through a pixel, in room coordinates. REQUIRES: no distortion.
   Eigen::Vector3d rayOf(const Eigen::Vector2d& pixel) const {
     const Eigen::Vector2d n = (pixel - centre) / focal;
     return R_lens_room.transpose() * Eigen::Vector3d(n.x(), n.y(), 1);
   }
 };
 
-// A lens at `place` that is aimed at `target` and turned by `roll_deg` about the line of sight.
+// Returns a lens at `place` that is aimed at `target` and turned by `roll_deg` about the line of
+// sight.
 Lens lensAt(const Eigen::Vector3d& place, const Eigen::Vector3d& target, double roll_deg);
 
 // A projector, and the part of a panel that its picture has to cover.
@@ -59,10 +61,10 @@ struct Projector {
   std::array<double, 4> part{};        // left, top, width, height on the panel [m]
   Light gamma{2.2, 2.2, 2.2};          // light = signal ^ gamma
   Light full{1, 1, 1};                 // light of a white signal
-  double black = 0;                    // light of a black signal, share of `full`
+  double black = 0;                    // light of a black signal, as a share of `full`
   std::vector<std::uint8_t> signal{};  // RGB, width * height pixels
 
-  // The place in the room of a point of the uncorrected picture [px].
+  // Returns the place in the room of a point [px] of the uncorrected picture.
   Eigen::Vector3d placeOf(double x, double y) const {
     return panel.at(part[0] + part[2] * x / width, part[1] + part[3] * y / height);
   }
@@ -76,8 +78,8 @@ struct Projector {
   Eigen::Vector3d target(const Eigen::Vector2d& pixel) const;
 
   Light lightOf(int x, int y) const;
-  // Light at a point of the projector's panel. Its pixels are evenly bright and slightly out of
-  // focus.
+  // Returns the light at a point of the projector's panel. The pixels are evenly bright and
+  // slightly out of focus.
   Light lightAt(const Eigen::Vector3d& point) const;
 };
 
@@ -88,10 +90,10 @@ class Photograph {
   Photograph(const Lens& camera, int width, int height, const std::vector<Panel>& panels,
              const std::vector<Projector>& projectors, const std::vector<bool>& lit);
 
-  // Light at a point of the room, interpolated between the four nearest pixels.
+  // Returns the light at a point of the room, interpolated between the four nearest pixels.
   Light at(const Eigen::Vector3d& point) const;
 
-  // The photograph for display on a screen (RGBA, gamma 2.2).
+  // Returns the photograph for display on a screen (RGBA, gamma 2.2).
   std::vector<std::uint8_t> pixels() const;
 
  private:

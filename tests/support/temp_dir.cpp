@@ -13,8 +13,8 @@ namespace merlin::test {
 
 namespace {
 
-// Removes the shared memory of a test. merlind leaves its shared memory behind for its readers, but
-// a test's has none any more.
+// Removes the shared memory of a test at the process's end. merlind leaves its shared memory behind
+// for its readers, but that of a test has none any more.
 class PrivateNames {
  public:
   PrivateNames() : pid_(::getpid()), prefix_("merlin-test-" + std::to_string(pid_) + "-") {}

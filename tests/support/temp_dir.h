@@ -1,5 +1,5 @@
-// What a test may leave on the machine: a temporary folder, which is removed with the object, and
-// shared memory under a private name, which is removed at the process's end.
+// What tests leave on the machine while they run: a temporary folder, which is removed with its
+// TempDir, and shared memory under a private name, which is removed when the process ends.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ class TempDir {
 void writeText(const std::string& path, const std::string& text);
 std::string readText(const std::string& path);
 
-// A shared memory name that no other test and no daemon uses.
+// Returns a shared memory name, ending in `what`, that no other test process and no daemon uses.
 std::string privateName(const std::string& what);
 
 }  // namespace merlin::test

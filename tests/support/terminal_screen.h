@@ -1,5 +1,5 @@
-// TerminalScreen: the characters that a terminal of the type xterm shows after a program's output,
-// as far as ncurses uses such a terminal. Colours and styles are ignored.
+// TerminalScreen: the characters that an xterm shows after a program's output. It knows the control
+// sequences that ncurses sends to such a terminal. Colours and styles are ignored.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ class TerminalScreen {
         columns_(static_cast<std::size_t>(columns)),
         cells_(rows_, std::vector<std::string>(columns_, " ")) {}
 
-  // Takes more output. A sequence or character that is incomplete at the end is kept for the next
-  // call.
+  // Processes further output. A sequence or character that is incomplete at the end is kept for the
+  // next call.
   void feed(std::string_view bytes) {
     held_ += bytes;
     std::string_view rest = held_;
@@ -29,7 +29,7 @@ class TerminalScreen {
     held_ = std::string(rest);
   }
 
-  // A row without the blanks at its end.
+  // Returns a row of characters without the blanks at its end.
   std::string line(std::size_t row) const {
     std::string text;
     for (const std::string& cell : cells_[row]) text += cell;
@@ -44,7 +44,8 @@ class TerminalScreen {
   bool shows(const std::string& part) const { return text().find(part) != std::string::npos; }
 
  private:
-  // Removes one character or sequence from the front and carries it out; false if it is incomplete.
+  // Removes one character or control sequence from the front and carries it out; false if it is
+  // incomplete.
   bool step(std::string_view& rest) {
     const auto first = static_cast<unsigned char>(rest[0]);
     if (first == 0x1B) return sequence(rest);
@@ -150,7 +151,7 @@ class TerminalScreen {
       case 'l':
         if (parameters == "4") inserts_ = what == 'h';
         break;
-      default: break;  // colours, other modes
+      default: break;  // colours and other modes are ignored
     }
   }
 
@@ -158,7 +159,8 @@ class TerminalScreen {
     row_ = std::min(row, rows_) - 1;
     column_ = std::min(column, columns_) - 1;
   }
-  // Sets the rows that scroll, counted from 1. If `last` is 0, they extend to the last row.
+  // Sets the scrolling region, `first` to `last`, counted from 1. If `last` is 0, it extends to the
+  // last row.
   void scrollOnly(std::size_t first, std::size_t last) {
     bottom_ = last == 0 ? rows_ : std::min(last, rows_);
     top_ = std::min(first, bottom_) - 1;
@@ -177,7 +179,8 @@ class TerminalScreen {
     else if (row_ > 0)
       --row_;
   }
-  // Moves the rows from this one to the last scrolling row down or up; blank rows fill the gap.
+  // Moves the rows from `from` to the end of the scrolling region down or up by `n`; blank rows
+  // fill the gap.
   void moveRows(std::size_t from, std::size_t n, bool down) {
     const std::size_t count = std::min(n, bottom_ - from);
     const auto first = cells_.begin() + static_cast<std::ptrdiff_t>(from);
@@ -198,7 +201,8 @@ class TerminalScreen {
   std::size_t rows_, columns_, row_ = 0, column_ = 0;
   std::size_t top_ = 0, bottom_ = rows_;  // the rows that scroll are top_ to bottom_ - 1
   std::vector<std::vector<std::string>> cells_;
-  bool inserts_ = false;  // a character that is written moves the rest of the row to the right
+  // insert mode: a character that is written moves the rest of the row to the right
+  bool inserts_ = false;
   std::string held_, last_ = " ";
 };
 

@@ -1,4 +1,5 @@
-// Events as sentences, for comparison in a test: "fault: output left failed: unplugged".
+// told(): returns events as sentences, for comparison in a test: "fault: output left failed:
+// unplugged".
 #pragma once
 
 #include <string>

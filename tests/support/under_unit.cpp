@@ -1,9 +1,9 @@
 // under_unit [--in FOLDER] UNIT... -- PROGRAM ARGUMENT...: runs a program, without systemd, under
-// some restrictions of these systemd unit files: address families, system calls, no new privileges,
-// umask. If started by root, it runs the program as the user nobody. Later files add to earlier
-// ones, as systemd's drop-ins do. FOLDER stands for the machine's files, which ProtectSystem=strict
-// makes read-only but for $STATE_DIRECTORY and ReadWritePaths= (FOLDER/srv for /srv); only root can
-// have that. All other settings of the units are ignored.
+// some restrictions of the given systemd unit files: address families, system calls, no new
+// privileges, umask. Started by root, it runs the program as the user nobody. Later files add to
+// earlier ones, as systemd's drop-ins do. FOLDER stands for the root of the file system, which
+// ProtectSystem=strict makes read-only except for $STATE_DIRECTORY and ReadWritePaths= (for example
+// FOLDER/srv for /srv); only root can use --in. All other settings of the units are ignored.
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -50,8 +50,8 @@ std::string outputOf(const char* command) {
   return text;
 }
 
-// All values of `key` from all files. An assignment without a value removes the values before it,
-// as systemd does for a key whose value is a list.
+// Returns all values of `key` from all files. An assignment without a value removes the values
+// before it, as in systemd for a key whose value is a list.
 Words valuesOf(const Words& units, const std::string& key) {
   Words values;
   for (const std::string& unit : units) {
@@ -69,8 +69,8 @@ Words valuesOf(const Words& units, const std::string& key) {
 
 bool isYes(const Words& values) { return !values.empty() && values.back() == "yes"; }
 
-// Whether systemd would set no_new_privs: a process without privileges can install no filters
-// otherwise (systemd.exec(5), NoNewPrivileges=).
+// Returns whether systemd would set no_new_privs for these units: without it, a process without
+// privileges cannot install seccomp filters (systemd.exec(5), NoNewPrivileges=).
 bool hasNoNewPrivileges(const Words& units) {
   for (const char* const key :
        {"NoNewPrivileges", "RestrictRealtime", "RestrictSUIDSGID", "LockPersonality",
@@ -95,8 +95,8 @@ std::uint32_t familyOf(const std::string& name) {
   return found->second;
 }
 
-// Names of the system calls in `sets`, taken from systemd's own tables; empty if systemd is not
-// installed.
+// Returns the names of the system calls in `sets`, from systemd's own tables; empty if systemd is
+// not installed.
 std::set<std::string> callsOf(const Words& sets) {
   std::map<std::string, Words> table;
   std::istringstream lines(outputOf("systemd-analyze syscall-filter 2>/dev/null"));
@@ -167,8 +167,8 @@ void restrictFamilies(const Words& names) {
   install(code);
 }
 
-// Like systemd's SystemCallFilter=: any other system call kills the process, or fails with EPERM if
-// the unit has that as SystemCallErrorNumber=.
+// Like systemd's SystemCallFilter=: a system call that `sets` do not allow kills the process, or
+// fails with EPERM if `error` (the unit's SystemCallErrorNumber=) is EPERM.
 void restrictCalls(const Words& sets, const Words& error) {
   if (sets.empty()) return;
   if (!error.empty() && error.back() != "EPERM")
@@ -193,7 +193,7 @@ void mountOrFail(const std::string& from, const std::string& at, unsigned long f
     fail(at + ": cannot be mounted: " + std::strerror(errno));
 }
 
-// Like systemd's ProtectSystem=strict and ReadWritePaths=, for what is in `folder`.
+// Like systemd's ProtectSystem=strict and ReadWritePaths=, applied to the file tree under `folder`.
 void restrictFiles(const std::string& folder, const Words& units) {
   const Words strict = valuesOf(units, "ProtectSystem");
   if (folder.empty() || strict.empty() || strict.back() != "strict") return;
@@ -211,7 +211,8 @@ void restrictFiles(const std::string& folder, const Words& units) {
   }
 }
 
-// LeakSanitizer inspects the ending program with ptrace, which a unit forbids; both would hang.
+// LeakSanitizer inspects the ending program with ptrace, which a unit forbids; the program and the
+// sanitizer would then hang.
 void doWithoutLeakSanitizer() {
   const char* const options = std::getenv("ASAN_OPTIONS");
   ::setenv("ASAN_OPTIONS", (std::string(options ? options : "") + ":detect_leaks=0").c_str(), 1);

@@ -33,7 +33,8 @@ class VncClient {
     client_->FinishedFrameBufferUpdate = [](rfbClient* c) {
       ++static_cast<VncClient*>(rfbClientGetClientData(c, nullptr))->updates_;
     };
-    if (!rfbInitClient(client_, nullptr, nullptr)) client_ = nullptr;  // was freed by the call
+    // rfbInitClient() frees the client when it fails
+    if (!rfbInitClient(client_, nullptr, nullptr)) client_ = nullptr;
   }
   ~VncClient() {
     if (client_) rfbClientCleanup(client_);
@@ -57,8 +58,8 @@ class VncClient {
     };
     return eventually(take, deadline) && open;
   }
-  // Requests the whole picture and waits until it has arrived: the server has then handled
-  // everything that was sent before.
+  // Requests the whole picture and waits until it has arrived. By then the server has handled
+  // everything that was sent to it before.
   bool refresh() {
     const int before = updates_;
     SendFramebufferUpdateRequest(client_, 0, 0, client_->width, client_->height, FALSE);

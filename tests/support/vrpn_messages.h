@@ -1,4 +1,4 @@
-// Messages of a VRPN server, as bytes.
+// Makes messages of a VRPN server, as bytes.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline std::string vrpnMessage(std::int32_t sender, std::int32_t type, std::stri
   appendVrpn(header, payload, bytes);
   return bytes;
 }
-// Messages that describe a sender or a type.
+// Return a message that describes a sender or a message type, respectively.
 inline std::string vrpnSender(std::int32_t number, std::string_view name) {
   return vrpnMessage(number, kVrpnDescribeSender, vrpnName(name));
 }

@@ -9,7 +9,7 @@
 
 namespace merlin::test {
 
-// A wavy sheet of 5,000 triangles, reduced as far as possible.
+// Returns a wavy sheet of 5,000 triangles, reduced as far as possible.
 inline render::lod::Dendrogram wavySheet() {
   render::mesh::Mesh mesh;
   constexpr std::uint32_t kSide = 51;

@@ -1,5 +1,6 @@
-// XServer: an X server without a screen (Xvfb), started by a test, and the actions of a person at
-// it. Each call has a connection of its own, since Xlib ends a process whose server goes away.
+// XServer: an X server without a screen (Xvfb), started by a test, and the actions of a person who
+// uses it. Each call opens a connection of its own, since Xlib ends a process when the server of an
+// open connection goes away.
 #pragma once
 
 #include <memory>
@@ -30,7 +31,7 @@ class XServer {
   const std::string& display() const { return display_; }
   Process& process() { return *process_; }
 
-  // Starts the server; after it has ended, starts it again with the same display.
+  // Starts the server; once it has ended, starts it again with the same display number.
   void start() {
     process_ = std::make_unique<Process>(
         std::vector<std::string>{"Xvfb", display_, "-displayfd", "1", "-screen", "0",
@@ -90,7 +91,7 @@ class XServer {
     XSync(x.get(), 0);
   }
 
-  // Presses and releases a key in the window; `key` is a keysym, XK_m.
+  // Presses and releases a key in the window; `key` is a keysym such as XK_m.
   void key(const std::string& title, KeySym key) const {
     const Connection x(display_);
     const std::optional<Window> window = x.find(title);
@@ -102,7 +103,7 @@ class XServer {
     XSync(x.get(), 0);
   }
 
-  // Moves the pointer from (x, y) by (right, down) with the button held, in five steps.
+  // Moves the pointer from `from` by `by`, both (x, y), in five steps, with the button held down.
   void drag(unsigned button, std::pair<int, int> from, std::pair<int, int> by) const {
     const Connection x(display_);
     XTestFakeMotionEvent(x.get(), 0, from.first, from.second, CurrentTime);
@@ -148,8 +149,8 @@ class XServer {
   };
 
   // A display number derived from the process id. If Xvfb chose a free number, another test's
-  // server could take it while this one is down. Displays may go up to 59535, since their TCP ports
-  // begin at 6000.
+  // server could take that number while this server is down. Displays may go up to 59535, since
+  // their TCP ports begin at 6000.
   std::string display_ = fmt::format(":{}", 1000 + getpid() % 50000);
   std::unique_ptr<Process> process_;
 };

@@ -10,7 +10,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// How often the program was given such an event until now.
+// Returns how often the alarm's program has received an event of this role whose sentence contains
+// `part`.
 int timesTold(const std::string& file, const std::string& role, const std::string& part) {
   int times = 0;
   for (const Json& event : told(file)) {
@@ -35,7 +36,7 @@ Process alarmsOf(const Merlind& merlind) {
   return Process({kMerlind, "--config", merlind.config(), "--role", "alarms"});
 }
 
-// Waits until the role has published the events of its start, which takes it 3 s.
+// Waits until the role has published the events of its start, which takes the role 3 s.
 bool hasPublishedItsStart(Merlind& merlind) {
   return eventually([&] {
     const auto* const devices = merlind.devices();
@@ -59,8 +60,8 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
   ASSERT_TRUE(merlind.healthIs("ball", HealthState::kOk));
   Process alarms({kMerlind, "--config", merlind.config(), "--role", "alarms"});
   ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
-  // A device that works raises no alarm, so the ball is killed until an alarm shows that its loss
-  // was noticed.
+  // A working device raises no alarm, so the emulated ball is killed repeatedly until an alarm
+  // shows that its loss was noticed.
   EXPECT_TRUE(eventually([&] {
     for (const pid_t pid : merlind.children("spaceball")) ::kill(pid, SIGKILL);
     return !told(file).empty();
@@ -84,7 +85,7 @@ TEST(Alarms, ALostDeviceAndAMerlindThatEndsStartTheProgram) {
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
-// After a boot the alarms' process starts last: it has to report earlier faults of the devices, and
+// After a boot the alarms' process starts last: it has to report the devices' earlier faults, each
 // only once.
 TEST(Alarms, FaultsOfTheStartAreToldThoughTheAlarmsStartLater) {
   const TempDir dir;
@@ -124,15 +125,15 @@ TEST(Alarms, AContentThatWasMissingAtTheStartIsTold) {
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
-// A supervisor may ignore SIGCHLD, which its children inherit; the kernel then tells nobody how
-// they end.
+// A supervisor may ignore SIGCHLD, and child processes inherit this; the kernel then reports to
+// nobody how the alarms' programs end.
 TEST(Alarms, TheEndOfAProgramIsNoticedWhoeverStartedMerlind) {
   const TempDir dir;
   writeText(dir / "c.json", Json{{"instance", privateName("alarm")},
                                  {"run_directory", dir.path()},
                                  {"alarms", alarmsInto(dir / "told")}}
                                 .dump());
-  // Not /bin/sh: dash does not ignore this signal.
+  // Uses bash instead of /bin/sh, since dash does not ignore this signal.
   Process alarms({"bash", "-c", "trap '' CHLD; exec \"$@\"", "sh", kMerlind, "--config",
                   dir / "c.json", "--role", "alarms"});
   ASSERT_TRUE(alarms.saysEventually("ready")) << alarms.output();
@@ -145,7 +146,7 @@ TEST(Alarms, TheEndOfAProgramIsNoticedWhoeverStartedMerlind) {
   EXPECT_EQ(alarms.kill(SIGTERM), 0) << alarms.output();
 }
 
-// It waits for a configuration with some, and takes that when it is told to.
+// The alarms' process waits for a configuration that has alarms, and uses it after a SIGHUP.
 TEST(Alarms, AConfigurationWithoutAlarmsHasNothingToStart) {
   const TempDir dir;
   writeText(dir / "c.json", "{}");

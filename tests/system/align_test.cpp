@@ -1,5 +1,6 @@
 // Alignment by script in the real daemon: the signal of an output moves by the right number of
-// pixels, also after undo, redo, a restart and a kill. And which alignments the daemon keeps.
+// pixels, also after undo, redo, a restart and a kill. Also tests which alignments the daemon
+// keeps.
 #include <filesystem>
 #include <string>
 
@@ -67,7 +68,8 @@ class Align : public testing::Test {
     return align({"--output", "left", "--corner", corner, "--by", x, y});
   }
 
-  // The output's present signal. The background is white; pixels that show nothing are black.
+  // Returns the output's present signal. The background is white; pixels that show nothing are
+  // black.
   render::image::ImageFile signal(const std::string& output = "left") const {
     const std::string file = dir_ / "signal.png";
     const Outcome taken = merlin({"snapshot", "--output", output, "-o", file});
@@ -76,9 +78,9 @@ class Align : public testing::Test {
     EXPECT_TRUE(read);
     return read ? *std::move(read) : render::image::ImageFile{};
   }
-  // Number of columns at the left of a row, and of rows at the top of a column, of which less than
-  // half shows the picture. The daemon answers a move before the new correction is in use, so a
-  // test waits for it.
+  // blackLeft() returns the number of black columns at the left of a row, blackTop() the number of
+  // black rows at the top of a column. The daemon answers a move before the new correction is in
+  // use, so a test has to wait for the expected number.
   int blackLeft(int row) const {
     const render::image::ImageFile picture = signal();
     int x = 0;
@@ -149,15 +151,16 @@ TEST_F(Align, TheConfiguredCorrectionIsTheBase) {
 
 class AlignedExport : public Align {
  protected:
-  // Exports the configuration; returns the command's output and the content of the file.
+  // Exports the configuration as MPCDI; returns the output of the export, and the correction that
+  // an import of the exported file prints.
   std::pair<std::string, std::string> exported(const std::string& config) const {
     const std::string mpcdi = dir_ / "wall.mpcdi";
     const Outcome done = run({kMerlin, "wall", "mpcdi", "export", mpcdi, "-c", config});
     EXPECT_EQ(done.status, 0) << done.output;
     return {done.output, run({kMerlin, "wall", "mpcdi", "import", mpcdi}).output};
   }
-  // The wall's configuration with another correction. Without `running` it is that of another
-  // instance.
+  // Returns the path of a copy of the wall's configuration with another correction. If `running` is
+  // false, the copy belongs to another instance, which does not run.
   std::string changed(const json& correction, bool running) const {
     json config = json::parse(readText(wall_->config()));
     if (!running) config["instance"] = privateName("other");
@@ -168,7 +171,8 @@ class AlignedExport : public Align {
   }
 };
 
-// The file equals that of a configuration in which the corners are where they were moved to.
+// The exported file equals that of a configuration whose corners are set to where the alignment
+// moved them.
 TEST_F(AlignedExport, HasMovedCorners) {
   EXPECT_EQ(moveCorner("top_left", "20", "12.5").status, 0);
   const auto [said, moved] = exported(wall_->config());
@@ -296,7 +300,7 @@ TEST_F(Align, APlaylistThatIsOffIsOffAfterARestartUntilOn) {
   EXPECT_NE(bare.output.find("on, off or next is required"), std::string::npos) << bare.output;
 }
 
-// The state file is written at each step, and the process is killed during such a write.
+// The state file is written at each step, and the process is killed while it writes.
 TEST_F(Align, AKillAmongManyWritesLeavesAStateThatIsRead) {
   for (int round = 0; round < 5; ++round) {
     const std::string script = fmt::format(
@@ -358,7 +362,7 @@ TEST_F(Align, AFileThatIsReadCannotBeTheStateFile) {
   }
 }
 
-// People tune blends by trial and error, so a change must not restart the wall.
+// People tune blends by trial and error, so a changed blend must not restart the wall.
 TEST_F(Align, AChangedCorrectionIsTakenByAReloadWhileTheWallRuns) {
   EXPECT_EQ(moveCorner("top_right", "-10", "0").status, 0);
   EXPECT_TRUE(eventually([&] { return at(signal(), 318, 100) < 128; }));
@@ -374,7 +378,7 @@ TEST_F(Align, AChangedCorrectionIsTakenByAReloadWhileTheWallRuns) {
   EXPECT_EQ(done.output.find("started again"), std::string::npos) << done.output;
 }
 
-// A wrong number in the configuration must not lose an alignment.
+// A wrong number in the configuration must not delete an alignment.
 TEST_F(Align, AnAlignmentIsSetAsideWhileItsOutputHasAnotherSizeAndComesBack) {
   EXPECT_EQ(moveCorner("top_left", "20", "0").status, 0);
   const std::string good = readText(wall_->config());
@@ -441,7 +445,7 @@ TEST_F(Align, ATestCardIsShownAndCorrected) {
       << wrong.output;
 }
 
-// A program that runs on a terminal of its own.
+// A program that runs on a pseudo-terminal of its own.
 class Terminal {
  public:
   explicit Terminal(std::vector<std::string> words) {
@@ -465,7 +469,8 @@ class Terminal {
   void type(const std::string& keys) const {
     EXPECT_EQ(::write(master_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
   }
-  // Whether the terminal shows this text after all that earlier calls found, at once or later.
+  // Waits until the terminal shows this text after all texts that earlier calls found; false if it
+  // never does.
   bool shows(const std::string& text) {
     return eventually([&] {
       pollfd item{master_, POLLIN, 0};
@@ -481,7 +486,8 @@ class Terminal {
       return true;
     });
   }
-  // Whether the terminal echoes keys and edits lines, as for a shell.
+  // Returns whether the terminal is in its usual mode, as for a shell: it echoes keys and edits
+  // lines.
   bool isUsual() const {
     termios now{};
     ::tcgetattr(master_, &now);

@@ -235,7 +235,7 @@ TEST_F(BadInput, KeysNeverReplaceWhatIsThere) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "nowhere"));
 }
 
-// A killed writer leaves no temporary file; one that an earlier writer left is removed by the next.
+// A killed writer leaves no temporary file; the next writer removes what an earlier one left.
 TEST_F(BadInput, AWriterThatIsKilledLeavesNothing) {
   writeText(dir_ / "x.mrm.999999999.tmp", "left by one that is no more");
   Process writer({kMerlin, "mesh", "reduce", kSource + "/config/models/ankylosaurus.ply", "-o",
@@ -287,7 +287,7 @@ TEST_F(BadInput, CommandsForADaemonThatIsNotThere) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "x.png"));
 }
 
-// The message repeats the command, names the unknown word, and says where help is.
+// The message repeats the command, names the unknown word, and says where to find help.
 TEST_F(BadInput, ArgumentsThatNoCommandTakes) {
   const std::string scan = kSource + "/config/models/ankylosaurus.ply";
   expectOutcome(run({kMerlin}), 2, {"merlin: needs a command: status, watch, "});

@@ -1,5 +1,5 @@
 // Every benchmark whose subject is missing or ends early must fail, name the subject and print no
-// figure. How benchmarks do so is tested in tests/bench/figures_test.cpp.
+// figure. The code that benchmarks share for this is tested in tests/bench/figures_test.cpp.
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -44,7 +44,8 @@ class Bench : public testing::Test {
     for (const std::string& word : words)
       EXPECT_NE(s.message.find(word), std::string::npos) << word << " in: " << s.message;
   }
-  // The same for a command, run without options and with --json.
+  // Runs the command without options and with --json, and expects both times that `bench` failed
+  // and printed no figures.
   void expectNoFigures(std::vector<std::string> command, const std::string& bench,
                        const std::vector<std::string>& words) const {
     expectNoFigures(said(command), bench, words);
@@ -61,7 +62,7 @@ class Bench : public testing::Test {
     return folder;
   }
 
-  // The path of a copy of the demo's configuration that uses `model`, which need not exist.
+  // Returns the path of a copy of the demo's configuration that uses `model`, which need not exist.
   std::string demoOn(const std::string& model) const {
     auto config = nlohmann::json::parse(readText(kDemo));
     config["wall"]["model"] = model;
@@ -203,7 +204,7 @@ TEST_F(Bench, KillPageAndSoakWithoutMerlindHaveNoFigures) {
     auto missing = command, ended = command;
     missing.insert(missing.end(), {"--bin", "/nonexistent"});
     expectNoFigures(missing, name, {"/nonexistent/merlind", "no such program"});
-    if (name == "kill") continue;  // it waits for READY, up to its own deadline
+    if (name == "kill") continue;  // the kill benchmark waits for READY up to its own deadline
     ended.insert(ended.end(), {"--bin", ends});
     expectNoFigures(ended, name, {"merlind", "it ended", "no role"});
   }
@@ -218,7 +219,8 @@ TEST_F(Bench, ADurationThatIsNoneIsBadUsage) {
   }
 }
 
-// Checks that there are figures. Whether memory is steady cannot be judged after some minutes.
+// Expects only that figures are printed: whether memory is steady cannot be judged after some
+// minutes.
 nlohmann::json soakOnVirtualTime(const Said& s) {
   const auto object = nlohmann::json::parse(s.output, nullptr, false);
   EXPECT_TRUE(object.is_object()) << s.output;
@@ -238,7 +240,7 @@ TEST_F(Bench, ADayOnVirtualTimeIsTheSameForTheSameSeed) {
   EXPECT_NE(first["digest"]["value"], other["digest"]["value"]);
 }
 
-// Checks that there are figures; whether they keep their bounds depends on the machine.
+// Expects only that figures are printed: whether they keep their limits depends on the machine.
 TEST_F(Bench, AKillOfEachRoleHasFigures) {
   const Said s =
       said({"python3", "-B", kBench + "/kill_bench.py", "--bin", kBin, "--times", "1", "--json"});
@@ -249,7 +251,7 @@ TEST_F(Bench, AKillOfEachRoleHasFigures) {
     EXPECT_GT(object["figures"][figure]["value"], 0) << figure << s.output;
 }
 
-// Checks that there are figures; whether they keep their limits depends on the machine.
+// Expects only that figures are printed: whether they keep their limits depends on the machine.
 TEST_F(Bench, AnAttackThatReachesTheWallHasFigures) {
   const Said s = said({"python3", "-B", kBench + "/attack/attack.py", "--bin", kBin, "--source",
                        kSource, "--rounds", "1", "--seconds", "2", "pty-newlines", "--json"});
@@ -266,7 +268,7 @@ TEST_F(Bench, ReductionWithoutMerlinHasNoFigures) {
         dir_ / "reduction", "--quick"};
   };
   expectNoFigures(reduction("/nonexistent"), "reduction", {"/nonexistent/bench/bench_merlin"});
-  // The programs exist, but fail.
+  // The programs exist, but they fail.
   const std::string bin = dir_ / "idle";
   for (const char* name : {"/bench/bench_merlin", "/bin/merlin"}) {
     std::filesystem::create_directories(std::filesystem::path(bin + name).parent_path());

@@ -1,5 +1,5 @@
-// merlin calibrate tracker and ball, the guided calibrations. A merlind reads an emulated device,
-// whose emulated person does each step when the test tells it to.
+// merlin calibrate tracker and ball, the guided calibrations. A merlind reads an emulated device
+// whose emulated person performs each step when the test says so.
 #include <gtest/gtest.h>
 
 #include "tests/system/merlind.h"
@@ -9,8 +9,8 @@ namespace {
 
 using nlohmann::json;
 
-// An emulated device, which goes to the next phase of its motion script when told, and a merlind
-// that reads it.
+// An emulated device, which goes to the next phase of its motion script when the test says so, and
+// a merlind that reads the device.
 class Bench {
  public:
   Bench(const char* device, const char* role, const char* script)
@@ -50,7 +50,7 @@ class Bench {
     return words;
   }
   std::string file() const { return dir_ / "merlin.json"; }
-  // The settings of the device's driver that are in the configuration file.
+  // Returns the settings of the device's driver from the configuration file.
   json saved() const {
     const json config = json::parse(readText(file()));
     for (const json& device : config["devices"]) {
@@ -87,7 +87,7 @@ void expectNear(const json& list, const std::vector<double>& expected, double to
 }
 
 constexpr std::size_t kSteps = 4;
-using Places = std::array<std::array<float, 3>, kSteps>;  // cm
+using Places = std::array<std::array<float, 3>, kSteps>;  // [cm]
 
 // Runs the calibration: waits for each step's prompt, moves the station there, and presses Enter.
 void walkThrough(Bench& bench, const Places& places) {
@@ -132,8 +132,8 @@ TEST(CalibrateTracker, GoesThroughPlacesAndAPose) {
   expectNear(bench.saved()["boresight1_wxyz"], kBoresight, 0.01);
 }
 
-// The station does not move. Run without a terminal, the command must fail and leave the file as it
-// is.
+// The station does not move. Run without a terminal, the command must fail and leave the file
+// unchanged.
 TEST(CalibrateTracker, RefusesPlacesThatMakeNoFrameAndLeavesTheFile) {
   Bench bench("fastrak", "tracker", "alignment");
   bench.start();

@@ -1,4 +1,4 @@
-// merlin calibrate pad, touch and tracker with present-day devices, which the command opens itself:
+// merlin calibrate pad, touch and tracker with present-day devices. The command opens them itself:
 // records of an input device over a pseudo-terminal, and OSC.
 #include <atomic>
 #include <mutex>
@@ -25,16 +25,16 @@ using nlohmann::json;
 
 std::string moved(int code, int value) { return evdevRecord(EvdevRecord::kMoved, code, value); }
 
-// The device's end of the line of an input device.
+// The device's end of an input device's pseudo-terminal.
 class Line {
  public:
   explicit Line(const std::string& link) : line_(*io::PtyMaster::open(link)) {}
   void say(const std::string& bytes) const {
-    (void)!::write(line_.fd(), bytes.data(), bytes.size());  // perhaps nobody has opened it yet
+    (void)!::write(line_.fd(), bytes.data(), bytes.size());  // nobody may have opened the line yet
   }
   void report(const std::string& events) const { say(events + evdevRecord(EvdevRecord::kReport)); }
-  // Sends the description until it has been read, since bytes sent before the line is opened are
-  // lost.
+  // Sends the description repeatedly until the command has read it, since bytes sent before the
+  // line is opened are lost.
   bool describes(Process& calibrate, const std::string& description) const {
     return eventually([&] {
       if (calibrate.output().find("\nrest: ") != std::string::npos ||
@@ -69,7 +69,7 @@ json savedOf(const std::string& file, const std::string& driver) {
   return nullptr;
 }
 
-// For each step: its name, and the events of what a person moves before pressing Enter.
+// For each step: its name, and the device's events as the person moves it before pressing Enter.
 using Steps = std::vector<std::pair<const char*, std::string>>;
 
 void walk(Process& calibrate, const Line& line, const Steps& steps) {
@@ -85,7 +85,7 @@ TEST(CalibratePad, AsksForMovesAndWritesAxesThatMerlindTakes) {
   const TempDir dir;
   const Line line(dir / "pad");
   const std::string file = dir / "merlin.json";
-  // Without --device the command takes the gamepad, although the list has a ball before it.
+  // Without --device the command uses the gamepad, although the list has a ball before the gamepad.
   const json pad = deviceEntry("pad", "evdev", "pty:" + dir / "pad", {{"curve", 1.5}});
   writeText(file, json{{"devices", json::array({deviceEntry("ball", "spaceball"), pad})}}.dump());
   Process process(calibrate("pad", file));
@@ -143,7 +143,7 @@ TEST(CalibrateTouch, AsksForThreeCorners) {
   const TempDir dir;
   const Line line(dir / "frame");
   const std::string file = dir / "merlin.json";
-  // The present settings do not matter, since corners are measured in the device's own axes.
+  // The present settings have no effect, since corners are measured in the device's own axes.
   writeText(file, onlyDevice(deviceEntry("frame", "touch", "pty:" + dir / "frame",
                                          {{"invert_y", true}, {"aspect", 1.5}}))
                       .dump());
@@ -156,7 +156,7 @@ TEST(CalibrateTouch, AsksForThreeCorners) {
     return moved(ABS_MT_SLOT, 0) + moved(ABS_MT_TRACKING_ID, id) + moved(ABS_MT_POSITION_X, x) +
            moved(ABS_MT_POSITION_Y, y);
   };
-  // The frame was mounted with a quarter turn.
+  // The touch frame is mounted with a quarter turn.
   walk(process, line,
        {{"top left", at(1, 980, 30)},
         {"top right", at(2, 970, 960)},
@@ -170,7 +170,7 @@ TEST(CalibrateTouch, AsksForThreeCorners) {
   EXPECT_EQ(savedOf(file, "touch")["mouse_counts"], 3000);
 }
 
-// Sends the pose of a station repeatedly, as a tracking system does.
+// Sends a station's pose repeatedly, as a tracking system does.
 class OscSender {
  public:
   OscSender() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -183,7 +183,7 @@ class OscSender {
     thread_ = std::jthread([this](const std::stop_token& stop) { send(stop); });
   }
   int port() const { return ntohs(address_.sin_port); }
-  // Returns when no pose of the previous place is on its way any more.
+  // Moves the station; returns once no pose of its previous place is on its way any more.
   void holdAt(float x, float y, float z) {
     {
       const std::lock_guard lock(mutex_);

@@ -1,4 +1,5 @@
-// Whatever merlind refuses to start with, --check-config has to refuse with the same messages.
+// Whatever configuration merlind refuses to start with, --check-config has to refuse with the same
+// messages.
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -17,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-// The lines of `output` that name a place in `file`.
+// Returns the lines of `output` that name a place in `file`.
 std::string findingsOf(const std::string& output, const std::string& file) {
   std::string found;
   std::istringstream lines(output);
@@ -29,7 +30,8 @@ std::string findingsOf(const std::string& output, const std::string& file) {
 
 class CheckConfig : public testing::Test {
  protected:
-  // Writes a configuration with which merlind starts, with `patch` merged into it.
+  // Writes a configuration with which merlind starts, with `patch` merged into it; returns its
+  // path.
   std::string file(const json& patch) {
     json config = {{"instance", privateName("check")},
                    {"run_directory", dir_.path()},
@@ -91,7 +93,8 @@ TEST_F(CheckConfig, RefusesWallsThatCannotBeDrawn) {
                 "OSMesa draws in software");
 }
 
-// Such a program may be installed later, so it is no reason to refuse the other alarms.
+// An alarm's program may be installed later, so a missing program is no reason to refuse the other
+// alarms.
 TEST_F(CheckConfig, SaysThatAnAlarmsProgramCannotBeExecuted) {
   writeText(dir_ / "plain", "#!/bin/sh\n");
   writeText(dir_ / "script", "#!/no/such/sh\n");
@@ -226,7 +229,8 @@ TEST_F(CheckConfig, LooksAtWhatTheRoleNeeds) {
   EXPECT_EQ(run({kMerlind, "--check-config", replay, "--role", "wall"}).status, 0);
 }
 
-// The network lacks a posture of the default bindings, and the file has no bindings of its own.
+// The network lacks a posture that the default bindings use. As the file has no bindings of its
+// own, this is not its author's mistake.
 TEST_F(CheckConfig, ADefaultBindingIsNobodysMistake) {
   std::string network = readText(kSource + "/config/postures.json");
   for (std::size_t at = 0; (at = network.find("\"fist\"", at)) != std::string::npos;)
@@ -250,7 +254,7 @@ TEST_F(CheckConfig, AnEmptyNameIsBadUsageAndStartsNothing) {
   }
 }
 
-// A check that runs out of memory, or ends early in another way, must not report "adjusted".
+// If the check itself runs out of memory or ends early, the command must not report "adjusted".
 TEST_F(CheckConfig, ACheckThatDoesNotEndIsNotValid) {
   std::string bindings;
   for (int i = 0; i < 340'000; ++i) bindings += i == 0 ? "{}" : ",{}";

@@ -1,4 +1,4 @@
-// The output of `merlin` commands that succeed, which scripts rely on. Mesh commands:
+// The output of successful `merlin` commands, on which scripts rely. Mesh commands are tested in
 // mesh_cli_test.
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
 // `merlin mesh import` of Inventor and VRML files whose indices are out of range, whose faces are
-// clockwise, or whose grids are coloured. All files are made here.
+// clockwise, or whose grids are coloured. The test makes all files.
 #include <bit>
 #include <filesystem>
 
@@ -26,7 +26,7 @@ std::string vrml97(const std::string& geometry) {
   return "#VRML V2.0 utf8\nShape { geometry " + geometry + " }\n";
 }
 
-// A square in VRML 97; `fields` are added to it.
+// Returns a square in VRML 97; `fields` are added to its IndexedFaceSet.
 std::string faceSet(const std::string& fields) {
   return vrml97("IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] } " +
                 fields + " }");
@@ -37,8 +37,8 @@ struct Vertex {
   Colour colour{-1, -1, -1};  // -1: the file has no colours
 };
 
-// The vertices of a binary PLY file as merlin writes it: float x y z, uchar red green blue if it
-// has colours, float nx ny nz.
+// Returns the vertices of a binary PLY file as merlin writes it: float x y z, uchar red green blue
+// if it has colours, float nx ny nz.
 std::vector<Vertex> verticesOf(const std::string& ply) {
   const std::string kEnd = "end_header\n", kCount = "element vertex ";
   const bool coloured = ply.find("property uchar red") != std::string::npos;
@@ -73,8 +73,8 @@ class CoinImport : public testing::Test {
     EXPECT_EQ(done.status, 0) << done.output << content;
     return done.status == 0 ? verticesOf(readText(out_)) : std::vector<Vertex>();
   }
-  // The colour of the vertex at this place; {-2, ...} if there is none, or if several of different
-  // colours are there.
+  // Returns the colour of the vertex at this place; {-2, ...} if there is no vertex, or if several
+  // vertices of different colours are there.
   static Colour colourAt(const std::vector<Vertex>& all, const std::array<float, 3>& at) {
     Colour colour{-2, -2, -2};
     for (const Vertex& v : all) {
@@ -115,7 +115,7 @@ TEST_F(CoinImport, ACoordinateThatIsNotThereIsRefused) {
   EXPECT_EQ(vertices(inventor("IndexedFaceSet { coordIndex [ 0, 1, 2, 3 ] }")).size(), 4U);
 }
 
-// A reader who misses something in the model finds it here.
+// Users who miss a part of the scene in the model find the reason in the report's notes.
 TEST_F(CoinImport, WhatIsLeftOutIsNoted) {
   const std::string square = "IndexedFaceSet { coordIndex [ 0, 1, 2, 3, -1 ] } ";
   const auto notes = [&](const std::string& content) {
@@ -212,8 +212,8 @@ TEST_F(CoinImport, AColourThatIsNotThereIsRefused) {
                   "its 2 faces");
 }
 
-// Coin draws such faces with the last material. A read beyond the materials in memory would give a
-// different colour at each run.
+// Coin draws such faces with the last material. If the import read beyond the materials in memory,
+// each run would give a different colour.
 TEST_F(CoinImport, FacesBeyondTheLastMaterialHaveIt) {
   const auto all = vertices(
       inventor("Material { diffuseColor [ 1 0 0, 0 0 1 ] } MaterialBinding { value PER_FACE }\n"

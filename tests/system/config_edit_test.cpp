@@ -1,4 +1,4 @@
-// merlin config edit, with scripts for editors: what is saved, what is not, and who owns the file.
+// merlin config edit, with scripts as editors: what is saved, what is not, and who owns the file.
 #include <filesystem>
 
 #include <fcntl.h>
@@ -18,14 +18,14 @@ class ConfigEdit : public testing::Test {
  protected:
   ConfigEdit() {
     writeText(file_, kOld);
-    // A mode and an owner that differ from this process's defaults, so that a new file in its place
-    // would show.
+    // Mode and owner differ from this process's defaults, so that the test notices if a new file
+    // replaces the old one.
     EXPECT_EQ(::chmod(file_.c_str(), 0640), 0);
     if (::geteuid() == 0) {
       EXPECT_EQ(::chown(file_.c_str(), 65534, 65533), 0);
     }
   }
-  // `script`: the commands that the editor runs on the file "$1".
+  // Starts `merlin config edit`. `script`: the commands that the editor runs on the file "$1".
   std::unique_ptr<Process> edit(const std::string& script, const std::string& variable = "EDITOR") {
     const std::string editor = dir_ / "editor";
     writeText(editor, "#!/bin/sh\n" + script + "\n");

@@ -1,4 +1,4 @@
-// merlin config show and diff, and conf.d, with the real programs.
+// merlin config show and diff, and the folder conf.d, with the real programs.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -38,7 +38,8 @@ TEST_F(ConfigCommands, ShowSaysWhichFileAValueComesFrom) {
   expectHas(shown.output,
             "(changed while the wall ran: " + dir_.path() + "/state.json; default 30)");
   EXPECT_EQ(shown.output.find("/instance"), std::string::npos) << "it is the default";
-  std::filesystem::remove(dir_ / "state.json");  // its note would be in the output too
+  // otherwise a note on the state file would be in the output too
+  std::filesystem::remove(dir_ / "state.json");
   const Outcome all = run({kMerlin, "config", "show", file_, "--json"});
   const json settings = json::parse(all.output, nullptr, false);
   ASSERT_TRUE(settings.is_array()) << all.output;

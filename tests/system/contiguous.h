@@ -1,5 +1,5 @@
-// Expectations that a device of a running merlind has lost no sample, by the counters in shared
-// memory.
+// Expectations that a device of a running merlind has lost no sample, checked by the samples'
+// counters in shared memory.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace merlin::test {
 
-// Expects that none of the newest samples since the `from`-th is missing.
+// Expects that, of the samples since number `from`, the newest 100 have consecutive counters.
 template <typename T>
 void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const std::string& what) {
   const std::uint64_t to = channel.count();
@@ -26,7 +26,7 @@ void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const 
   }
 }
 
-// The same for a glove, a ball, or each station of a tracker.
+// Expects the same of the samples of a glove, of a ball, or of each station of a tracker.
 inline void expectContiguous(const shm::DeviceSlots& devices, const std::string& device,
                              std::uint64_t from) {
   if (const auto* const glove = devices.glove(device))

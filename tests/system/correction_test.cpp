@@ -18,7 +18,7 @@ using nlohmann::json;
 class Correction : public testing::Test {
  protected:
   // Writes the configuration of a wall that shows only its background and has this correction on
-  // the output "left".
+  // the output "left"; returns its path.
   std::string file(const std::string& name, const json& correction,
                    const std::string& place = "auto") {
     const json png = {{"kind", "png"},
@@ -37,7 +37,7 @@ class Correction : public testing::Test {
     return dir_ / (name + ".json");
   }
 
-  // The image that merlind wrote for the output "left".
+  // Runs merlind and returns the image that it wrote for the output "left".
   render::image::ImageFile shown(const std::string& name, const json& correction,
                                  const std::string& place = "auto") {
     const std::string config = file(name, correction, place), picture = dir_ / (name + ".png");
@@ -83,7 +83,7 @@ TEST_F(Correction, AnExportedCorrectionShowsTheSamePicture) {
   EXPECT_LT(at(600, 200), 100) << "in the ramp";
 }
 
-// The shader runs on whatever draws, here usually in software.
+// The shader runs on whatever OpenGL driver there is, usually a software renderer.
 TEST_F(Correction, TheShaderShowsTheCpusPicture) {
   const auto cpu = shown("cpu", kCorrection, "cpu"), gpu = shown("gpu", kCorrection, "gpu");
   ASSERT_EQ(cpu.pixels.size(), gpu.pixels.size());
@@ -105,7 +105,7 @@ TEST_F(Correction, WhatCannotBeUsedIsRefusedWithItsPlace) {
             std::string::npos);
 }
 
-// One file that was damaged by a power cut must not keep the wall dark.
+// One damaged file, for example after a power cut, must not keep the wall dark.
 TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
   writeText(mpcdi_, "PK\x03\x04 but no more");
   const Outcome checked =
@@ -120,8 +120,8 @@ TEST_F(Correction, ADamagedMpcdiFileCostsOneOutputItsCorrection) {
   EXPECT_EQ(cut.pixels, without.pixels);
 }
 
-// The region is a part of its buffer, as other programs write it; or the tool has never filled the
-// warp.
+// Two cases: the region is a part of its buffer, as other programs write it; and the tool never
+// filled the warp.
 TEST_F(Correction, WhatAnMpcdiFileHasThatShowsAnotherPictureIsSaid) {
   const auto imported = [&](const std::string& place, const std::string& cells) {
     using Entries = std::vector<std::pair<std::string, std::string>>;
@@ -181,7 +181,8 @@ TEST_F(Correction, AnMpcdiRegionThatIsNotThereCostsOneOutputItsCorrectionAndTheS
   EXPECT_EQ(wall.kill(SIGTERM), 0) << wall.output();
 }
 
-// The region is used nevertheless, since only a person can see whether it fits.
+// A region of another size or name is used nevertheless, since only a person can see whether it
+// fits.
 TEST_F(Correction, AnMpcdiRegionOfAnotherOutputIsUsedAndSaid) {
   const std::string config = file("by_hand", kCorrection);
   ASSERT_EQ(run({kMerlin, "wall", "mpcdi", "export", mpcdi_, "-c", config}).status, 0);

@@ -1,4 +1,4 @@
-// The traces that a killed merlind leaves for a person who looks for the cause.
+// The traces that a killed merlind leaves for a person who looks for the cause of its end.
 #include <filesystem>
 
 #include <fcntl.h>
@@ -10,7 +10,7 @@
 namespace merlin::test {
 namespace {
 
-// The file name that follows these words in a program's output.
+// Returns the file name that follows `words` in a program's output.
 std::string fileAfter(const Process& process, const std::string& words) {
   const std::string said = process.output();
   const std::size_t at = said.find(words);

@@ -1,5 +1,5 @@
-// Raises each documented kind of alarm once for real. A fault happens at a real merlind, and a real
-// merlind --role alarms starts a program that is configured for that kind alone.
+// Raises each documented kind of alarm once with real programs. A fault happens at a real merlind,
+// and a real merlind --role alarms starts a program that is configured for that kind alone.
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -22,9 +22,10 @@ namespace {
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
 
-// merlind, whatever else a fault needs, and the alarms' process. That process does not report what
-// happened before it follows a role, so the fault of a row waits until a harmless change of the
-// role has been reported.
+// The merlind of a test, whatever else its fault needs, and the alarms' process. The alarms'
+// process does not report what happened before it began to follow a role. The test therefore causes
+// a harmless change of the role first, and causes the fault only when that change has been
+// reported.
 struct Stage {
   TempDir dir;
   ProjectorServer projector;
@@ -38,15 +39,15 @@ struct Stage {
   std::string file(const std::string& name) const { return dir / name; }
 };
 
-// A kind of alarm and how to raise it. `act` is called repeatedly until the alarm comes; it may do
-// something new each time.
+// A kind of alarm and how to raise it. `act` is called repeatedly until the alarm is raised; each
+// call may do something new.
 struct Row {
   const char* kind;
   const char* says;  // part of the alarm's sentence
   const char* role;  // the role of merlind in which the fault is
   std::function<Json(Stage&)> also;
   std::function<void(Stage&)> act;
-  const char* which = "";  // of several of one kind
+  const char* which = "";  // distinguishes several rows of the same kind
 };
 
 void PrintTo(const Row& row, std::ostream* out) { *out << row.kind; }
@@ -57,7 +58,7 @@ Json outputs(const Json& list) { return {{"wall", {{"outputs", list}}}}; }
 
 Json checkedOutput(Stage&) { return outputs({{{"kind", "shared_memory"}, {"check_s", 0.2}}}); }
 
-// The picture turns, so that files of it are written.
+// With a playlist the picture changes, so that files of it are written.
 Json fileOutput(Stage& stage) {
   std::filesystem::create_directories(stage.file("png"));
   Json also = outputs({{{"kind", "png"}, {"path", stage.file("png/wall.png")}, {"interval_s", 1}}});
@@ -75,7 +76,7 @@ Json vrpn(Stage& stage) {
   return {{"serve", {{"vrpn_port", stage.vrpn_port}}}};
 }
 
-// Its port is another program's from the start.
+// The VRPN server's port is in use by another program from the start.
 Json takenVrpn(Stage& stage) {
   auto taken = net::listenTcp("127.0.0.1", 0);
   if (!taken) return Json::object();
@@ -110,7 +111,7 @@ void removeSharedMemory(Stage& stage) {
   std::filesystem::remove("/dev/shm/" + stage.merlind->instance() + "-devices");
 }
 
-// More clients than VRPN has places for.
+// Connects more clients than the VRPN server has places for.
 void crowdVrpn(Stage& stage) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -124,7 +125,7 @@ void crowdVrpn(Stage& stage) {
   }
 }
 
-// Events that merlind reports while it starts, before anybody can follow it, cause alarms too.
+// Events that merlind reports while it starts, before any program can follow it, raise alarms too.
 void restartWithDamagedState(Stage& stage) {
   if (stage.again) return;
   EXPECT_EQ(stage.merlind->process().kill(SIGTERM), 0);
@@ -156,7 +157,7 @@ const std::vector<Row>& rows() {
 
 class EveryAlarm : public testing::TestWithParam<Row> {
  protected:
-  // A configuration with one alarm of this kind, and one for the harmless change.
+  // Returns a configuration with one alarm for this kind, and one for the harmless change.
   Json alarmsFor(const Row& row) {
     const auto program = [this](const std::string& file) {
       return Json{"/bin/sh", "-c", "cat >> \"$0\"", stage_.file(file)};
@@ -180,9 +181,9 @@ class EveryAlarm : public testing::TestWithParam<Row> {
     ASSERT_TRUE(stage_.alarms->saysEventually("ready")) << stage_.alarms->output();
   }
 
-  // A configuration that is refused and then accepted is two events of each role. The test waits
-  // for them before it causes the next two, since the log suppresses frequent repetitions and
-  // reload() reads the log.
+  // Causes the harmless change: a configuration that is refused and then accepted gives two events
+  // of each role. The test waits for both before it causes the next two, since the log suppresses
+  // frequent repetitions and reload() reads the log.
   bool followsRole() {
     const std::string good = readText(stage_.merlind->config());
     bool said = true;
@@ -248,7 +249,7 @@ std::string kindOf(const testing::TestParamInfo<Row>& of) {
 
 INSTANTIATE_TEST_SUITE_P(OfTheDocuments, EveryAlarm, testing::ValuesIn(rows()), kindOf);
 
-// The kinds that the alarms' documentation lists in the first column of its table.
+// Returns the kinds that the alarms' documentation lists in the first column of its table.
 std::set<std::string> documented() {
   const std::string page = readText(kSource + "/daemon/alarms/README.md");
   std::istringstream lines(page.substr(page.find("## What each kind means")));

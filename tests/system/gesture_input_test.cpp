@@ -1,5 +1,5 @@
-// Gestures at a real merlind: the records of a Fastrak that a synthetic person wears are replayed
-// as its line, beside an emulated glove.
+// Gestures at a real merlind: a transcript of a Fastrak worn by a synthetic person is replayed as
+// the tracker's line, beside an emulated glove.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ std::string recordOf(const TrackerSample& sample) {
   return encode(record, fastrak::kDriverList, {});
 }
 
-// A transcript of a Fastrak that measured these samples, followed by a minute of a hand at rest,
-// since a transcript that has ended is played again.
+// Returns the transcript of a Fastrak that measured these samples. A minute of a hand at rest
+// follows them, since a transcript that has ended is replayed from its beginning.
 std::string transcriptOf(const std::vector<TrackerSample>& samples) {
   io::Transcript transcript =
       *io::readTranscript(kSource + "/tests/transcripts/fastrak/1-0-none.bytes");
@@ -45,7 +45,7 @@ std::string transcriptOf(const std::vector<TrackerSample>& samples) {
   return formatTranscript(transcript);
 }
 
-// The tracker's samples around one gesture of the person.
+// Returns the tracker's samples from 1 s before the person's gesture to 0.5 s after it.
 std::vector<TrackerSample> samplesOfAGesture() {
   const hand::Performance all = hand::makeGestures(hand::MovingPerson(7003), 1, 11);
   const auto made =
@@ -61,7 +61,7 @@ std::vector<TrackerSample> samplesOfAGesture() {
 
 class GestureInput : public testing::Test {
  protected:
-  // At first the tracker has no port.
+  // The tracker has no port until play() is called.
   GestureInput() {
     EXPECT_TRUE(glove_.saysEventually("cyberglove on")) << glove_.output();
     merlind_.emplace(dir_, "", "gestures",
@@ -80,7 +80,8 @@ class GestureInput : public testing::Test {
               {{"input", std::string("hand.gesture.") + kGesture}, {"action", "next_mode"}},
               {{"input", "gesture.push"}, {"action", "reset_view"}}}}};
   }
-  // Makes this recording the tracker's line, from its beginning.
+  // Replays a transcript of these samples as the tracker's line, from its beginning. `name`: the
+  // transcript's file name.
   void play(const std::string& name, const std::vector<TrackerSample>& samples) {
     writeText(dir_ / name, transcriptOf(samples));
     written_.merge_patch(settings("replay:" + dir_ / name));
@@ -88,7 +89,8 @@ class GestureInput : public testing::Test {
     const Outcome done = run({kMerlin, "reload", "--instance", merlind_->instance()});
     ASSERT_EQ(done.status, 0) << done.output;
   }
-  // The emulated person makes a fist or opens it; returns once the action grab begins or ends.
+  // The emulated person makes a fist (`holds`) or opens it; returns once the action grab has begun
+  // or ended.
   void grab(bool holds) {
     glove_.type("\n");
     ASSERT_TRUE(eventually([&] {

@@ -1,4 +1,5 @@
-// merlin gesture, run as a person runs it: recordings of an emulated hand and of synthetic people.
+// merlin gesture, run as a person would run it, on recordings of an emulated hand and of synthetic
+// people.
 #include <filesystem>
 
 #include <gtest/gtest.h>

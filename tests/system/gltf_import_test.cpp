@@ -1,5 +1,5 @@
 // `merlin mesh import` of glTF files that assimp alone would read wrongly, and of files that refer
-// to others. All files are made here.
+// to other files. The test makes all files.
 #include <bit>
 #include <filesystem>
 
@@ -32,7 +32,8 @@ std::string shorts(const std::vector<unsigned>& values) {
   return bytes;
 }
 
-// A triangle with texture coordinates as floats. Its buffer of 80 bytes is the file `buffer`.
+// The buffer of a triangle with texture coordinates as floats: 80 bytes. The function returns the
+// triangle's JSON, which names the file `buffer` as its buffer.
 const std::string kTriangle = floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + shorts({0, 1, 2, 0}) +
                               floats({0, 0, 1, 0, 0, 1}) + std::string(12, '\0');
 Json triangle(const std::string& buffer, const std::string& texture = {}) {
@@ -65,7 +66,7 @@ Json triangle(const std::string& buffer, const std::string& texture = {}) {
   return json;
 }
 
-// The same triangle as a GLB file, with its buffer inside.
+// Returns the triangle as a GLB file, with the buffer inside.
 std::string glb(Json json) {
   json["buffers"][0].erase("uri");
   std::string text = json.dump();
@@ -179,7 +180,8 @@ TEST_F(GltfImport, AMaterialsColourIsMultipliedWithItsTexture) {
   ADD_FAILURE() << said["features"];
 }
 
-// The largest red, green and blue of all vertices of a PLY file, 0 to 255; -1 if it has no colours.
+// Returns the largest red, green and blue of all vertices of a PLY file, 0 to 255; -1 if it has no
+// colours.
 std::array<int, 3> colourOf(const std::string& ply) {
   const std::string kEnd = "end_header\n";
   if (ply.find("property uchar red") == std::string::npos) return {-1, -1, -1};
@@ -189,7 +191,7 @@ std::array<int, 3> colourOf(const std::string& ply) {
   return colour;
 }
 
-// The triangle with colours of its vertices, which are the first floats of the buffer.
+// Adds vertex colours, which are the first floats of the buffer, to the triangle.
 Json coloured(Json json, const Json& factor) {
   json["accessors"].push_back(
       {{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
@@ -200,7 +202,7 @@ Json coloured(Json json, const Json& factor) {
 }
 
 TEST_F(GltfImport, AMaterialsColourIsMultipliedWithThoseOfTheVertices) {
-  // White, written as colours of bytes in the last 12 bytes of the buffer.
+  // White vertex colours, stored as bytes in the last 12 bytes of the buffer.
   std::string buffer = kTriangle;
   std::fill(buffer.end() - 12, buffer.end(), '\xff');
   writeText(dir_ / "white.bin", buffer);
@@ -271,7 +273,8 @@ TEST_F(GltfImport, NodesMayShowMeshesInAnyOrder) {
   json["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", 68}, {"byteLength", 12}};
   json["accessors"][1]["count"] = 6;
   json["meshes"].push_back(json["meshes"][0]);
-  json["meshes"][1]["primitives"][0].erase("indices");  // one triangle, the first mesh has two
+  // a single triangle, whereas the first mesh has two
+  json["meshes"][1]["primitives"][0].erase("indices");
   json["nodes"] = {{{"mesh", 1}}, {{"mesh", 0}, {"translation", {0, 0, 1}}}};
   json["scenes"] = {{{"nodes", {0, 1}}}};
   json["scene"] = 0;
@@ -349,7 +352,7 @@ TEST_F(GltfImport, ColoursThatMerlinWroteBesideATextureComeBack) {
   EXPECT_EQ(colourOf(readText(out_)), (std::array{0, 102, 255}));
 }
 
-// The triangle as a GLB file with the attribute _heat; its values are three floats of the texture
+// Returns the triangle's JSON with the attribute _heat; its values are three floats of the texture
 // coordinates.
 Json hotTriangle() {
   Json json = triangle("");
@@ -395,7 +398,8 @@ TEST_F(GltfImport, ValuesBeyondTheBinaryChunkAreLeftOut) {
   }
 }
 
-// Two triangles, at z = 0 and z = 1, in two meshes; each has the attribute _heat, in a.bin.
+// Returns the JSON and the buffer, a.bin, of two triangles at z = 0 and z = 1, in two meshes with
+// the attribute _heat.
 Json twoHotTriangles() {
   Json json = triangle("a.bin");
   std::string bin = kTriangle;
@@ -453,7 +457,7 @@ TEST_F(GltfImport, ValuesThatNotAllMeshesHaveAreNamed) {
   Json one = made[0];
   one["meshes"][1]["primitives"][0]["attributes"].erase("_heat");
   expectNote(one);
-  // Both at the same places, so that it cannot be said which one assimp shows.
+  // Both triangles are at the same places, so that nobody can tell which of them assimp returns.
   Json same = made[0];
   same["meshes"][1]["primitives"][0]["attributes"]["POSITION"] =
       same["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
@@ -548,8 +552,8 @@ TEST_F(GltfImport, ATransformOfTheTextureIsApplied) {
   FAIL() << info["features"];
 }
 
-// A node moves the mesh to the coordinates of a map; sums in floats would be rounded to steps of
-// 0.5.
+// A node moves the mesh to the coordinates of a map, where single-precision sums would be rounded
+// to steps of 0.5.
 TEST_F(GltfImport, AMeshThatANodeMovesToAMapKeepsItsDigitsByAnOrigin) {
   Json json = triangle("a.bin");
   json["nodes"] = {{{"children", {1}}, {"translation", {500000, 0, 0}}},
@@ -557,15 +561,15 @@ TEST_F(GltfImport, AMeshThatANodeMovesToAMapKeepsItsDigitsByAnOrigin) {
   const auto said = report(json.dump());
   EXPECT_EQ(said["origin"], (Json{500000.0, 5200000.0, 0.0})) << said;
   EXPECT_EQ(said["origin_added"], true);
-  const Outcome again = run({kMerlin, "mesh", "info", out_, "--json"});  // comes after a note
+  // the JSON comes after a note
+  const Outcome again = run({kMerlin, "mesh", "info", out_, "--json"});
   const Json info = Json::parse(again.output.substr(again.output.find('{')));
   EXPECT_EQ(info["origin"], (Json{500000.0, 5200000.0, 0.0}));
   EXPECT_EQ(info["box"]["low"], (Json{0.125, 0.0, 0.0}));
   EXPECT_EQ(info["box"]["high"], (Json{0.375, 0.25, 0.0}));
 }
 
-// A map that merlin mesh export has written is imported at the same place, with and without a round
-// trip.
+// A map exported by merlin mesh export is imported at the same place, from each format.
 TEST_F(GltfImport, AnExportOfAMapIsImportedAtTheSamePlace) {
   writeText(dir_ / "far.obj",
             "v 500000.125 5200000.25 10\nv 500002.125 5200000.25 10\nv 500002.125 5200002.25 "

@@ -38,8 +38,8 @@ std::string bigDoubles(const std::vector<double>& values) {
   return bytes;
 }
 
-// A FITS file in blocks of 2880 bytes. `cards`: a "KEY = value" each, written after the cards of
-// the size.
+// Returns a FITS file in blocks of 2880 bytes. `cards`: "KEY = value" lines that follow the cards
+// of the size.
 std::string fits(int bits, int width, int height, const std::vector<std::string>& cards,
                  const std::string& pixels) {
   std::vector<std::string> all = {
@@ -59,7 +59,8 @@ std::string fits(int bits, int width, int height, const std::vector<std::string>
   return bytes;
 }
 
-// A GeoTIFF of 16-bit heights, little-endian, in UTM zone 33 of WGS 84, with cells of 10 x 20 m.
+// Makes a GeoTIFF of 16-bit heights, little-endian, in UTM zone 33 of WGS 84, with cells of 10 x 20
+// m.
 class Tiff {
  public:
   std::string of(std::uint32_t width, std::uint32_t height, const std::string& heights) {
@@ -127,7 +128,7 @@ std::string fortran(double value) {
   return text;
 }
 
-// A USGS DEM of two profiles with three heights each, cells of 30 x 30 m, in UTM zone 10.
+// Returns a USGS DEM of two profiles with three heights each, cells of 30 x 30 m, in UTM zone 10.
 std::string usgsDem() {
   std::string a = fmt::format("{:144}{:6}{:6}{:6}{:6}", "SYNTHETIC", 1, 1, 1, 10);
   for (int i = 0; i < 15; ++i) a += fortran(0);
@@ -167,13 +168,13 @@ class GridImport : public testing::Test {
     return start == std::string::npos ? nlohmann::json()
                                       : nlohmann::json::parse(outcome.output.substr(start));
   }
-  // The box of the mesh that was written: its low and its high corner.
+  // Returns the bounding box of the mesh that was written: its low and its high corner.
   std::array<std::array<double, 3>, 2> box() {
     const auto info = nlohmann::json::parse(run({kMerlin, "mesh", "info", ply_, "--json"}).output);
     return {info["box"]["low"], info["box"]["high"]};
   }
-  // The error message. Expects that it is one line with the file's name, and that no file is left
-  // behind.
+  // Returns the error message. Expects that the import is refused with one line that has the file's
+  // name, and that no file is left behind.
   std::string refusal(const std::string& name, const std::string& bytes,
                       std::vector<std::string> options = {}) {
     const Outcome outcome = import(name, bytes, std::move(options));
@@ -271,7 +272,7 @@ TEST_F(GridImport, FaultsOfAFitsFileNameTheirCard) {
                 "card ALT2: is missing; there are 2 rows");
 }
 
-// A FITS file with a primary image without axes and two extensions.
+// Returns a FITS file that has a primary image without axes and two extensions.
 std::string fitsOfTwo() {
   const auto extension = [](const std::string& name, int width, float range) {
     std::string bytes =
@@ -326,7 +327,7 @@ TEST_F(GridImport, AFitsFileThatIsCutOrTooLargeOrEmptyIsRefused) {
 }
 
 // CFITSIO has to read what `merlin mesh scan` writes. The names of the companion images are longer
-// than a card; one has a quote where its card ends.
+// than a FITS card, and one has a quote where its card ends.
 TEST_F(GridImport, AScanAsFitsComesBackWithItsCameraAndItsModalities) {
   const std::string stem = std::string(52, 'x') + "'s scan";
   const auto scanned = [&](const std::string& ending) {
@@ -393,7 +394,8 @@ TEST_F(GridImport, TheProjectionStaysInTheModelAndInThePgm) {
   EXPECT_EQ(again["origin"][1], 5299970);
 }
 
-// A netCDF file of the classic form with two variables of 2 x 3 floats: "z" of `z` and "err" of 1.
+// Returns a netCDF file of the classic format with two variables of 2 x 3 floats: "z", filled with
+// `z`, and "err", filled with 1.
 std::string netcdf(float z) {
   const auto name = [](const std::string& text) {
     return big32(static_cast<std::uint32_t>(text.size())) + text +
@@ -451,7 +453,7 @@ TEST_F(GridImport, AUsgsDemIsReadFromItsProfiles) {
   EXPECT_EQ(json["origin"][1], 5100000);
 }
 
-// GTOPO30: one file has the heights, another one of the same name their description.
+// In GTOPO30, one file has the heights, and another file of the same stem describes them.
 TEST_F(GridImport, GtopoIsReadWithTheHeaderBesideIt) {
   std::string heights;
   for (const int v : {10, 20, 30, 40, -9999, 60})
@@ -478,8 +480,8 @@ TEST_F(GridImport, MapsThatAreNoneAreRefused) {
   expectRefusal("a.dem", usgsDem().substr(0, 1100), "a.dem: ");
 }
 
-// A map that refers to other files is refused: by merlin, which does not read the format, and by
-// merlin-import alone, which has no reader for it.
+// A map that refers to other files is refused, both by merlin, which does not read the format, and
+// by merlin-import alone, which has no reader for it.
 TEST_F(GridImport, AFileThatNamesOthersIsNotFollowed) {
   writeText(dir_ / "secret.tif", Tiff().of(3, 2, Tiff::shorts({100, 110, 1, 120, 130, 140})));
   const std::string vrt =

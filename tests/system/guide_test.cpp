@@ -23,7 +23,7 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-// The words of each line that runs `merlin`, without a trailing comment.
+// Returns the words of each line of the guide that runs `merlin`, without a trailing comment.
 std::vector<std::vector<std::string>> commands() {
   std::vector<std::vector<std::string>> all;
   const std::regex command("    (# )?merlin ([^#]*)(#.*)?");
@@ -37,7 +37,7 @@ std::vector<std::vector<std::string>> commands() {
   return all;
 }
 
-// The text of each block between "```json" and "```".
+// Returns the text of each block of the guide between "```json" and "```".
 std::vector<std::string> configurations() {
   std::vector<std::string> all;
   bool inside = false;
@@ -73,7 +73,7 @@ TEST(Guide, ItsConfigurationsAreValid) {
   }
 }
 
-// The guide sends its reader to these files, so none may be missing.
+// The guide sends its readers to these files, so none may be missing.
 TEST(Guide, TheFilesThatItNamesAreThere) {
   const std::regex named("`([a-z_/]+/README\\.md)`|/usr/share/merlin/([a-z0-9-]+\\.json)");
   const std::string text = readText(kGuide);

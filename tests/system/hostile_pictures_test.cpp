@@ -1,6 +1,6 @@
 // What a running wall reports about pictures with wrong contents, slides that change or vanish, and
-// ports that are in use. `hostile_pictures_test` prints a table with a message for each. The wall
-// must go on showing its content.
+// ports that are in use. The test prints a table with the message for each case. The wall must go
+// on showing its content.
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -25,21 +25,21 @@ std::string plainPyramid(Rgb colour) {
       {.width = 300, .height = 200, .colour = [colour](int, int) { return colour; }});
 }
 
-// The pyramid with another value in a field of its first directory.
+// Returns the pyramid with another value in a field of its first directory.
 std::string withField(std::string bytes, int tag, std::uint64_t value) {
   detail::putAt(bytes, fieldAt(bytes, directoriesOf(bytes)[0], tag), value);
   return bytes;
 }
 
-// The pyramid whose last level points to a next directory; each level ends with such an offset.
+// Returns the pyramid with another offset of a next directory in its last level.
 std::string withNextOfLast(std::string bytes, std::uint64_t next) {
   const std::size_t last = directoriesOf(bytes).back();
   detail::putAt(bytes, last + 8 + 20 * numberAt(bytes, last), next);
   return bytes;
 }
 
-// According to its header, the file has 400,000 x 250,000 pixels; it lists as many tiles as the
-// header implies if `with_places`.
+// Returns a pyramid whose header declares 400,000 x 250,000 pixels. If `with_places`, the header
+// lists as many tiles as that size needs.
 std::string gigapixels(bool with_places) {
   std::string bytes = withField(withField(pyramidBytes(), 256, 400'000), 257, 250'000);
   const std::size_t directory = directoriesOf(bytes)[0];
@@ -49,13 +49,13 @@ std::string gigapixels(bool with_places) {
   return bytes;
 }
 
-// All tiles of the coarsest level lie in the header.
+// Returns a pyramid in which all tiles of the coarsest level lie in the header.
 std::string withTilesInTheHeader() {
   std::string bytes = pyramidBytes({.width = 200, .height = 100});
   return withField(bytes, 324, 8);
 }
 
-// All tiles of the finest level are the first one.
+// Returns a pyramid in which all tiles of the finest level are at the place of the first one.
 std::string withTilesOverOneAnother() {
   std::string bytes = pyramidBytes();
   const std::size_t directory = directoriesOf(bytes)[0];
@@ -124,7 +124,8 @@ class HostilePictures : public testing::Test {
   }
 
   static std::string slide(const std::string& name) { return *dir_ / "slides/" + name + ".tif"; }
-  // A file of the content folder, put there by a client without merlin show.
+  // Returns the path of a file in the content folder, as if a client had put it there without
+  // merlin show.
   static std::string shared(const std::string& name) {
     return *dir_ / (m_->instance() + ".shown/" + name);
   }
@@ -143,14 +144,14 @@ class HostilePictures : public testing::Test {
     const auto content = m_->status()["content"];
     return fmt::format("{} {}", content.value("name", ""), content.value("slide", ""));
   }
-  // Adds a row to the table. The folder's path is removed from the message.
+  // Adds a row to the table, and removes the folder's path from the message.
   static void row(const std::string& what, std::string said) {
     while (!said.empty() && said.back() == '\n') said.pop_back();
     for (std::size_t at = 0; (at = said.find(*dir_ / "")) != std::string::npos;)
       said.erase(at, dir_->path().size() + 1);
     table_ += fmt::format("{:40} {}\n", what, said);
   }
-  // Waits for an event and adds its row.
+  // Waits for an event whose text contains `said`, and adds its row.
   static void rowOf(const std::string& what, const std::string& said) {
     EXPECT_TRUE(m_->process().saysEventually(said)) << m_->process().output();
     const std::string log = m_->process().output();
@@ -238,7 +239,7 @@ TEST_F(HostilePictures, AFolderOfSlidesThatChangesOrVanishesKeepsNothingFromItsT
   merlin({"show", "red"});
 }
 
-// Another program listens at a port.
+// A port at which another program listens.
 class BusyPort : public HostilePictures {
  protected:
   void SetUp() override {
@@ -247,7 +248,7 @@ class BusyPort : public HostilePictures {
     taken_ = *std::move(taken);
     port_ = net::portOf(taken_.get());
   }
-  // The configuration of another process that uses the port.
+  // Writes the configuration of another process that uses the port; returns its path.
   std::string config(const std::string& name, nlohmann::json settings) {
     settings["instance"] = privateName(name);
     settings["run_directory"] = dir_->path();

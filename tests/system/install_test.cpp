@@ -44,7 +44,7 @@ struct LocalSocket {
 
 int freePort() { return LocalSocket().port; }
 
-// Connects to the port; the result is invalid if nobody listens there.
+// Connects to the port; the result is invalid if nothing listens there.
 UniqueFd connected(int port) {
   UniqueFd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
@@ -80,8 +80,8 @@ class Install : public testing::Test {
     return path;
   }
 
-  // The installed configuration, changed to show a model and to use names private to this test,
-  // with `patch` merged into it.
+  // Writes the installed configuration, changed to show a model and to use names private to this
+  // test, with `patch` merged into it; returns its path.
   std::string configuration(const json& patch) {
     const std::string model = makeModel(dir_, 5);
     json config = json::parse(readText(root_ + "/etc/merlin/merlin.json"));
@@ -106,8 +106,8 @@ class Install : public testing::Test {
     return arguments;
   }
 
-  // Starts one of the two processes of the wall under its unit's restrictions, with the unit's
-  // command line except for the configuration.
+  // Starts the process of a role under its unit's restrictions, with the unit's command line except
+  // for the configuration.
   std::unique_ptr<Process> start(const std::string& role, const std::string& configuration,
                                  const std::vector<std::string>& drop_ins = {}) {
     auto process = std::make_unique<Process>(
@@ -175,7 +175,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
                            "/etc/merlin/merlin.schema.json"}) {
     EXPECT_TRUE(fs::is_regular_file(root_ + path)) << path;
   }
-  // The units start the installed daemon with the installed configuration, as start() does.
+  // The units start the installed daemon with the installed configuration, which start() assumes.
   for (const std::string& role : {std::string("devices"), std::string("wall")}) {
     const std::string unit =
         readText(root_ + "/usr/lib/systemd/system/merlin-" + role + ".service");
@@ -188,7 +188,7 @@ TEST_F(Install, LeavesEverythingThatTheServiceNeedsAndKeepsAConfiguration) {
   EXPECT_EQ(readText(root_ + "/etc/merlin/merlin.json"), "{\"instance\": \"mine\"}");
 }
 
-// Compiles the example as its first lines say, with only the installed files.
+// Compiles the C++ example as its first lines say, using only installed files.
 TEST_F(Install, TheExampleInCppIsCompiledFromThePackage) {
   ASSERT_EQ(install().status, 0);
   const std::string documents = root_ + "/usr/share/doc/merlin";
@@ -197,7 +197,7 @@ TEST_F(Install, TheExampleInCppIsCompiledFromThePackage) {
   EXPECT_EQ(compiled.status, 0) << compiled.output;
 }
 
-// The text that the first group of `pattern` has in each match.
+// Returns the text of the first group of `pattern` in each match.
 std::set<std::string> namedIn(const std::string& text, const char* pattern) {
   const std::regex named(pattern);
   std::set<std::string> names;
@@ -226,8 +226,8 @@ TEST_F(Install, EveryLinkToAFileInAnInstalledDocumentResolves) {
     const fs::path source = fs::path(kSource) / folder.lexically_relative(top);
     const std::string text = readText(entry.path());
     for (const std::string& name : namedIn(text, "`([A-Za-z0-9_./-]+\\.(md|json|py|c|png))[`: ]")) {
-      // A name that is no file in the repository belongs to another program, or is a file that a
-      // user makes.
+      // A name that is not a file of the repository belongs to another program, or to a file that
+      // users make.
       if (isOfTheRepository(name) || !isFile(name, source, kSource)) continue;
       ++links;
       EXPECT_TRUE(isFile(name, folder, top)) << name << " in " << entry.path();
@@ -253,7 +253,7 @@ TEST_F(Install, EveryDocumentThatTheManualPagesNameIsInstalled) {
     EXPECT_TRUE(fs::is_regular_file(root_ + "/usr/share/doc/merlin/" + name)) << name;
 }
 
-// The guide lets its reader copy an example before he has a model of his own.
+// The guide lets its readers copy an example before they have models of their own.
 TEST_F(Install, EveryExampleThatTheGuideNamesIsValidWhenItIsCopied) {
   const auto examples =
       namedIn(readText(root_ + "/usr/share/doc/merlin/systemd/from-boxes-to-wall.md"),
@@ -272,8 +272,8 @@ TEST_F(Install, EveryExampleThatTheGuideNamesIsValidWhenItIsCopied) {
   }
 }
 
-// On a machine without devices and displays, the configuration shows the demo's model and raises no
-// alarm.
+// On a machine without devices and displays, the installed configuration shows the demo's model and
+// raises no alarm.
 TEST_F(Install, TheInstalledConfigurationShowsTheInstalledModelWithoutAnAlarm) {
   json config = json::parse(readText(root_ + "/etc/merlin/merlin.json"));
   EXPECT_EQ(config["wall"]["model"], "/usr/share/merlin/ankylosaurus.mrm");
@@ -317,7 +317,7 @@ TEST_F(Install, TheInstalledDaemonRunsUnderItsUnits) {
   EXPECT_EQ(wall->kill(SIGTERM), 0) << wall->output();
 }
 
-// The drop-ins files.conf allow /srv/merlin, which is in the test's folder here.
+// The drop-ins files.conf allow /srv/merlin, which is a folder inside the test's folder here.
 TEST_F(Install, AFolderOfOnesOwnIsForbiddenByTheUnitsAndAllowedByTheirDropIns) {
   if (::geteuid() != 0 || run({"unshare", "--mount", "true"}).status != 0)
     GTEST_SKIP() << "this user cannot make files read-only by mounts";
@@ -366,7 +366,7 @@ TEST_F(Install, TheInstalledMerlinRfbRunsUnderItsUnit) {
 }
 
 // The alarms' process under its unit's restrictions, with a device that is absent from the start.
-// The alarm starts `program` with a file name as an argument; the program may write that file.
+// The alarm starts `program` with a file name as its argument; the program may write that file.
 class InstalledAlarms : public Install {
  protected:
   void startWith(const std::string& program, const std::vector<std::string>& drop_ins = {}) {
@@ -389,7 +389,7 @@ class InstalledAlarms : public Install {
   std::unique_ptr<Process> devices_, alarms_;
 };
 
-// A mailer calls chown, which the unit forbids, and goes on without it.
+// A mailer calls chown, which the unit forbids, and continues when the call fails.
 TEST_F(InstalledAlarms, AProgramThatCallsWhatTheUnitForbidsGetsAnError) {
   startWith(
       "#!/bin/sh\n: >>\"$1\"\nchown 12345 \"$1\" 2>/dev/null\n"
@@ -407,12 +407,12 @@ TEST_F(InstalledAlarms, WithTheDropInForMailAProgramMayGainPrivileges) {
   EXPECT_TRUE(tells("NoNewPrivs:\t0")) << readText(told_) << alarms_->output();
   EXPECT_TRUE(tells("ball: absent")) << readText(told_);
   const std::string seccomp = readText("/proc/self/status");
-  const auto at = seccomp.find("Seccomp:");  // a container may have installed a filter of its own
+  const auto at = seccomp.find("Seccomp:");  // A container may have installed a filter of its own.
   ASSERT_NE(at, std::string::npos);
   EXPECT_TRUE(tells(seccomp.substr(at, seccomp.find('\n', at) - at))) << readText(told_);
 }
 
-// The program that daemon/alarms/README.md recommends, with another address.
+// The program that daemon/alarms/README.md recommends, with the address of a local server.
 TEST_F(InstalledAlarms, TheProgramOfTheDocumentReachesAServerUnderTheUnit) {
   if (run({"which", "curl"}).status != 0) GTEST_SKIP() << "curl is not installed";
   const std::string document = readText(kSource + "/daemon/alarms/README.md");
@@ -438,8 +438,8 @@ TEST_F(InstalledAlarms, TheProgramOfTheDocumentReachesAServerUnderTheUnit) {
   EXPECT_NE(request.find("\"what\": \"ball: absent"), std::string::npos) << request;
 }
 
-// Objects that killed merlinds leave in shared memory are removed, whatever their instance; other
-// programs' files stay.
+// Objects that killed merlinds leave in shared memory are removed, whatever their instance name;
+// other programs' files remain.
 TEST(Purge, TakesWhatAKilledMerlindLeftInSharedMemory) {
   const TempDir root;
   fs::create_directories(root / "etc");
@@ -472,7 +472,7 @@ class InstalledServers : public Install {
   void SetUp() override {
     Install::SetUp();
     ASSERT_EQ(run({kMerlin, "keys", "-o", dir_ / "keys"}).status, 0);
-    // The keys belong to the daemon's user and are readable by nobody else.
+    // The keys belong to the daemon's user, and no other user can read them.
     if (::geteuid() == 0) {
       ASSERT_EQ(::chown((dir_ / "keys").c_str(), kNobody, kNobody), 0);
     }

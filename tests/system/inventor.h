@@ -1,5 +1,5 @@
-// A model that merlin exported, opened in a program that uses Coin and includes no header of
-// MERLIN.
+// Inventor: a test fixture with a model that merlin exported, opened in a program that uses Coin
+// and includes no header of MERLIN.
 #pragma once
 
 #include <cmath>
@@ -31,7 +31,7 @@ inline const std::string kMerlin = std::string(MERLIN_BIN_DIR) + "/merlin";
 inline constexpr int kSide = 20;  // cells along each side
 inline constexpr int kTriangles = 2 * kSide * kSide;
 
-// A hilly square surface, coloured from red to green, as a PLY file.
+// Returns a hilly square surface, coloured from red to green, as a PLY file.
 inline std::string hills() {
   std::string text =
       "ply\nformat ascii 1.0\nelement vertex " + std::to_string((kSide + 1) * (kSide + 1)) +
@@ -59,7 +59,7 @@ inline std::string hills() {
   return text;
 }
 
-// Coin's error messages since the last clear().
+// Coin's error messages since the last complaints.clear().
 inline std::vector<std::string> complaints;
 inline void complain(const SoError* error, void*) {
   complaints.push_back(error->getDebugString().getString());
@@ -102,7 +102,8 @@ class Inventor : public testing::Test {
     return SoDB::readAll(&in);
   }
 
-  // Finds the node by its type name alone, since this program does not know the class.
+  // Finds the model's node by its type name, since this program does not know the class; null if
+  // there is none.
   static SoNode* find(SoNode* root) {
     SoSearchAction search;
     search.setType(SoType::fromName("SoMRFaceSet"));
@@ -126,7 +127,8 @@ class Inventor : public testing::Test {
     action.apply(root_);
     return action.getBoundingBox();
   }
-  // The point hit by a vertical ray from above at (x, y), or null; valid until the next call.
+  // Returns the point hit by a vertical ray from above at (x, y), or null; valid until the next
+  // call.
   const SoPickedPoint* pick(float x, float y) {
     pick_.setRay({x, y, 10}, {0, 0, -1});
     pick_.apply(root_);

@@ -1,4 +1,4 @@
-// The program of inventor.h with an EGL context, which needs no screen: what the node draws, and
+// The fixture of inventor.h with an EGL context, which needs no screen: what the node draws, and
 // how it detects without the viewer's help that the view moves.
 #include <cstdint>
 #include <vector>
@@ -77,7 +77,7 @@ class InventorDrawn : public Inventor {
   }
   static int lit(const std::vector<std::uint8_t>& rgba) {
     int count = 0;
-    // The green channel.
+    // Counts pixels by their green channel.
     for (std::size_t i = 0; i < rgba.size(); i += 4) count += rgba[i + 1] > 20;
     return count;
   }
@@ -112,7 +112,7 @@ TEST_F(InventorDrawn, EachResolutionIsDrawnInColour) {
 
 TEST_F(InventorDrawn, ABrokenModelLeavesThePictureEmpty) {
   EXPECT_GT(lit(picture()), 0);
-  complaints.clear();  // without a screen, Coin complains once that it finds no GLX
+  complaints.clear();  // without a screen, Coin reports once that it finds no GLX
   whole("faces").set1Value(0, 1 << 30);
   EXPECT_EQ(lit(picture()), 0);
   EXPECT_EQ(complaints.size(), 1u);
@@ -138,7 +138,7 @@ TEST_F(InventorDrawn, ItFindsItsRateByItselfWhileTheViewMovesAndIsWholeAfterward
   }));
   EXPECT_EQ(redraws, 1);  // requested by the node itself
   move();
-  EXPECT_EQ(count(), current());  // without a delay
+  EXPECT_EQ(count(), current());  // the full resolution returns without a delay
 }
 
 // Runs `step` for 1.2 s, which is longer than the rate control waits (1 s).

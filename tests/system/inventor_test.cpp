@@ -1,4 +1,4 @@
-// The installed module in any Coin program: fields, files, picking, damaged models, the frame rate.
+// The installed module in a Coin program: fields, files, picking, damaged models, the frame rate.
 #include "tests/system/inventor.h"
 
 #include <algorithm>
@@ -242,7 +242,7 @@ TEST_F(Inventor, WhileItMovesTheRateIsHeldAndStillItIsWhole) {
   EXPECT_EQ(current(), 133);
   EXPECT_NEAR(count(), 132, 1.5);
   set("interacting", "FALSE");
-  EXPECT_EQ(count(), kTriangles);  // without a delay
+  EXPECT_EQ(count(), kTriangles);  // the full resolution returns without a delay
   set("interacting", "TRUE");
   EXPECT_NEAR(count(), 132, 1.5);
 }
@@ -307,14 +307,14 @@ TEST_F(Inventor, TheRateNeverLeavesMinimumAndMaximum) {
   EXPECT_EQ(current(), kTriangles);
 }
 
-// A PNG of one blue pixel.
+// A PNG image of one blue pixel.
 constexpr char kBluePng[] =
     "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x01\x00\x00"
     "\x00\x01\x08\x02\x00\x00\x00\x90\x77\x53\xde\x00\x00\x00\x0c\x49\x44\x41\x54\x78\x9c\x63"
     "\x10\x50\xf8\x00\x00\x01\x64\x01\x21\x8d\x40\x2d\x6a\x00\x00\x00\x00\x49\x45\x4e\x44\xae"
     "\x42\x60\x82";
 
-// The hills with texture coordinates, as a PLY file.
+// Returns the surface of hills() with texture coordinates, as a PLY file.
 std::string hillsWithTexture() {
   std::string text = hills();
   text.insert(text.find("element face"), "property float s\nproperty float t\n");
@@ -324,8 +324,8 @@ std::string hillsWithTexture() {
   return text;
 }
 
-// The image is a node before the model, in a file of its own, and viewers multiply no colours by
-// it.
+// The texture is a node before the model, in a file of its own; the export omits the colours, so
+// that viewers do not multiply them by the texture.
 TEST_F(Inventor, ATextureIsANodeBeforeTheModel) {
   writeText(dir_ / "blue.ply", hillsWithTexture());
   writeText(dir_ / "blue.png", {kBluePng, sizeof kBluePng - 1});

@@ -1,6 +1,7 @@
-// Devices are isolated from each other. Three devices run; each in turn is pulled, babbles or
-// freezes, in each state of its dialogue, and recovers. The test checks what the other two devices
-// lose meanwhile, and prints it beside a control window just before, in which all three worked.
+// Devices are isolated from each other. Of three running devices, each in turn is pulled, babbles
+// or freezes, in each state of its dialogue, and recovers. The test checks which samples the other
+// two devices lose meanwhile, and prints this beside a control window just before, in which all
+// three worked.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -41,7 +42,8 @@ struct Arrival {
   std::uint32_t counter;
 };
 
-// The times of all samples of a device. One thread adds; the test reads only complete entries.
+// The times of all samples of a device. One thread calls add(); another may read the complete
+// entries meanwhile.
 class Arrivals {
  public:
   void add(std::int64_t ns, std::uint32_t counter) noexcept {
@@ -60,7 +62,7 @@ class Arrivals {
   std::atomic<std::size_t> count_{0};
 };
 
-// Three devices, each with a DeviceLoop and a thread of its own.
+// Three devices, each with its own DeviceLoop and thread.
 class Bench : public SampleSink {
  public:
   Bench() {
@@ -81,7 +83,8 @@ class Bench : public SampleSink {
   void publish(const BallSample& s) noexcept override { arrivals_[2].add(now(), s.counter); }
   void publish(const TouchSample&) noexcept override {}
 
-  // Waits until the device's health is ok and another sample has arrived; false if that fails.
+  // Waits until the device's health is ok and another sample has arrived; false if that does not
+  // happen.
   bool well(std::size_t i) {
     const bool ok = eventually([&] { return state(i) == HealthState::kOk; });
     const std::size_t before = arrivals_[i].count();
@@ -107,7 +110,8 @@ class Bench : public SampleSink {
   std::vector<std::jthread> threads_;
 };
 
-// Sample intervals of one device over several windows, with their quantiles and the samples lost.
+// The sample intervals of one device over several windows, their quantiles, and the number of lost
+// samples.
 class Windows {
  public:
   void add(std::span<const Arrival> window) {
@@ -145,8 +149,8 @@ void addWindow(const Bench& bench, const Marks& from, std::array<Windows, 3>& to
     to[i].add(bench.arrivals(i).between(from.at[i], bench.arrivals(i).count()));
 }
 
-// Measures a control window; then lets `victim` fail in dialogue state `state` (number of writes;
-// -1: while streaming) and recover.
+// Measures a control window; then lets the device `victim` fail in state `state` of its dialogue
+// (number of writes; -1: while streaming) and recover.
 void provoke(Bench& bench, std::size_t victim, Fault fault, int state, Comparison& result) {
   const Duration kFault = milliseconds(250);
   Marks from = mark(bench);

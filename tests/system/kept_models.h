@@ -10,18 +10,18 @@
 
 namespace merlin::test {
 
-// The path of the kept file `name`, which ends in .mrm. If the file does not exist, or is older
-// than the program merlin, `make` writes it under a temporary name first, since tests run in
+// Returns the path of the kept file `name`, which ends in .mrm. If the file does not exist, or is
+// older than the program merlin, `make` makes it first, under a temporary name, since tests run in
 // parallel.
 std::string keptModel(const std::string& name,
                       const std::function<Outcome(const std::string& path)>& make);
 
-// Copies the demo's scan at all resolutions into the test's folder; returns the path
-// FOLDER/full.mrm.
+// Copies the demo's scan with all resolutions to FOLDER/full.mrm in the test's folder; returns that
+// path.
 std::string makeFullModel(const TempDir& dir);
 
-// Makes FOLDER/model.mrm with `percent` of the triangles, so few that a build with a sanitizer can
-// draw it. Returns its path.
+// Makes FOLDER/model.mrm with `percent` per cent of the triangles of the demo's scan, few enough
+// for a build with a sanitizer to draw. Returns its path.
 std::string makeModel(const TempDir& dir, int percent = 20);
 
 }  // namespace merlin::test

@@ -29,7 +29,7 @@ class LastGood : public testing::Test {
     return std::make_unique<Process>(
         arguments, std::map<std::string, std::string>{{"STATE_DIRECTORY", state_}});
   }
-  // The last good settings that a process has stored; empty if there are none.
+  // Returns the last good settings that a process has stored; empty if there are none.
   std::string kept() const {
     for (const auto& entry : fs::directory_iterator(state_))
       if (entry.path().extension() == ".last-good") return readText(entry.path());
@@ -48,7 +48,7 @@ class LastGood : public testing::Test {
   std::string config_ = dir_ / "wall.json", model_ = makeModel(dir_, 5);
 };
 
-// The disk was full when merlind started, for example.
+// The settings cannot be stored at first, as when the disk is full when merlind starts.
 TEST_F(LastGood, IsKeptAsSoonAsItCanBeWritten) {
   fs::remove_all(state_);
   writeText(state_, "a file in the folder's place");
@@ -86,7 +86,7 @@ TEST_F(LastGood, IsStartedWithSaidAndLeftByTheNextReload) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
-// Somebody has to learn that the file is damaged.
+// The file is damaged, and the page is the place where people learn this.
 TEST_F(LastGood, OfTheWallIsWhatThePageStartsWith) {
   json config = valid(7);
   config["page"] = {{"port", freePagePort()}};
@@ -105,7 +105,7 @@ TEST_F(LastGood, OfTheWallIsWhatThePageStartsWith) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
 }
 
-// The last good settings are stored in another folder than the configuration, but have to name the
+// The last good settings are stored in another folder than the configuration, but must name the
 // same files.
 TEST_F(LastGood, NamesFilesThatTheConfigurationNamesFromItsFolder) {
   json config = valid(7);
@@ -155,7 +155,7 @@ TEST_F(LastGood, IsNoHelpWhereThereIsNoneOrNobodyAsked) {
   EXPECT_EQ(wall->kill(SIGTERM), 0);
   writeText(config_, "{");
   EXPECT_EQ(start({})->wait(), 2) << "a person at a terminal wants to hear of it";
-  // The model that the file names is missing as well, so the wall is shown without it.
+  // The model that the configuration names is missing as well, so the wall runs without content.
   fs::remove(model_);
   const auto bare = start();
   EXPECT_TRUE(bare->saysEventually("ready")) << bare->output();

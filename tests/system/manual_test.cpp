@@ -52,7 +52,7 @@ TEST(ManPage, HasEveryCommandWithItsOptions) {
     EXPECT_NE(page.find(line), std::string::npos) << line << "\n" << page;
 }
 
-// The completions that bash offers for these words, the last of which is incomplete.
+// Returns the completions that bash offers for these words, the last of which is incomplete.
 std::string offered(const std::string& script, const std::string& words) {
   return run({"bash", "-c",
               script + "\nCOMP_WORDS=(" + words +

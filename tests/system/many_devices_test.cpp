@@ -50,7 +50,8 @@ class Emulators {
   }
   void kill(const std::string& name) { processes_.at(name)->kill(SIGKILL); }
 
-  // For an emulator with the option --step: advances its person by `phases` phases of the script.
+  // Advances an emulator's person by `phases` phases of its script. REQUIRES: an emulator with the
+  // option --step.
   void step(const std::string& name, int phases) {
     for (int i = 0; i < phases; ++i) {
       const std::size_t said = processes_.at(name)->output().size();
@@ -59,7 +60,7 @@ class Emulators {
     }
   }
 
-  // The devices as a list for the configuration. `people`: the person of each device.
+  // Returns the devices as a list for the configuration. `people`: the person of each device.
   json list(const std::map<std::string, std::string>& people = {}) const {
     json all = json::array();
     for (const Emulated& device : all_) {
@@ -78,8 +79,8 @@ class Emulators {
   std::map<std::string, std::unique_ptr<Process>> processes_;
 };
 
-// A gamepad at the other end of a pseudo-terminal. A thread sends its description and moves its
-// stick repeatedly, so that merlind may open it at any time.
+// A gamepad at the other end of a pseudo-terminal. A thread sends its description and stick
+// movements repeatedly, so that merlind may open it at any time.
 class Gamepad {
  public:
   explicit Gamepad(const std::string& link)
@@ -124,7 +125,7 @@ class VrpnServer {
   std::optional<Merlind> server_;
 };
 
-// A device that can be taken away and brought back.
+// A device that a test can take away and bring back.
 struct Removable {
   std::string name;
   std::function<void()> remove, bring_back;
@@ -132,8 +133,8 @@ struct Removable {
 
 class ManyDevices : public testing::Test {
  protected:
-  // Starts merlind. Both hands make a fist and open it in turn, at the same time. `more`: further
-  // devices.
+  // Starts merlind. Both hands make a fist and open it repeatedly, at the same time. `more`:
+  // further devices.
   void start(const std::string& script_of_near, const std::string& script_of_far,
              const json& more = json::array()) {
     emulators_.emplace(std::vector<Emulated>{{"left", "cyberglove", "grabbing"},
@@ -162,12 +163,13 @@ class ManyDevices : public testing::Test {
       ASSERT_TRUE(m_->healthIs(device.name, HealthState::kOk))
           << device.name << m_->process().output();
   }
-  // How often inputs of the device have begun this action; `action` is an index of kActions.
+  // Returns how often inputs of the device have begun this action; `action` is an index of
+  // kActions.
   std::uint32_t begun(const std::string& device, std::size_t action) {
     const auto state = m_->actions(device);
     return state ? state->begun[action] : 0;
   }
-  // Number of samples that the device has sent.
+  // Returns the number of samples that the device has sent.
   std::uint64_t count(const std::string& device) {
     const auto* const slots = m_->devices();
     if (const auto* const glove = slots->glove(device)) return glove->samples->count();
@@ -182,7 +184,7 @@ class ManyDevices : public testing::Test {
   std::optional<Merlind> m_;
 };
 
-// Whether `is` holds for one of the newest samples of the channel.
+// Returns whether `is` holds for one of the newest samples of the channel.
 template <typename T, typename Is>
 bool has(const shm::Channel<T>& channel, Is is) {
   const std::uint64_t count = channel.count();
@@ -194,7 +196,7 @@ bool has(const shm::Channel<T>& channel, Is is) {
   return false;
 }
 
-// Whether the hand's newest sample combines this glove's joints with this station's record.
+// Returns whether the hand's newest sample combines this glove's joints with this station's record.
 bool isMadeOf(const shm::DeviceSlots& devices, const char* hand, const char* glove,
               std::size_t station) {
   const auto made = devices.hand(hand)->samples->newest();
@@ -335,7 +337,7 @@ TEST_F(ManyDevices, TheCommandsCalibrateAndRecordTheOneThatIsNamed) {
       << none.output;
 }
 
-// A file in the old form is refused as a whole, and the message shows the way to the new form.
+// A file in the old form is refused as a whole, and the message says how to convert it.
 TEST(ManyDevicesCommands, CalibratingAFileOfTheEarlierFormIsRefused) {
   const TempDir dir;
   const std::string old = "{\"devices\": {\"ball\": {\"dead_zone\": 4}}}";
@@ -401,7 +403,7 @@ TEST_F(TwoPeople, TakeTurnsAtTheWall) {
   emulators_->step("one", 1);
   ASSERT_TRUE(moves(false));
 
-  // For a minute, it is still the turn of person a.
+  // For the next minute, it is still the turn of person a.
   emulators_->step("two", 1);
   ASSERT_TRUE(isPushed("two"));
   aFewPeriodsPass();

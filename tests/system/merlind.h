@@ -1,5 +1,4 @@
-// Merlind: a real merlind process with emulated devices, and with an instance name and a folder of
-// its own.
+// Merlind: a real merlind process with emulated devices, its own instance name and its own folder.
 #pragma once
 
 #include <map>
@@ -31,11 +30,11 @@ struct MerlindOptions {
   nlohmann::json also = nlohmann::json::object();  // merged into the configuration
 };
 
-// An entry for the configuration's list of devices. `own`: the settings of its driver.
+// Returns an entry for the configuration's list of devices. `own`: the settings of its driver.
 nlohmann::json deviceEntry(const std::string& name, const std::string& driver,
                            const std::string& port = {}, const nlohmann::json& own = nullptr);
 
-// A list of devices for the configuration that has this device only.
+// Returns a configuration whose list of devices has this entry only.
 nlohmann::json onlyDevice(const nlohmann::json& entry);
 
 class Merlind {
@@ -51,20 +50,20 @@ class Merlind {
   // Null until the daemon's shared memory exists.
   const shm::DeviceSlots* devices();
   shm::WallStats wall();
-  // The latest health of the device with this name; nothing before the first report.
+  // Returns the latest health of the device with this name; nothing before the first report.
   std::optional<DeviceHealth> health(const std::string& device);
-  // To be called after a restart of the daemon, which then has new shared memory.
+  // Forgets the shared memory that was opened; to be called after a restart of the daemon, which
+  // then has new shared memory.
   void openAgain() { devices_.reset(); }
   bool healthIs(const std::string& device, HealthState state);
-  // The actions that inputs of the device with this name have begun; nothing before the first
-  // report.
+  // Returns the actions that inputs of this device have begun; nothing before the first report.
   std::optional<shm::ActionState> actions(const std::string& device);
   nlohmann::json status();
 
-  // Ids of its child processes whose command line contains `word`.
+  // Returns the ids of the daemon's child processes whose command line contains `word`.
   std::vector<pid_t> children(const std::string& word) const;
 
-  // Paths of this instance's objects in /dev/shm.
+  // Returns the paths of this instance's objects in /dev/shm.
   std::vector<std::string> leftInSharedMemory() const;
 
  private:

@@ -82,7 +82,7 @@ TEST_F(MeshCli, PicturesModelsSideBySide) {
   EXPECT_NE(picture.output.find("p.png: 128 x 48"), std::string::npos) << picture.output;
 }
 
-// The lengths are those of the reduction, so other weights give another picture.
+// The drawn edge lengths are those that the reduction uses, so other weights give another picture.
 TEST_F(MeshCli, PicturesEdgesByTheirWeights) {
   const auto drawn = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.begin(), {kMerlin, "mesh", "picture", scan_, "--edges", "-o", dir_ / name,
@@ -113,7 +113,7 @@ TEST_F(MeshCli, PicturesEdgesByTheirWeights) {
   EXPECT_NE(refusal({"--memory", "1M"}).find("reading its "), std::string::npos);
 }
 
-// A square of two triangles in the plane z = `height`, as ASCII PLY.
+// Returns a square of two triangles in the plane z = `height`, as ASCII PLY.
 std::string squarePly(double height) {
   return fmt::format(
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
@@ -123,7 +123,7 @@ std::string squarePly(double height) {
       height);
 }
 
-// The JSON at the end of a command's output, after its progress messages.
+// Returns the JSON at the end of a command's output, after its progress messages.
 nlohmann::json jsonOf(const Outcome& outcome) {
   EXPECT_EQ(outcome.status, 0) << outcome.output;
   return nlohmann::json::parse(outcome.output.substr(outcome.output.find("{\"")));
@@ -252,7 +252,7 @@ TEST_F(MeshCli, ExportsToEveryFormatAndSaysWhatIsLeftOut) {
   EXPECT_EQ(infoOf(dir_ / "a.obj")["triangles"], 1000);
 }
 
-// Arguments that would lose data, or that a user cannot have intended.
+// Each of these arguments would lose data, or cannot be what a user intended.
 TEST_F(MeshCli, RefusesWhatWouldNotDoWhatItSays) {
   const std::string copy = dir_ / "scan.ply", model = dir_ / "a.mrm";
   std::filesystem::copy_file(scan_, copy);
@@ -284,7 +284,7 @@ TEST_F(MeshCli, RefusesWhatWouldNotDoWhatItSays) {
   EXPECT_FALSE(std::filesystem::exists(model));
 }
 
-// A curved sheet of 20 x 20 vertices whose left half has label 1.
+// Returns a curved sheet of 20 x 20 vertices whose left half has label 1.
 std::string labelledSheet() {
   std::string vertices, faces;
   for (int y = 0; y < 20; ++y) {
@@ -393,8 +393,8 @@ TEST_F(MeshCli, ReduceKeepsToAStatedMemoryOrRefusesBeforeAnyWork) {
   EXPECT_EQ(reduced("much").status, 2);
 }
 
-// Two triangles that share an edge, a third one (a fin) on the same edge, and one case of each
-// defect that is repaired.
+// Two triangles that share an edge, a third one (a fin) at the same edge, and one case of each kind
+// of defect that is repaired.
 constexpr const char* kFin =
     "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
     "z\n"

@@ -25,7 +25,7 @@ class MeshFuse : public testing::Test {
                           ball.triangles[i + 2] + 1);
     writeText(model_, text);
   }
-  // Twelve scans around the model: four at each of three heights.
+  // Makes twelve scans around the model, four at each of three heights; returns the files.
   std::vector<std::string> scanned() {
     std::vector<std::string> files;
     for (int i = 0; i < 12; ++i) {

@@ -36,7 +36,7 @@ class MeshImport : public testing::Test {
     return start == std::string::npos ? nlohmann::json()
                                       : nlohmann::json::parse(outcome.output.substr(start));
   }
-  // The message of a refused import. Expects that no file is left behind.
+  // Returns the message of a refused import. Expects that no file is left behind.
   std::string refusal(std::vector<std::string> arguments) {
     const Outcome outcome = import(arguments);
     EXPECT_EQ(outcome.status, 2) << outcome.output;
@@ -200,7 +200,7 @@ TEST_F(MeshImport, AModelForTheWallIsSentToTheExport) {
                                          model + " -o OUT.ply makes a mesh of it");
 }
 
-// If a map's coordinates are stored relative to an origin, all reports have to agree about it.
+// If a map's coordinates are stored relative to an origin, all reports must agree about the origin.
 TEST_F(MeshImport, AMeshWithCoordinatesOfAMapKeepsItsOriginInReportModelAndScan) {
   const std::string far = dir_ / "far.obj", model = dir_ / "a.mrm";
   writeText(far,
@@ -265,8 +265,8 @@ TEST_F(MeshImport, AnExportPutsTheOriginBackUnlessItIsToBeLocal) {
   EXPECT_EQ(exported("e.ply"), "") << "nothing is said of a model without an origin";
 }
 
-// An OBJ file in the coordinates of a map; the mesh keeps them in each format that it is converted
-// to.
+// The OBJ file has the coordinates of a map; the mesh keeps them in each format to which it is
+// converted.
 TEST_F(MeshImport, AMeshLiesWhereItsFileDoesUnlessItIsToBeLocal) {
   const std::string far = dir_ / "far.obj", out = dir_ / "b.obj";
   writeText(far,
@@ -390,7 +390,8 @@ TEST_F(MeshImport, OptionsThatWouldDoNothingToARangeImageAreRefused) {
   }
 }
 
-// Features with such names would be read from the mesh's PLY file as something else, or not at all.
+// A reader of the mesh's PLY file would take features with such names for something else, or ignore
+// them.
 TEST_F(MeshImport, NamesOfFeaturesThatAPlyFileCannotHoldAreRefused) {
   const auto refused = [&](const std::string& name, const std::string& why) {
     const std::string feature = name + "=" + (dir_ / "confidence.pgm");

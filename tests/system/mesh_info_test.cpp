@@ -1,4 +1,4 @@
-// merlin mesh info: what is in files of every kind.
+// merlin mesh info: what it reports about files of every kind.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ class MeshInfo : public testing::Test {
     return nlohmann::json::parse(info.output.substr(json), nullptr, false);
   }
 
-  // A pyramid on a square, without its base, and a vertex with a feature.
+  // Writes a square pyramid without its base, and a vertex with a feature, as a PLY file.
   std::string roof() {
     writeText(dir_ / "roof.ply",
               "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"

@@ -1,4 +1,4 @@
-// The note on closed parts that face inwards, and the option --outwards, of the commands that make
+// The note on closed parts that face inwards, and the option --outwards, in the commands that make
 // meshes and models.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ TEST_F(MeshOutwards, TheOptionTurnsIt) {
   }
 }
 
-// The first normal is that of the vertex at -1 -1 -1.
+// The first normal is that of the vertex at (-1, -1, -1).
 TEST_F(MeshOutwards, NormalsThatWereMadeOfTheTrianglesAreTurnedWithThem) {
   const auto normalsOf = [&](const std::vector<std::string>& options) {
     std::vector<std::string> arguments = {"import", inwards_, "-o", dir_ / "out.obj"};
@@ -102,7 +102,8 @@ TEST_F(MeshOutwards, NothingIsSaidOfAnOpenSurfaceUnlessItIsToBeTurned) {
       << asked.output;
 }
 
-// 99 bytes per triangle are counted for reading it, of which 12 are left for the search.
+// Reading the file is counted with 99 bytes per triangle, which leaves 12 bytes per triangle for
+// the search.
 TEST_F(MeshOutwards, TrianglesThatShareNoVerticesAreNotExaminedWithTooLittleMemory) {
   constexpr std::uint32_t kTriangles = 100'000;
   std::string soup = fmt::format(

@@ -21,7 +21,7 @@ class ModelFiles : public testing::Test {
   static void TearDownTestSuite() { delete dir_; }
   static std::string part(int percent) { return *dir_ / (std::to_string(percent) + ".mrm"); }
 
-  // Overwrites the file in place, as cp does: the inode stays the same.
+  // Overwrites the file in place, as cp does: the inode remains the same.
   static void overwrite(const std::string& path, const std::string& bytes) {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc);
     file << bytes;
@@ -39,7 +39,8 @@ class ModelFiles : public testing::Test {
       ++times;
     return times;
   }
-  // Makes the change; expects the sentence in the log, and that the wall goes on drawing.
+  // Makes the change; expects that the log then has the sentence, and that the wall goes on
+  // drawing.
   void expect(const std::string& sentence, const std::function<void()>& change) {
     const std::size_t before = said(sentence);
     change();
@@ -62,7 +63,7 @@ TEST_F(ModelFiles, WhateverHappensToThemTheWallDrawsOn) {
   ASSERT_TRUE(m_->ready()) << m_->process().output();
   const auto levels = m_->wall().detail_steps;
 
-  expect(shown, [&] { overwrite(live, readText(part(5))); });  // as by cp smaller.mrm live.mrm
+  expect(shown, [&] { overwrite(live, readText(part(5))); });  // as with `cp smaller.mrm live.mrm`
   EXPECT_TRUE(eventually([&] { return m_->wall().detail_steps < levels; })) << "it is the new one";
   const auto smaller = m_->wall().detail_steps;
   expect(refused, [&] { std::filesystem::resize_file(live, 0); });
@@ -83,8 +84,8 @@ TEST_F(ModelFiles, WhateverHappensToThemTheWallDrawsOn) {
   EXPECT_EQ(m_->process().kill(SIGTERM), 0) << m_->process().output();
 }
 
-// mrm_damage_test covers files of the right size and with right checksums whose indices are wrong.
-// Here nothing moves, and the new model has to appear without any input.
+// Files of the right size and with right checksums, but with wrong indices, are tested in
+// mrm_damage_test. Here nothing moves, and the new model must appear without any input.
 TEST_F(ModelFiles, AStillWallShowsTheNewOneByItself) {
   const std::string live = *dir_ / "still.mrm";
   std::filesystem::copy_file(part(5), live);

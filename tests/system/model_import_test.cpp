@@ -1,5 +1,5 @@
-// `merlin mesh import` of models in other programs' formats, which merlin-import reads. All files
-// are made here.
+// `merlin mesh import` of models in other programs' formats, which merlin-import reads. The test
+// makes all files.
 #include <bit>
 #include <filesystem>
 
@@ -34,7 +34,8 @@ const std::string kVrml97 =
     " geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }\n"
     "  coordIndex [ 0 1 2 3 -1 ] } } }\n";
 
-// Two instances of a square; one of them is moved and enlarged to twice its size.
+// Returns a COLLADA file with two instances of a square, one of them moved and enlarged to twice
+// its size.
 std::string collada() {
   return R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -59,7 +60,7 @@ std::string collada() {
 )";
 }
 
-// A triangle as AMF; `root`: the start tag of the outermost element.
+// Returns a triangle as AMF; `root`: the start tag of the outermost element.
 std::string amf(const std::string& root, const std::string& colour) {
   std::string text = "<?xml version=\"1.0\"?>" + root + "<object id=\"0\"><mesh><vertices>";
   for (const char* at : {"<x>0</x><y>0</y>", "<x>1</x><y>0</y>", "<x>0</x><y>1</y>"})
@@ -69,7 +70,7 @@ std::string amf(const std::string& root, const std::string& colour) {
          "</object></amf>";
 }
 
-// The same triangle as 3MF; `attribute`: added to the outermost element.
+// Returns the triangle of amf() as 3MF; `attribute`: added to the outermost element.
 std::string threeMf(const std::string& attribute) {
   return *render::correct::zipBytes(
       {{"[Content_Types].xml",
@@ -167,8 +168,8 @@ class ModelImport : public testing::Test {
     for (const auto& f : json["features"]) names += f["name"].get<std::string>() + " ";
     return names;
   }
-  // Expects that the file is refused by one line that names it and contains `why`, and that nothing
-  // is left of it.
+  // Expects that the file is refused by one line that names it and contains `why`, and that no
+  // output file is left.
   void expectRefused(const std::string& name, const std::string& content, const std::string& why,
                      const std::vector<std::string>& more = {}) {
     writeText(dir_ / name, content);
@@ -272,7 +273,7 @@ TEST_F(ModelImport, AScaledTextureOf3dsIsLeftAsItIsWithANote) {
             std::string::npos);
 }
 
-// Names of DOS come in capitals, whatever the file beside the model is called.
+// Names in DOS-era formats are in capitals, however the file beside the model is spelled.
 TEST_F(ModelImport, ATextureIsFoundWhoseNameDiffersInCapitals) {
   const std::vector<std::uint8_t> red = {255, 0, 0, 255};
   fs::create_directory(dir_ / "Maps");
@@ -339,8 +340,8 @@ TEST_F(ModelImport, ATextureBesideTheModelIsKeptAndNoOtherFileIsRead) {
   EXPECT_NE(left["notes"].dump().find("this texture is left out"), std::string::npos) << left;
 }
 
-// The synthetic room in the three formats of tests/support/textured_models.py: a floor whose
-// picture repeats, a wall, a board, and a pillar without a picture.
+// The synthetic room in the three formats that tests/support/textured_models.py writes: a floor
+// whose picture repeats, a wall, a board, and a pillar without a picture.
 class TexturedRoom : public ModelImport, public testing::WithParamInterface<const char*> {};
 
 TEST_P(TexturedRoom, HasOneTextureOfAllItsPictures) {
@@ -360,7 +361,7 @@ TEST_P(TexturedRoom, HasOneTextureOfAllItsPictures) {
   EXPECT_EQ(features(), "colour texcoord label normal ");
 }
 
-// The share of pixels that resemble a colour, in percent.
+// Returns the share of pixels that resemble a colour [%].
 double shareOf(const render::image::ImageFile& picture, const std::array<int, 3>& like) {
   std::size_t n = 0;
   for (std::size_t i = 0; i + 2 < picture.pixels.size(); i += 3) {
@@ -388,7 +389,8 @@ TEST_P(TexturedRoom, LooksAsItsPicturesDo) {
     std::array<int, 3> colour;
     double least, most;  // [%] of the picture's pixels
   };
-  const bool linear = std::string_view(GetParam()) == "room.gltf";  // of the picture's colours
+  // glTF states material colours in linear light
+  const bool linear = std::string_view(GetParam()) == "room.gltf";
   const Seen all[] = {
       {"bricks", {140, 60, 40}, 5, 20},
       {"the board's frame", {215, 170, 0}, 0.2, 1.5},
@@ -404,7 +406,7 @@ TEST_P(TexturedRoom, LooksAsItsPicturesDo) {
 
 INSTANTIATE_TEST_SUITE_P(Each, TexturedRoom, testing::Values("room.obj", "room.wrl", "room.gltf"));
 
-// Two squares side by side; each is a part of its own.
+// Two squares side by side, each of which is a part of its own.
 TEST_F(ModelImport, PartsOfOneSurfaceAreWelded) {
   const auto square = [](int x) {
     return fmt::format(
@@ -449,7 +451,7 @@ TEST_F(ModelImport, InventorAndVrmlMayBePackedByGzip) {
   const std::string member = gzipped(std::string(std::size_t{1} << 24, '#'));
   for (int i = 0; i < 64; ++i) bomb += member;
   expectRefused("bomb.iv", bomb, "gzip: unpacks to more than 1073741824 bytes",
-                {"--memory", "4G"});  // a fixed limit, whatever memory this machine has free
+                {"--memory", "4G"});  // the limit is fixed, whatever memory this machine has free
 #endif
 }
 
@@ -470,7 +472,7 @@ TEST_F(ModelImport, WhatIsWrongIsSaidInOneMessageThatNamesTheFile) {
 }
 
 TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
-// A sanitizer would report the crash, and it needs terabytes of address space.
+// Not with a sanitizer, which would report the crash and needs terabytes of address space.
 #if !defined(MERLIN_ANY_SANITIZER)
   std::string deep = "#Inventor V2.1 ascii\n";
   for (int i = 0; i < 200'000; ++i) deep += "Group {";
@@ -479,7 +481,8 @@ TEST_F(ModelImport, ACrashAndALimitOfMemoryAreMessages) {
   for (int i = 0; i < 20'000; ++i) large += "Translation { translation 1 0 0 } USE A\n";
   expectRefused("large.iv", large, "takes more memory than the 150 MB that are allowed (--memory,",
                 {"--memory", "150M"});
-  // A file of more bytes than may be used, of which only the first are there.
+  // A file with more bytes than the memory limit; only the first bytes are written, the rest is a
+  // hole.
   writeText(dir_ / "large.glb", std::string("glTF\2\0\0\0", 8));
   std::filesystem::resize_file(dir_ / "large.glb", std::size_t{101} << 20);
   const Outcome outcome = run(

@@ -1,4 +1,4 @@
-// Status and commands over a network: merlin asks a real merlind as from another machine.
+// Status and commands over a network: merlin contacts a real merlind as if from another machine.
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ class NetworkCommands : public testing::Test {
     EXPECT_TRUE(daemon_->ready()) << daemon_->process().output();
   }
   std::string file(const std::string& name) const { return dir_ / (name + ".keys"); }
-  // Makes a key pair; returns the public key.
+  // Makes a key pair in the file `name`; returns the public key.
   std::string key(const std::string& name) const {
     return run({kMerlin, "keys", "-o", file(name)}).output.substr(0, 40);
   }
@@ -98,7 +98,7 @@ TEST_F(NetworkCommands, AKeyThatIsNotListedGetsNoAnswer) {
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.output.find("does it list our public key?"), std::string::npos)
       << refused.output;
-  // A client without encryption, and one with the wrong key of the server.
+  // First a client without encryption, then one that uses a wrong key of the server.
   const status::KeyPair own = *status::readKeyPair(file("commander"));
   EXPECT_FALSE(status::ask(wall_, "status", seconds(1)));
   EXPECT_FALSE(status::ask({wall_, status::ClientKeys{own.public_key, own}}, "status", seconds(1)));
@@ -106,7 +106,7 @@ TEST_F(NetworkCommands, AKeyThatIsNotListedGetsNoAnswer) {
   EXPECT_EQ(merlin("commander", {"status"}).status, 0) << "others are still answered";
 }
 
-// The list's file name does not change, so the reload finds no changed setting.
+// The name of the key list's file does not change, so the reload finds no changed setting.
 TEST_F(NetworkCommands, AKeyThatWasTakenOffTheListGetsNoAnswerAfterAReload) {
   ASSERT_EQ(merlin("commander", {"status"}).status, 0);
   writeText(dir_ / "commanders", readText(dir_ / "server.public"));
@@ -117,7 +117,7 @@ TEST_F(NetworkCommands, AKeyThatWasTakenOffTheListGetsNoAnswerAfterAReload) {
   EXPECT_EQ(merlin("reader", {"status"}).status, 0);
 }
 
-// Whatever a listed client sends, the server goes on and answers the next client.
+// Whatever a listed client sends, the server answers the next client.
 TEST_F(NetworkCommands, MessagesOfAnyFormDoNotHurt) {
   const status::KeyPair own = *status::readKeyPair(file("commander"));
   for (const std::size_t parts : {1U, 2U, 3U, 5U}) {
@@ -197,8 +197,8 @@ TEST_F(NetworkCommands, AnAddressWithoutKeysIsRefusedByTheCheck) {
       << refused.output;
 }
 
-// The publisher's socket is bound to a local address and to an encrypted one. When the local one is
-// bound again, it must not become encrypted.
+// The publisher's socket is bound to a local address and to an encrypted one. If the local socket
+// has to be bound again, it must not become encrypted.
 TEST_F(NetworkCommands, ALocalSocketThatIsRemovedIsThereAgainAndNotEncrypted) {
   const std::string inner = dir_ / (daemon_->instance() + "-devices.status.inner");
   std::filesystem::remove(inner);
@@ -208,7 +208,7 @@ TEST_F(NetworkCommands, ALocalSocketThatIsRemovedIsThereAgainAndNotEncrypted) {
                              {"status"}, seconds(10), take));
 }
 
-// Another user of this machine, who is not in the daemon's group.
+// The client runs as another user of this machine, who is not in the daemon's group.
 TEST_F(NetworkCommands, AnotherUserMayNotOpenTheLocalSockets) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
   ASSERT_EQ(::chmod(dir_.path().c_str(), 0755), 0);

@@ -33,7 +33,7 @@ TEST(Operation, SignalsThatAskForNothingEndNothing) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
-// A reader of the log that does not read, such as a stopped pager.
+// The log goes to a program that does not read it, such as a stopped pager; merlind must not block.
 TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
   const TempDir dir;
   const std::string fifo = dir / "log";
@@ -63,7 +63,8 @@ TEST(Operation, ALogThatNobodyReadsHoldsNothing) {
   EXPECT_EQ(merlind.kill(SIGTERM), 0);
 }
 
-// Otherwise the log would go into the first shared memory object, which would get descriptor 2.
+// Without these streams, the first shared memory object would get descriptor 2, and the log would
+// be written into it.
 TEST(Operation, ClosedStandardStreamsTakeNoPlaceOfAFile) {
   const TempDir dir;
   const std::string instance = privateName("closed");
@@ -127,7 +128,7 @@ TEST(Operation, WhatIsRemovedFromSharedMemoryIsMadeAgain) {
   EXPECT_EQ(m.leftInSharedMemory().size(), 0u);
 }
 
-// systemd starts it again 0.1 s after its end, and each start writes to the journal.
+// systemd would start merlind again 0.1 s after its end, and each start writes to the journal.
 TEST(Operation, AStartThatFailsUnderSystemdEndsOnlyAfterFiveSeconds) {
   const TempDir dir;
   const std::string instance = privateName("fails"), config = dir / "merlin.json";
@@ -142,7 +143,7 @@ TEST(Operation, AStartThatFailsUnderSystemdEndsOnlyAfterFiveSeconds) {
       << merlind.output();
 }
 
-// One that the command takes.
+// Returns an argument that the command accepts.
 std::string argumentFor(const CommandInfo& command) {
   if (command.name == "align") return "list";
   if (command.name == "reload") return "check";
@@ -156,7 +157,8 @@ std::string argumentFor(const CommandInfo& command) {
   return command.argument.empty() ? "" : "auto";
 }
 
-// The daemon carries out every command in kCommands, in the process of the role named there.
+// The daemon carries out every command in kCommands, in the process of the role that the list
+// names.
 TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
   const TempDir dir;
   Merlind m(dir, makeModel(dir, 2), "commands",
@@ -164,7 +166,7 @@ TEST(Operation, EveryCommandOfTheListIsCarriedOut) {
   ASSERT_TRUE(m.ready()) << m.process().output();
   std::filesystem::copy(dir / "model.mrm", dir / (m.instance() + ".shown/other.mrm"));
   for (const CommandInfo& command : kCommands) {
-    if (command.bindable == Bindable::kHeld) continue;  // needs a held input
+    if (command.bindable == Bindable::kHeld) continue;  // this command needs an input that is held
     const bool by_wall = command.role == CommandOf::kWall;
     const std::string argument = argumentFor(command);
     const auto answer = status::ask(fmt::format("ipc://{}/{}-{}.command", dir.path(), m.instance(),

@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 using render::panel::ControlId;
 
-// The default wall; its operator's tile has 640 x 480 pixels.
+// The panel's layout on the default wall, whose operator's tile has 640 x 480 pixels.
 const render::panel::PanelLayout& layout() {
   static const auto kLayout = *render::panel::layOutPanel(640, 480, 13, {});
   return kLayout;
@@ -34,7 +34,7 @@ class OperatorPanelSystem : public testing::Test {
     wall_ = std::make_unique<Merlind>(dir_, makeModel(dir_, 5), "panel", options);
     ASSERT_TRUE(wall_->ready()) << wall_->process().output();
   }
-  // A VNC client that sees the operator's tile and may use it.
+  // Returns a VNC client that sees the operator's tile and may use it.
   VncClient& client() {
     if (client_) return *client_;
     rfb_ = std::make_unique<Process>(
@@ -60,8 +60,8 @@ class OperatorPanelSystem : public testing::Test {
     point(0, id);
   }
   using Condition = std::function<bool(const shm::WallStats&)>;
-  // Clicks until the condition holds. A press that the daemon has not received for 1.5 s is
-  // released without a click, so a busy machine may need another click.
+  // Clicks on the control until the condition holds. merlind releases a press that it has not
+  // received for 1.5 s without a click, so a busy machine may need another click.
   bool clickMakes(ControlId id, const Condition& condition) {
     const auto holds = [&] { return condition(wall_->wall()); };
     for (int tries = 0; tries < 4; ++tries) {
@@ -76,7 +76,8 @@ class OperatorPanelSystem : public testing::Test {
     const auto panel = opened ? (*opened)->panel.read() : std::nullopt;
     return panel && panel->by_ball == 1;
   }
-  // The part beside the panel, cut out of a picture of the operator's tile or of the frame.
+  // Returns the part of the operator's tile beside the panel, cut out of a picture of that tile or
+  // of the whole frame.
   static Image model(const Image& of) {
     const int left = of.width - 640, top = of.height - 480;
     Image part{layout().at.x, 480, {}};
@@ -86,7 +87,8 @@ class OperatorPanelSystem : public testing::Test {
     }
     return part;
   }
-  // The same part of what `merlin snapshot` shows.
+  // Returns the part of the operator's tile beside the panel, from the picture of `merlin
+  // snapshot`.
   Image snapshot() {
     const std::string file = dir_ / "s.png";
     EXPECT_EQ(run({kMerlin, "snapshot", "--instance", wall_->instance(), "-o", file}).status, 0);
@@ -125,11 +127,11 @@ TEST_F(OperatorPanelSystem, AVncClientsMouseWorksItAndMovesNothingElse) {
   EXPECT_TRUE(
       clickMakes(ControlId::kMode, [](const auto& w) { return std::string(w.mode) == "object"; }));
 
-  // The model has not moved: no pixel beside the panel has changed.
+  // The model must not have moved: no pixel beside the panel has changed.
   ASSERT_TRUE(isStill());
   EXPECT_TRUE(client().until(stands));
 
-  // A held arrow turns the model, which stops when the arrow is released.
+  // An arrow that is held turns the model, which stops when the arrow is released.
   point(1, ControlId::kLeft);
   EXPECT_TRUE(
       client().until([&] { return differing(model(client().picture()), before, 8) > 1000; }));
@@ -157,7 +159,7 @@ TEST_F(OperatorPanelSystem, AClientThatDiesWithAnArrowHeldLetsGo) {
 TEST_F(OperatorPanelSystem, TheBallEntersWorksItAndLeaves) {
   start("panel", {{"bindings",
                    json::array({json{{"input", "ball.button.3"}, {"action", "operator_panel"}}})}});
-  // The visitor repeats this every eight seconds; a busy machine may miss a button.
+  // The visitor repeats these actions every eight seconds; a busy machine may miss a button.
   constexpr std::chrono::minutes kPatience(2);
   EXPECT_TRUE(eventually([&] { return byBall() && wall_->wall().moving == 0; }, kPatience));
   EXPECT_TRUE(eventually([&] { return byBall() && wall_->wall().moving == 1; }, kPatience));

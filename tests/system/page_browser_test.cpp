@@ -15,8 +15,8 @@
 namespace merlin::test {
 namespace {
 
-// The pixel of the mode button in the frame; the operator's tile is the lower right one of the
-// default wall.
+// Returns the pixel of the mode button in the frame; the operator's tile is the lower right one of
+// the default wall.
 std::string modeButton() {
   const auto layout = *render::panel::layOutPanel(640, 480, 13, {});
   const render::text::Rect r = layout.find(render::panel::ControlId::kMode)->at;
@@ -64,7 +64,8 @@ TEST_P(Browser, ShowsTheWallAndSendsWhatAPersonDoes) {
   EXPECT_EQ(page.process().kill(SIGTERM), 0) << page.process().output();
 }
 
-// Chromium is not instrumented, and merlin-page does the same for both sizes.
+// Only one size with a sanitizer: Chromium is not instrumented, and merlin-page does the same for
+// both sizes.
 #ifdef MERLIN_ANY_SANITIZER
 const auto kSizes = testing::Values("phone");
 #else

@@ -1,5 +1,5 @@
-// `merlind --role page` beside a real merlind: what it shows and sends, and how far hostile clients
-// get.
+// `merlind --role page` beside a real merlind: what it shows and sends, and how little hostile
+// clients achieve.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -39,8 +39,9 @@ class PageTest : public testing::Test {
     ASSERT_TRUE(page_->ready()) << page_->process().output();
   }
   std::string events() const { return page_->get("/api/events").body; }
-  // Asks for a picture until there is one. 204: there was none within a second, since the thread
-  // that makes pictures gives way to everything else on the machine.
+  // Requests a picture until there is one. The status 204 means that there was none within a
+  // second: the thread that makes pictures has a lower priority than everything else on the
+  // machine.
   HttpAnswer picture(const std::string& path) const {
     HttpAnswer answer;
     eventually([&] { return (answer = page_->get(path)).status != 204; });
@@ -177,7 +178,7 @@ TEST_F(PageTest, SaysWhatThePlaylistDoesAndWhatCoversThePicture) {
   const std::int64_t asked_ns = wall_->wall().updated_ns;
   EXPECT_TRUE(eventually([&] { return wall_->wall().updated_ns > asked_ns + 500'000'000; }));
   EXPECT_EQ(wall_->status()["shown"], "blank") << "reading is no touch";
-  // On a busy machine the card may take longer than the page waits.
+  // On a busy machine, showing the test card may take longer than the page waits.
   EXPECT_TRUE(eventually([&] { return page_->send("testcard", "grid").status == 200; }));
   EXPECT_TRUE(eventually([&] { return wall()["testcard"] == true; }));
   EXPECT_EQ(page_->send("playlist", "sometimes").status, 400);
@@ -251,7 +252,7 @@ TEST_F(PageTest, StaysWithMetricsAloneAndWaitsWithNothingToServe) {
   EXPECT_EQ(run({kMerlind, "--check-config", dir_ / "none.json", "--role", "wall"}).status, 0);
 }
 
-// The page without a wall, with a configuration of its own.
+// The page process without a wall, with its own configuration.
 class PageAlone : public testing::Test {
  protected:
   std::string config(const std::string& name, const Json& page) {
@@ -265,7 +266,8 @@ class PageAlone : public testing::Test {
   std::string instance_ = privateName("page");
 };
 
-// The process serves nothing until the page is switched on again, whatever it served before.
+// While the page is switched off, the process serves nothing, even with --last-good, until a reload
+// switches the page on.
 TEST_F(PageAlone, SwitchedOffItWaitsForAConfigurationWithAPage) {
   Process page({kMerlind, "--last-good", "--config",
                 config("page.json", {{"enabled", false}, {"metrics", false}}), "--role", "page"});
@@ -411,8 +413,8 @@ constexpr std::size_t kMostMemory_kb = 1'000'000;
 constexpr std::size_t kMostMemory_kb = 100'000;
 #endif
 
-// Two clients send requests without a pause, and others misbehave in many ways. A client that
-// behaves is answered, and the wall goes on.
+// Two clients send requests without a pause, and others misbehave in many ways. A well-behaved
+// client is still answered, and the wall goes on.
 TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
   start();
   ASSERT_TRUE(eventually([&] { return page_->runs("wall"); }));
@@ -420,9 +422,9 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
   ASSERT_EQ(page_->send("align", "list").status, 200);  // all threads have been started by now
   const std::size_t threads_before = threads(pid);
   HttpFlood flood(port_, 2);
-  // Sends ten requests within a second, and expects that they are answered. The flood is on once a
-  // few of its requests were refused: on a busy machine most are answered so late that there are
-  // not too many of them.
+  // Waits until 20 further requests of the flood were refused, since on a busy machine most are
+  // answered so late that the flood stays below the limit. Then sends ten requests, and expects
+  // that they are answered.
   const auto modest = [&](const char* when) {
     const std::uint64_t refused_before = flood.refused();
     EXPECT_TRUE(eventually([&] { return flood.refused() > refused_before + 20; })) << when;
@@ -436,14 +438,15 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
     sendText(hostile.back(), bytes);
   };
   const auto good = [&](const char* after) {
-    // All clients have the same address here, so a newcomer's place becomes free after a second.
+    // All clients have the same address here, so a place for a new client becomes free only after a
+    // second.
     EXPECT_TRUE(eventually([&] { return page_->get("/api/status").status == 200; })) << after;
     EXPECT_TRUE(eventually([&] { return page_->send("align", "list").status == 200; })) << after;
     EXPECT_LT(residentKb(pid), kMostMemory_kb) << after;
     EXPECT_EQ(threads(pid), threads_before) << after;
     EXPECT_FALSE(page_->process().ended()) << page_->process().output();
   };
-  std::string many;  // more than the system's buffers take
+  std::string many;  // more than the system's socket buffers hold
   for (int i = 0; i < 100; ++i)
     many += "GET /picture.jpg?width=1920 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
   for (int i = 0; i < 100; ++i) join(many);
@@ -469,8 +472,8 @@ TEST_F(PageTest, HostileClientsDisturbNobodyElse) {
         std::string("\x16\x03\x01\x02\x00\x01", 6)})
     join(bytes);
   good("garbage");
-  // Sends the request until a place is free, and returns the answer's status. Without a free place
-  // the answer is 429, or the connection is closed (0).
+  // Sends the request until the server has a free place, and returns the answer's status. Without a
+  // free place the answer is 429, or the connection is closed (0).
   const auto statusOf = [&](const std::string& request) {
     int status = 0;
     const auto answered = [&] {

@@ -1,4 +1,4 @@
-// A real merlind whose output shows something other than what it was sent: the fault is found,
+// A real merlind whose output shows something other than what merlind sent: the fault is found,
 // reported and repaired.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Pictures on their way from a file to the wall: import, show, slides, and files that are damaged,
-// change or vanish.
+// Pictures from the file to the wall: import, show, slides, and files that are damaged, change or
+// vanish.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A binary PPM file with the colours that `colour` computes.
+// Writes a binary PPM file with the colours that `colour` computes.
 template <typename Colour>
 void writePpm(const std::string& path, int width, int height, const Colour& colour) {
   std::ofstream out(path, std::ios::binary);
@@ -43,7 +43,7 @@ Outcome import(const std::string& in, const std::string& out, std::vector<std::s
   return run(command);
 }
 
-// Number of files in the folder, including hidden ones.
+// Returns the number of files in the folder, including hidden ones.
 std::size_t filesIn(const std::string& folder) {
   return static_cast<std::size_t>(
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
@@ -75,7 +75,7 @@ TEST(ImageImport, MarksAPanoramaAndIsLosslessWhereAsked) {
   EXPECT_EQ(nlohmann::json::parse(info.output)["kind"], "panorama");
 }
 
-// A FITS image of one row of 16-bit numbers.
+// Returns a FITS image of one row of 16-bit numbers.
 std::string fits16(const std::vector<std::int16_t>& values) {
   std::string file;
   const auto card = [&](std::string text) {
@@ -97,7 +97,7 @@ std::string fits16(const std::vector<std::int16_t>& values) {
   return file;
 }
 
-// A binary PGM of 16 bits.
+// Returns a binary PGM image of one row of 16-bit values.
 std::string pgm16(const std::vector<int>& values) {
   std::string file = fmt::format("P5\n{} 1\n65535\n", values.size());
   for (const int v : values) {
@@ -158,11 +158,11 @@ TEST(ImageImport, SaysWhatIsWrongAndLeavesNothing) {
   expectRefused(dir / "film.mp4", 2, "film.mp4: is a video; MERLIN shows models, pictures");
   writeText(dir / "cut.tif", std::string("II\x2b\0\x08\0\0\0", 8));
   expectRefused(dir / "cut.tif", 2, "cut.tif: cannot be read as a picture: it is damaged or cut");
-  // The header declares 10^10 pixels; the file has very few of them.
+  // The header declares 10^10 pixels, but the file contains very few.
   writeText(dir / "lies.ppm", "P6\n100000 100000\n255\n" + std::string(1000, 'x'));
   expectRefused(dir / "lies.ppm", 2, "it is cut short: it has fewer bytes than its header says");
   writePpm(dir / "good.ppm", 600, 400, [](int x, int) { return plain(x % 256, 0, 0); });
-// The sanitizer reserves terabytes of address space, so no limit is set.
+// The address sanitizer reserves terabytes of address space, so no limit can be set with it.
 #if !defined(MERLIN_ADDRESS_SANITIZER)
   expectRefused(dir / "good.ppm", 2, "", {"--memory", "30M"});
 #endif
@@ -245,7 +245,8 @@ class PictureWall : public testing::Test {
       return content["name"] == name && content["kind"] == kind && content["slide"] == slide;
     });
   }
-  // Whether the middle of the wall's middle tile has this colour, once the picture has full detail.
+  // Waits until the wall shows full detail and the middle of its middle tile has this colour; false
+  // if that never happens.
   bool isColoured(const std::array<int, 3>& rgb) {
     return eventually([&] {
       if (!m_->status()["full_detail"]) return false;
@@ -308,7 +309,7 @@ TEST_F(PictureWall, ShowsAModelThatIsNotInTheConfiguration) {
   EXPECT_TRUE(isShown("red", "picture"));
 }
 
-// merlin image import puts its results into the content folder, and the wall shows those.
+// merlin image import writes its results into the content folder, and the wall shows them.
 TEST_F(PictureWall, ShowsPicturesOfAnyFormatAndFoldersOfThemAsSlides) {
   writePpm(*dir_ / "violet.ppm", 300, 200, [](int, int) { return plain(140, 0, 250); });
   const Outcome picture = show(*dir_ / "violet.ppm");
@@ -396,7 +397,7 @@ TEST_F(PictureWall, FilesThatChangeOrVanishAreSaidAndTheWallStaysUp) {
   EXPECT_TRUE(isShown("the sky", "panorama")) << "no further slide: the next content";
 }
 
-// As with a file server that is mounted after the wall has started.
+// The files appear after the start, as on a file server that is mounted later than the wall starts.
 TEST_F(PictureWall, WhatIsNotThereAtTheStartIsLeftOutUntilItIs) {
   const auto hide = [](const char* name) { fs::rename(*dir_ / name, *dir_ / name + ".away"); };
   const auto bring = [](const char* name) { fs::rename(*dir_ / name + ".away", *dir_ / name); };

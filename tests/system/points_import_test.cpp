@@ -1,4 +1,4 @@
-// `merlin mesh import` of point clouds: Open3D makes a surface of them in the sandbox of
+// `merlin mesh import` of point clouds: Open3D reconstructs a surface from them in the sandbox of
 // merlin-import.
 #include <cmath>
 #include <filesystem>
@@ -16,7 +16,8 @@ namespace {
 
 constexpr int kPoints = 800;
 
-// The unit sphere with its centre moved by `x`; red where z > 0 and blue below.
+// Returns points of the unit sphere with its centre moved by `x`, as text; red where z > 0 and blue
+// below.
 std::string colouredSphere(double x = 0) {
   std::string text;
   for (const auto& p : sphere(kPoints))
@@ -55,7 +56,8 @@ class PointsImport : public testing::Test {
   std::string ply_ = dir_ / "out.ply";
 };
 
-// Six times the signed volume of the surface; positive if it is closed and faces outwards.
+// Returns six times the signed volume of the surface; positive if the surface is closed and faces
+// outwards.
 double volume(const render::mesh::Mesh& mesh) {
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
@@ -168,7 +170,7 @@ TEST_F(PointsImport, AProjectionStaysInTheModel) {
 
 #if !defined(MERLIN_ANY_SANITIZER)  // a sanitizer needs terabytes of address space
 TEST_F(PointsImport, TooLittleMemoryIsSaidWithTheWayOut) {
-  // A sparse file that is larger than the memory that may be used.
+  // A sparse file that is larger than the memory limit.
   writeText(dir_ / "large.las", "LASF");
   std::filesystem::resize_file(dir_ / "large.las", std::size_t{101} << 20);
   const Outcome outcome =

@@ -1,5 +1,5 @@
-// merlin posture collect and merlin calibrate glove, run as a person runs them, on an emulated
-// glove and on a recording of one.
+// merlin posture collect and merlin calibrate glove, run as a person would run them, with an
+// emulated glove and with a recording of one.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::size_t handsOf(const nn::Recording& recording, const std::string& posture) 
                     [&](const nn::LabelledHand& h) { return h.posture == posture; }));
 }
 
-// The emulated hand stays open throughout, whatever posture the command asks for.
+// The emulated hand remains open, whatever posture the command asks for.
 TEST(PostureCollect, TakesHandsOfALiveGloveAndWarnsOfTwoThatLookAlike) {
   const TempDir dir;
   Merlind merlind(dir, "", "collect", {.script = "still", .role = "devices"});

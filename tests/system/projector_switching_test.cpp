@@ -75,7 +75,7 @@ TEST_F(ProjectorSwitching, ByCommandAllAtOnceAndStatusShowsThem) {
   EXPECT_EQ(left_.projector.log, "10");
 }
 
-// Runs the roles as under systemd, where the wall is a process of its own.
+// Runs the roles as systemd does, with the wall in a process of its own.
 TEST_F(ProjectorSwitching, ThePanelOfAWallInAnotherProcessSwitchesThem) {
   start();
   EXPECT_TRUE(is("left", "off") && is("right", "off"));
@@ -101,7 +101,8 @@ TEST_F(ProjectorSwitching, ThePanelOfAWallInAnotherProcessSwitchesThem) {
   };
   press(render::panel::ControlId::kProjectorsOn);
   EXPECT_TRUE(is("left", "on") && is("right", "on")) << wall.output();
-  // The devices' process has ended, so nobody answers: the panel reports it, and the wall goes on.
+  // The devices' process has ended, so nobody answers: the panel reports this, and the wall goes
+  // on.
   EXPECT_EQ(m_->process().kill(SIGTERM), 0);
   const auto shown =
       shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(m_->instance(), "wall"));
@@ -147,7 +148,7 @@ TEST_F(ProjectorSwitching, AWrongPasswordIsSaidAndTheRightOneFromThenOnUsed) {
   EXPECT_TRUE(is("right", "on")) << "the other one is switched all the same";
   EXPECT_EQ(m_->process().output().find("guess"), std::string::npos) << "in no log";
   writeText(dir_ / "password", "JBMIAProjectorLink\n");
-  merlin("projector_on");  // the command is tried at once
+  merlin("projector_on");  // merlind tries the command at once
   EXPECT_TRUE(is("left", "on"));
 }
 
@@ -170,7 +171,7 @@ TEST_F(ProjectorSwitching, OneThatVanishesIsSwitchedWhenItIsBack) {
   EXPECT_TRUE(hasHealth("left", "ok"));
 }
 
-// The schedule is on at all times, so the test needs no particular time of day.
+// Returns a schedule that is on at all times, so that the test does not depend on the time of day.
 json alwaysOn() {
   return {{"projector_schedule",
            {{{"on", "00:00"}, {"off", "12:00"}}, {{"on", "12:00"}, {"off", "00:00"}}}}};

@@ -1,8 +1,8 @@
 // Each device of a full wall is pulled after each command of its opening dialogue, or after each
-// part of what it says by itself, and comes back, while the others go on: two gloves, a tracker,
-// two balls, two gamepads and two trackers of VRPN servers at one merlind. The test serves their
-// lines itself, so that it can pull one at a chosen byte. That a device that works is pulled:
-// many_devices_test.
+// part of what it sends unasked, and is plugged in again, while the others go on: two gloves, a
+// tracker, two balls, two gamepads and two trackers of VRPN servers at one merlind. The test serves
+// their lines itself, so that it can pull a device at a chosen byte. The pulling of a working
+// device is tested in many_devices_test.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -39,22 +39,23 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
-// A device of the wall at the test's end of its line.
+// The test's end of a device's line.
 class Plug {
  public:
   virtual ~Plug() = default;
-  virtual json entry() const = 0;  // of the configuration's list
-  // Plugs it in; it is pulled in its state `state`, kNever: in none.
+  virtual json entry() const = 0;  // the device's entry in the configuration's list
+  // Plugs the device in; it will be pulled in its state number `state`, or not at all if that is
+  // kNever.
   virtual void plug(std::size_t state) = 0;
   virtual void unplug() = 0;
-  virtual bool pulled() const = 0;  // whether that state was reached
+  virtual bool pulled() const = 0;  // whether the state was reached and the device pulled
   // Called once merlind has opened the line.
   virtual void opened() {}
   virtual std::size_t states() const = 0;  // number of its states
   std::string name() const { return entry()["name"]; }
 };
 
-// A line whose writes are counted.
+// A stream that notes how many bytes each write ends at.
 class CountedStream final : public ByteStream {
  public:
   explicit CountedStream(FakeStream& line) : line_(line) {}
@@ -67,16 +68,16 @@ class CountedStream final : public ByteStream {
   }
   void interrupt() noexcept override {}
 
-  std::vector<std::size_t> ends;  // numbers of bytes written after each write
+  std::vector<std::size_t> ends;  // total number of bytes written after each write
 
  private:
   FakeStream& line_;
 };
 
-// An emulated device has been switched on for this long, so that it answers at once.
+// Emulated devices have been switched on for this long, so that they answer at once.
 constexpr Duration kSwitchedOn = std::chrono::seconds(5);
 
-// Numbers of bytes after each command of the driver's dialogue with its emulator.
+// Returns the total number of bytes after each command of the driver's dialogue with its emulator.
 std::vector<std::size_t> commandsOf(const std::string& driver) {
   DeviceBench bench(driver.c_str(), {.baud = findDriver(driver)->baud}, "turning");
   const auto device = findDriver(driver)->make(DriverSettings{}, bench.clock, bench.sink);
@@ -86,7 +87,7 @@ std::vector<std::size_t> commandsOf(const std::string& driver) {
   return line.ends;
 }
 
-// A glove, a Fastrak or a ball. State n: the n-th command has come.
+// A glove, a Fastrak or a ball. It is in state n when n + 1 commands have arrived.
 class EmulatedPlug final : public Plug {
  public:
   EmulatedPlug(const TempDir& dir, std::string name, std::string driver)
@@ -140,7 +141,7 @@ class EmulatedPlug final : public Plug {
   std::jthread thread_;
 };
 
-// A gamepad. State n: the n-th of these beginnings of what it says has been sent.
+// A gamepad. It is in state n when entry n of kBeginnings has been sent.
 class GamepadPlug final : public Plug {
  public:
   GamepadPlug(const TempDir& dir, std::string name)
@@ -168,7 +169,8 @@ class GamepadPlug final : public Plug {
 
  private:
   static constexpr std::size_t kRecord = 24;
-  // Nothing, a part of a record, a record, most of the description, all of it, a part of a report.
+  // Numbers of bytes: nothing, a part of a record, a record, most of the description, the whole
+  // description, a part of a report.
   static constexpr std::array<std::size_t, 6> kBeginnings = {
       0, 10, kRecord, kRecord + 20, 2 * kRecord, 3 * kRecord};
 
@@ -178,7 +180,7 @@ class GamepadPlug final : public Plug {
         evdevRecord(EvdevRecord::kMoved, ABS_X, turn % 100) + evdevRecord(EvdevRecord::kReport);
     (void)!::write(line_->fd(), bytes.data(), std::min(bytes.size(), most));
   }
-  // What merlind has not opened yet is dropped when it does, so it speaks again and again.
+  // merlind drops what was sent before it opened the line, so the description is sent repeatedly.
   void speak(const std::stop_token& stop) const {
     for (int turn = 0; !stop.stop_requested(); ++turn) {
       say(turn, kNever);
@@ -193,8 +195,8 @@ class GamepadPlug final : public Plug {
   std::jthread thread_;
 };
 
-// The tracker of a VRPN server. State n: the n-th beginning of what it says has been sent to a
-// client; then the server ends.
+// The tracker of a VRPN server. It is in state n when a client has been sent beginning number n of
+// the server's messages; then the server ends.
 class ServerPlug final : public Plug {
  public:
   explicit ServerPlug(std::string name) : name_(std::move(name)), port_(freePort()) {
@@ -239,7 +241,7 @@ class ServerPlug final : public Plug {
       }
       if (!client.valid()) continue;
       (void)::send(client.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-      std::array<char, 4096> pings{};  // not answered: poses come all the time
+      std::array<char, 4096> pings{};  // pings are not answered, since poses arrive all the time
       (void)!::recv(client.get(), pings.data(), pings.size(), MSG_DONTWAIT);
       if (state != kNever) return;
     }
@@ -281,7 +283,7 @@ class PulledDevices : public testing::Test {
   void emulated(const char* name, const char* driver) {
     plugs_.push_back(std::make_unique<EmulatedPlug>(dir_, name, driver));
   }
-  // How many samples the device has sent.
+  // Returns how many samples the device has sent.
   std::uint64_t count(const std::string& device) {
     const auto* const slots = m_->devices();
     if (const auto* const glove = slots->glove(device)) return glove->samples->count();
@@ -289,7 +291,7 @@ class PulledDevices : public testing::Test {
     return slots->tracker(device)->stations[0]->count();
   }
   HealthState stateOf(const Plug& plug) { return m_->health(plug.name())->state; }
-  // Pulls the device in this state; meanwhile the others lose nothing.
+  // Pulls the device in this state, and expects that the other devices lose nothing meanwhile.
   void pull(Plug& victim, std::size_t state) {
     const std::string where = fmt::format("{} in its state {}", victim.name(), state);
     victim.unplug();
@@ -303,7 +305,8 @@ class PulledDevices : public testing::Test {
     victim.plug(state);
     EXPECT_TRUE(eventually([&] {
       if (stateOf(victim) == HealthState::kOpening) victim.opened();
-      // On a busy machine the dialogue may be shorter than without one: it is pulled at its end.
+      // On a busy machine the dialogue may be shorter than was measured, so that this state is
+      // never reached; the device is then pulled at the dialogue's end.
       if (stateOf(victim) == HealthState::kOk) victim.unplug();
       return victim.pulled();
     })) << where;
@@ -326,7 +329,7 @@ class PulledDevices : public testing::Test {
 };
 
 TEST_F(PulledDevices, EachIsPulledInEachStateOfItsDialogueAndTheOthersLoseNothing) {
-  // One of each kind; where there is another one, it stays.
+  // One device of each kind is pulled; a second device of the same kind remains.
   for (const char* name : {"left", "stage", "near", "pad", "eyes"}) {
     const auto found =
         std::ranges::find_if(plugs_, [&](const auto& plug) { return plug->name() == name; });

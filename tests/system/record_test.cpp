@@ -1,4 +1,4 @@
-// merlin record, replay, flight and calibrate, run as a person runs them.
+// merlin record, replay, flight and calibrate, run as a person would run them.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -156,7 +156,7 @@ TEST(Calibrate, WritesIntoAConfigurationThatTheDaemonAccepts) {
   EXPECT_EQ(readText(config), before);
 }
 
-// A glove that never answers. The bytes on its line show what it was asked, and at which speed.
+// The glove never answers. The bytes on its line show what the driver sent, and at which speed.
 TEST(CalibrateGlove, SpeaksToTheGloveAsTheConfigurationsEntrySays) {
   const TempDir dir;
   const std::string config = dir / "merlin.json";

@@ -28,8 +28,8 @@ json bindings(const std::string& fist) {
                       {{"input", "ball.button.2"}, {"action", "next_mode"}}});
 }
 
-// The default devices. The one with this name gets these settings of its driver, and further
-// members of its entry.
+// Returns the default devices, where the device `name` has the driver settings `own` and the
+// further entry members `members`.
 json devicesWith(const std::string& name, const json& own, const json& members = json::object()) {
   json list = json::array({deviceEntry("glove", "cyberglove"), deviceEntry("tracker", "fastrak"),
                            deviceEntry("ball", "spaceball")});
@@ -48,7 +48,8 @@ json both(json first, const json& second) {
   return first;
 }
 
-// Number of times that the process has waited for something.
+// Returns the number of voluntary context switches of the process, that is, how often it has
+// waited.
 int timesSlept(pid_t pid) {
   const std::string status = readText(fmt::format("/proc/{}/status", pid));
   const std::string name = "\nvoluntary_ctxt_switches:";
@@ -57,7 +58,7 @@ int timesSlept(pid_t pid) {
 
 class Reload : public testing::Test {
  protected:
-  // The devices' process. Its emulated person makes a fist and opens it in turn.
+  // Starts the devices' process. Its emulated person makes a fist and opens it repeatedly.
   void start(const json& also = {{"bindings", bindings("grab")}}) {
     merlind_.emplace(dir_, "", "reload",
                      MerlindOptions{.script = "grabbing", .role = "devices", .also = also});
@@ -82,8 +83,9 @@ class Reload : public testing::Test {
     for (const char* device : kDevices) all[device] = health(device);
     return all;
   }
-  // Whether a reload of other bindings leaves every line open. On a busy machine an emulator may be
-  // silent for so long that its line is reopened meanwhile, so the test asks more than once.
+  // Returns whether a reload of other bindings left every line open. On a busy machine an emulator
+  // may be silent for so long that its line is reopened meanwhile, so the test calls this more than
+  // once.
   bool reloadLeavesLines(const std::string& fist) {
     auto before = healths();
     write({{"bindings", bindings(fist)}});
@@ -114,7 +116,7 @@ class Reload : public testing::Test {
   json written_;
 };
 
-// The health of each line has not changed since before the reload, so no line was closed.
+// A line was not closed if its health is unchanged since before the reload.
 TEST_F(Reload, AChangedBindingActsAndNoLineIsClosed) {
   start();
   ASSERT_TRUE(eventually([&] { return begun("grab") > 0; }));
@@ -160,7 +162,7 @@ TEST_F(Reload, ADeviceIsMadeAnewAloneAndItsCountersGoOn) {
       << "a device that was stopped on purpose has not failed";
 }
 
-// The refusal has the words of --check-config, and is an event that ends with a good reload.
+// A refusal has the words of --check-config, and is an event that ends with the next good reload.
 TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
   start();
   const std::string good = written_.dump(2);
@@ -175,7 +177,8 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
        {wanted.substr(0, wanted.size() / 2), broken(devicesWith("ball", nullptr, {{"bau", 9600}})),
         broken(devicesWith("ball", nullptr, {{"baud", 12345}})),
         broken({{"postures", {{"file", "none.json"}}}}),
-        broken({{"postures", {{"hold_s", 99}}}}),  // at a start, merlind would adjust this value
+        // at a start, merlind would adjust this value instead of refusing it
+        broken({{"postures", {{"hold_s", 99}}}}),
         broken(both(devicesWith("glove", nullptr, {{"port", "serial"}}),
                     {{"wall", {{"outputs", 3}}}}))}) {
     writeText(merlind_->config(), text);
@@ -206,7 +209,8 @@ TEST_F(Reload, ABadFileIsSaidAndChangesNothing) {
   EXPECT_FALSE(merlind_->process().ended());
 }
 
-// merlind starts again in the same process, and answers the command once it is ready.
+// For settings that take effect only at a start, merlind starts again in the same process, and
+// answers the command once it is ready.
 TEST_F(Reload, ForWhatOnlyAStartTakesItStartsAgainWithAllTheRest) {
   start();
   write({{"state_file", dir_ / "a.json"}, {"bindings", bindings("fly")}});
@@ -288,14 +292,14 @@ TEST_F(Reload, AnAlarmHasOneLineHoweverManyOfItsSettingsChanged) {
       << start.output;
 }
 
-// Under a sanitizer each takes seconds of the processor; a dozen show what is left behind.
+// With a sanitizer each reload takes seconds of processor time; a dozen are enough to show a leak.
 #if defined(MERLIN_ANY_SANITIZER)
 constexpr int kInARow = 12;
 #else
 constexpr int kInARow = 50;
 #endif
 
-// Good and bad reloads in a random order (with a fixed seed), while the hand moves.
+// Reloads good and bad configurations in a random order (with a fixed seed), while the hand moves.
 TEST_F(Reload, ManyInARowLeaveNothingBehind) {
   start();
   const json good[] = {
@@ -312,8 +316,8 @@ TEST_F(Reload, ManyInARowLeaveNothingBehind) {
                       {{"script", "still"}, {"hands", 1}},
                       {{"postures", {{"file", "none"}}}},
                       devicesWith("ball", nullptr, {{"name", "glove"}})};
-  // Counted before any client is connected, since a client's place becomes free only some time
-  // after it has gone.
+  // These are counted before any client is connected, since a client's place becomes free only some
+  // time after the client has gone.
   const std::size_t descriptors = entriesOf("fd"), threads = entriesOf("task");
   std::mt19937 random(5);
   std::uint64_t samples = health("glove").samples;
@@ -329,7 +333,8 @@ TEST_F(Reload, ManyInARowLeaveNothingBehind) {
   }
   for (const char* device : kDevices)
     EXPECT_TRUE(merlind_->healthIs(device, HealthState::kOk)) << device;
-  // No reload has closed it; on a busy machine its emulator may have been silent.
+  // No reload has closed the glove's line, but on a busy machine its emulator may have been silent
+  // for too long.
   EXPECT_LT(health("glove").reconnects, 10u);
   EXPECT_TRUE(eventually([&] { return entriesOf("fd") == descriptors; }))
       << entriesOf("fd") << " descriptors instead of " << descriptors;
@@ -369,7 +374,7 @@ TEST_F(ReloadOfTwo, EachTakesItsPartAndTheWallGoesOn) {
     EXPECT_NE(done.output.find(line), std::string::npos) << line << done.output;
   EXPECT_EQ(done.output.find("is read by"), std::string::npos) << done.output;
   EXPECT_TRUE(eventually([&] { return merlind_->wall().rate_asked_hz == 12; }));
-  // A still wall that shows full detail draws no frame: something has to be drawn.
+  // A still wall that shows full detail draws no frame, so the notice gives it something to draw.
   EXPECT_EQ(run({kMerlin, "notice", "x", "--instance", merlind_->instance()}).status, 0);
   EXPECT_TRUE(eventually([&] { return merlind_->wall().frames > frames; }));
   EXPECT_EQ(reload().output, "nothing changed\n");
@@ -397,8 +402,8 @@ TEST_F(ReloadOfTwo, TheWallAloneStartsAgainForItsContents) {
     EXPECT_EQ(health(device).reconnects, before[device].reconnects) << device;
 }
 
-// Another request may have made the process start again, as when systemd reloads two units one
-// after the other.
+// Another request may have started the process again, as when systemd reloads two units one after
+// the other.
 TEST_F(ReloadOfTwo, OneThatStartsAgainIsWaitedFor) {
   write({{"wall", {{"snapshots", dir_ / "snapshots"}}}});
   ASSERT_EQ(::kill(wall_->pid(), SIGHUP), 0);

@@ -27,7 +27,7 @@ class ReadsOf {
   explicit ReadsOf(const std::string& file) : events_(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK)) {
     EXPECT_GE(::inotify_add_watch(events_.get(), file.c_str(), IN_CLOSE_NOWRITE), 0) << file;
   }
-  // Waits up to 10 s until the file has been read `times` times.
+  // Waits until the file has been read `times` times; false if no read happens for 10 s.
   bool reach(int times) {
     while (count_ < times) {
       pollfd waits{events_.get(), POLLIN, 0};
@@ -75,7 +75,8 @@ struct TwoMachines : testing::Test {
     return std::make_unique<Process>(std::vector<std::string>{
         kMerlind, "--config", dir / "devices.json", "--role", "devices", "--emulate"});
   }
-  // `merlin status` for the wall's instance also shows the devices of the other machine.
+  // Expects that `merlin status` for the wall's instance also shows the devices of the other
+  // machine.
   void expectStatusOfTheOthersDevices() {
     Outcome json;
     nlohmann::json status;
@@ -134,7 +135,8 @@ TEST_F(TwoMachines, AWallWithoutKeysIsRefusedWithTheWayOut) {
   EXPECT_NE(both.output.find("run it with --role wall"), std::string::npos) << both.output;
 }
 
-// The first read is the check, the second one the comparison or the use.
+// The wall reads the key file twice as it starts: first to check it, then to compare or use it. The
+// file is replaced after that.
 TEST_F(TwoMachines, AKeyThatIsReplacedWhileTheWallStartsIsTakenByTheNextReload) {
   const std::string key = dir / "wall.keys", other = dir / "other.keys";
   keys(other);

@@ -1,5 +1,5 @@
-// merlin report: the archive for a person who is to help, made from a wall that runs and from one
-// that does not.
+// merlin report makes an archive for a person who is asked for help. The test makes it of a running
+// wall and of one that does not run.
 #include <algorithm>
 #include <filesystem>
 
@@ -17,7 +17,8 @@ using nlohmann::json;
 constexpr const char* kPassword = "hunter-twenty-two";
 constexpr const char* kToken = "TOKEN0123456789TOKEN0123456789xy";
 
-// The archive's files by name, read by another program. The names begin with the archive's folder.
+// Returns the archive's files by name, unpacked by another program. The names begin with the
+// archive's folder.
 std::map<std::string, std::string> unpack(const TempDir& dir, const std::string& archive) {
   const std::string out = dir / "unpacked.json";
   const std::string script =
@@ -63,7 +64,7 @@ TEST(Report, OfARunningWallHasItsPartsAndNoSecret) {
       {"projectors",
        {{{"name", "left"}, {"address", "127.0.0.1:1"}, {"password_file", "left.password"}}}},
       {"alarms", {{{"run", {"/usr/bin/tell", std::string("--token=") + kToken}}}}},
-      // A password in a setting that is not secret.
+      // A password in a setting that is not marked as secret.
       {"wall", {{"contents", {{{"model", model}, {"name", kPassword}}}}}}};
   Merlind wall(dir, model, "report", options);
   ASSERT_TRUE(wall.ready()) << wall.process().output();
@@ -126,7 +127,7 @@ TEST(Report, OfAWallThatDoesNotRunSaysSoAndQuotesNoFile) {
   expectNowhere(files, kPassword);
 }
 
-// merlind runs with the last good settings; a token that only those contain is still a secret.
+// merlind runs with the last good settings; a token that occurs only in them is still a secret.
 TEST(Report, OfABrokenConfigurationHasTheLastGoodOne) {
   const TempDir dir;
   MerlindOptions options;
@@ -167,7 +168,8 @@ TEST(Report, OfABrokenConfigurationHasTheLastGoodOne) {
 
 TEST(Report, TheJournalIsThatOfTheUnitsWithoutSecrets) {
   const TempDir dir;
-  const std::string journalctl = dir / "journalctl";  // found before the real one
+  // PATH has this folder first, so it hides the real journalctl
+  const std::string journalctl = dir / "journalctl";
   writeText(journalctl, std::string("#!/bin/sh\necho \"$@\"\necho typed ") + kPassword + "\n");
   std::filesystem::permissions(journalctl, std::filesystem::perms::owner_all);
   writeText(dir / "left.password", std::string(kPassword) + "\n");

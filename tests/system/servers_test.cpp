@@ -66,7 +66,7 @@ TEST(Servers, OneWhosePortIsTakenIsToldAndServesOnceItIsFree) {
   const TempDir dir;
   auto taken = net::listenTcp("127.0.0.1", 0);
   ASSERT_TRUE(taken);
-  auto forgotten = net::listenLocal(dir / "spnav.sock", 0600);  // like that of a spacenavd
+  auto forgotten = net::listenLocal(dir / "spnav.sock", 0600);  // in use, as by a running spacenavd
   ASSERT_TRUE(forgotten);
   Merlind merlind(dir, "", "servers",
                   devicesThatServe({{"vrpn_port", net::portOf(taken->get())},
@@ -83,7 +83,7 @@ TEST(Servers, OneWhosePortIsTakenIsToldAndServesOnceItIsFree) {
   EXPECT_EQ(merlind.process().kill(SIGTERM), 0);
 }
 
-// Debian's copy of libspnav's own example: it sends its name, asks for the protocol and the device,
+// libspnav's own example, in Debian's copy, sends its name, asks for the protocol and the device,
 // and prints the events.
 TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
   const std::string source = "/usr/share/doc/libspnav-dev/examples/simple/simple.c";
@@ -112,8 +112,8 @@ TEST(Servers, TheExampleOfLibspnavSeesTheEmulatedBallTurn) {
   })) << simple.output();
 }
 
-// A ZeroMQ client on a plain socket that has completed the handshake; an invalid descriptor if the
-// server refuses it.
+// Returns a plain socket on which the handshake of a ZeroMQ client is complete; an invalid
+// descriptor if the server refuses the client.
 UniqueFd zmqClient(const std::string& path) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
@@ -137,7 +137,7 @@ UniqueFd zmqClient(const std::string& path) {
   return fd;
 }
 
-// A process that holds up to 16 connections and keeps them busy, for a minute at most.
+// A process that holds up to 16 connections and keeps them busy, for at most a minute.
 class BusyHolder {
  public:
   explicit BusyHolder(const std::string& path) {
@@ -200,8 +200,8 @@ TEST(Servers, AMessageThatDoesNotEndIsClosed) {
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
   const UniqueFd fd = zmqClient(dir / (merlind.instance() + "-devices.command"));
   ASSERT_TRUE(fd.valid());
-  // Message parts that each announce another one, and heartbeats with a time-out of 0, with which
-  // libzmq does not close the connection.
+  // Sends message parts that each announce another part, and heartbeats with a time-out of 0, with
+  // which libzmq does not close the connection.
   for (int i = 0; i < 4; ++i) (void)::send(fd.get(), "\1\1x\4\7\4PING\0\0", 12, MSG_NOSIGNAL);
   char bytes[256];
   ssize_t n = 1;

@@ -1,5 +1,5 @@
-// merlin show FILE: one command from a range image with colour on the disk to the wall; the files
-// that a stopped command leaves; and that merlind opens no path that a client names.
+// merlin show FILE: one command brings a range image with colour from the disk to the wall. Also
+// tests which files a stopped command leaves, and that merlind opens no path that a client names.
 #include <filesystem>
 
 #include <fcntl.h>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One wall serves all tests; it shows its model at the beginning of each.
+// One wall serves all tests; at the beginning of each test it shows its own model.
 class ShowFile : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -40,7 +40,7 @@ class ShowFile : public testing::Test {
     all.insert(all.end(), words.begin(), words.end());
     return all;
   }
-  // The names of all files in the content folder, including hidden ones.
+  // Returns the names of all files in the content folder, including hidden ones.
   std::vector<std::string> there() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder()))
@@ -52,7 +52,7 @@ class ShowFile : public testing::Test {
         shm::SegmentReader<shm::WallSegment>::open(shm::segmentName(wall_->instance(), "wall"));
     return wall ? (*wall)->content.read().value_or(shm::WallContent{}) : shm::WallContent{};
   }
-  // Mean red, green and blue of all pixels that are not background.
+  // Returns the mean red, green and blue of all pixels that are not background.
   std::array<double, 3> colour() const {
     const std::string path = *dir_ / "frame.png";
     run({kMerlin, "snapshot", "-o", path, "--instance", wall_->instance()});
@@ -67,21 +67,22 @@ class ShowFile : public testing::Test {
     for (double& s : sum) s /= std::max(count, 1.0);
     return sum;
   }
-  // The answer from the wall's command socket, or the error.
+  // Returns the answer from the wall's command socket, or the error message.
   std::string asked(const std::string& name, const std::string& argument) const {
     const auto answer =
         status::ask(fmt::format("ipc://{}/{}-wall.command", dir_->path(), wall_->instance()), name,
                     std::chrono::seconds(10), argument);
     return answer ? *answer : answer.error().what;
   }
-  // Writes the scan of a flat square with side x side returns of one colour.
+  // Writes the scan of a flat square of side x side returns of one colour.
   void writeScan(const std::string& name, int side, const std::string& rgb) const {
     const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     const std::string size = fmt::format("{0} {0}\n", side);
     std::string ranges, colours;
     for (std::size_t i = 0; i < pixels; ++i) {
       ranges += '\x08';
-      ranges += static_cast<char>(i * 31 % 8);  // a rough surface, whose reduction takes some time
+      // the surface is rough, so that its reduction takes some time
+      ranges += static_cast<char>(i * 31 % 8);
       colours += rgb;
     }
     writeText(*dir_ / (name + ".pgm"), "P5\n" + size + "65535\n" + ranges);
@@ -112,7 +113,7 @@ TEST_F(ShowFile, ARangeImageWithColourIsOnTheWallAfterOneCommand) {
       << "blue";
 }
 
-// It can be shown by its name as long as it is in the content folder.
+// A file that was shown can be shown again by its name as long as it is in the content folder.
 TEST_F(ShowFile, AFileThatWasShownIsShownAgainByItsName) {
   writeScan("hill", 40, "\x10\x10\xF0");
   writeScan("model", 40, "\x10\x10\xF0");
@@ -239,11 +240,12 @@ TEST_F(ShowFile, PanoramaIsRefusedForWhatIsNoPictureThatIsImported) {
   EXPECT_STREQ(content().kind, "panorama");
 }
 
-// 1 MB is too little for any picture.
+// The memory limit of 1 MB is too small for any picture.
 TEST_F(ShowFile, ThePicturesImportHasTheMemoryThatIsGiven) {
   if (!fs::exists(MERLIN_BIN_DIR "/merlin-import")) GTEST_SKIP() << "this build has no imports";
   writeText(*dir_ / "small.ppm", "P6\n64 32\n255\n" + std::string(64 * 32 * 3, '\x90'));
-#if !defined(MERLIN_ANY_SANITIZER)  // these reserve terabytes of address space, so no limit is set
+// sanitizers reserve terabytes of address space, so no limit is set with them
+#if !defined(MERLIN_ANY_SANITIZER)
   const Outcome shown = run(command({*dir_ / "small.ppm", "--memory", "1M"}));
   EXPECT_NE(shown.status, 0);
   EXPECT_NE(shown.output.find("needs more memory"), std::string::npos) << shown.output;

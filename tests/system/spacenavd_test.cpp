@@ -1,5 +1,5 @@
-// The emulated Spaceball, read by spacenavd, a program that supports the real device; the events
-// come from spacenavd's own socket. Skipped where spacenavd is not installed.
+// spacenavd, a program that supports the real Spaceball, reads the emulated one; the test receives
+// the events from spacenavd's own socket. Skipped where spacenavd is not installed.
 #include <array>
 #include <filesystem>
 
@@ -14,7 +14,7 @@
 namespace merlin::test {
 namespace {
 
-// Version 0 of the protocol: type, six axes or a button, time in ms.
+// An event of version 0 of the protocol: type, six axes or a button, time [ms].
 using Event = std::array<std::int32_t, 8>;
 
 int connectTo(const std::string& path) {
@@ -27,8 +27,8 @@ int connectTo(const std::string& path) {
   return -1;
 }
 
-// True if one of the next hundred events is a twist about the vertical axis without a translation;
-// false also if no event comes for ten seconds.
+// Returns true if one of the next hundred events is a twist about the vertical axis without a
+// translation, false if none is or if no event arrives for ten seconds.
 bool seesATwist(int client) {
   timeval limit{10, 0};
   ::setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
@@ -55,7 +55,7 @@ TEST(Spacenavd, SeesTheEmulatedBallTwistedAboutItsVerticalAxis) {
   const std::string start =
       "cd " + dir.path() + " && rm -f run/spnav.sock && exec spacenavd -d -v -c spnavrc";
   // spacenavd gives up on a ball that does not answer in time, as happens on a busy machine. The
-  // test then starts it again, as a service manager would.
+  // test then starts spacenavd again, as a service manager would.
   bool twisted = false;
   std::string output;
   for (int attempt = 0; attempt < 6 && !twisted; ++attempt) {

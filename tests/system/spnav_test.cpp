@@ -1,5 +1,4 @@
-// The space-mouse socket of MERLIN, tested with Debian's libspnav and, byte by byte, with its
-// protocol.
+// MERLIN's space-mouse socket, tested with Debian's libspnav and, byte by byte, by its protocol.
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -69,13 +68,14 @@ TEST(SpnavProtocol, VersionOneIsEchoedAndAnswersRequests) {
   std::string out;
   for (std::size_t n = 0; n < axes.size(); ++n)
     EXPECT_EQ(client.receive(axes.substr(0, n), 100, out).bytes, 0U) << "not whole";
-  // A request that is not supported is answered with -1; setting a name is not answered.
+  // An unsupported request is answered with -1; a request that sets a name is not answered.
   EXPECT_EQ(feed(client, bytesOf("0030AA7F") + std::string(28, '\0')),
             bytesOf("0030AA7F") + std::string(24, '\0') + bytesOf("FFFFFFFF"));
   EXPECT_EQ(feed(client, bytesOf("0010AA7F") + std::string(28, 'x')), "");
 }
 
-// libspnav 1.0 sends the client's name with the upper 16 bits of the request word missing.
+// libspnav 1.0 sends the client's name without the upper 16 bits of the request word, so that the
+// word looks like a request to set the sensitivity.
 TEST(SpnavProtocol, ANameWithoutItsTagIsANameAndNoSensitivity) {
   SpnavClient client({});
   feed(client, bytesOf("0155AA7F"));
@@ -225,7 +225,7 @@ TEST_F(Served, AHundredHandshakesAndQuestionsAreRightWhileTheBallMoves) {
   EXPECT_EQ(right, 100);
 }
 
-// A plain connection to the server's socket.
+// Makes a plain connection to the server's socket.
 UniqueFd connectedTo(const std::string& path) {
   UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM, 0));
   sockaddr_un address{};
@@ -270,7 +270,7 @@ TEST_F(Served, AProgramThatAsksAllTheTimeSeesTheBallAllTheSame) {
   }));
 }
 
-// The last motion event says that the ball is at rest; it must reach a client that reads late.
+// The last motion event says that the ball is at rest; a client that reads late must receive it.
 TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
   const UniqueFd fd = connectedTo(path);
   ASSERT_TRUE(test::eventually([&] { return server->report().connections == 1; }));
@@ -284,7 +284,7 @@ TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
     return same == 50;
   }));
   segment->ball[0].publish(pushed({}));
-  // After two of its echoes, the server has seen the sample.
+  // Once another client has received two echoes, the server has seen the sample.
   const UniqueFd other = connectedTo(path);
   for (int i = 0; i < 2; ++i) {
     const std::string question = bytesOf("0055AA7F");
@@ -298,7 +298,7 @@ TEST_F(Served, AClientThatReadsLateHearsThatTheBallRests) {
   EXPECT_TRUE(rests()) << event[0];
 }
 
-// Programs from before 2021 connect and read without sending anything.
+// Programs from before 2021 connect and read, without sending anything.
 TEST_F(Served, AClientOfVersionZeroIsToldWithoutAWord) {
   const UniqueFd fd = connectedTo(path);
   const MovingBall moving(*segment);

@@ -1,5 +1,5 @@
 // What merlind publishes and answers conforms to daemon/status/status.schema.json. The schema may
-// only grow, since other people's programs rely on it.
+// only grow, since programs of other people rely on it.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -67,7 +67,7 @@ TEST(StatusSchema, SaysWhatIsWrong) {
             2U);
 }
 
-// Checks several documents of each topic of both roles, while an emulated person works.
+// Checks several documents of each topic of both roles, while an emulated person uses the devices.
 TEST(StatusSchema, MerlindKeepsTo) {
   const TempDir dir;
   const json projectors = json::array({{{"name", "left"}, {"address", "127.0.0.1:1"}}});

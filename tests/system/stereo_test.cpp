@@ -15,7 +15,7 @@ using nlohmann::json;
 
 class Stereo : public testing::Test {
  protected:
-  // The settings of an output with one tile.
+  // Returns the settings of an output with one tile.
   json output(const std::string& name, const std::string& tile) {
     return {{"kind", "png"},
             {"name", name},

@@ -1,5 +1,5 @@
 // The wall survives damaged input: a model file that is overwritten while it is shown, and a model
-// that a wrong tracker record has moved out of sight.
+// that a wrong tracker record moves out of sight.
 #include <filesystem>
 #include <fstream>
 
@@ -14,7 +14,8 @@
 namespace merlin::test {
 namespace {
 
-// An emulated device on a pty, without a thread: a test that waits for a condition calls pump().
+// An emulated device on a pseudo-terminal, without a thread: a test that waits for a condition
+// calls pump().
 class Line {
  public:
   Line(const char* device, int baud, const emulate::MotionScript& script, const std::string& link)

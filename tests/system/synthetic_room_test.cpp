@@ -1,9 +1,10 @@
-// Correction of real signals in a synthetic room: known projectors throw the daemon's signals, a
-// known camera photographs them, and the photographs are measured. The correction follows from the
-// known room (through the configuration, and through an MPCDI file), and once from the camera's
-// view alone (through `merlin wall align`). The test prints the figures before and after.
+// Correction of real signals in a synthetic room: projectors with known properties project the
+// daemon's signals, a known camera photographs them, and the photographs are measured. The
+// correction follows from the known room (through the configuration, and through an MPCDI file),
+// and once from photographs alone (through `merlin wall align`). The test prints the figures before
+// and after.
 //
-// MERLIN_PICTURES=FOLDER writes the photographs.
+// If the environment variable MERLIN_PICTURES is set, the photographs are written into that folder.
 #include "tests/support/synthetic_room.h"
 
 #include <cmath>
@@ -27,26 +28,27 @@ using nlohmann::json;
 
 // The test card "grid" has a line at every 40th pixel of a tile of this size.
 constexpr int kWidth = 641, kHeight = 481, kSpacing = 40, kColumns = 16, kRows = 12;
-constexpr int kOverlap = 161;  // [px]; four cells and a line, so that lines of both tiles coincide
-constexpr double kPixel = 0.0025;  // [m]
+// [px]; four cells and one pixel, so that lines of both tiles coincide
+constexpr int kOverlap = 161;
+constexpr double kPixel = 0.0025;  // width of a pixel on the wall [m]
 constexpr int kCameraWidth = 1800, kCameraHeight = 860;
 constexpr double kLowest = 0.8, kDistance = -3;  // height of the wall's lower edge, and its z [m]
 
-// A crossing of lines that is measured. The outermost lines are left out, since the blend ramps
-// make them dark.
+// A crossing of grid lines that is measured. The outermost lines are left out, since the blend
+// ramps make them dark.
 struct Crossing {
   int column, row;
   Vector2d pixel() const { return {column * kSpacing + 0.5, row * kSpacing + 0.5}; }
 };
 
-// The place of a line is the mean over points at these distances from a crossing [px]: the signal
-// is filtered before its gamma is applied, so a line one pixel wide moves by up to 0.2 pixels with
-// its phase.
+// A line's place is the mean over points at these distances [px] from the crossing: the signal is
+// filtered before its gamma is applied, which moves a line of one pixel width by up to 0.2 pixels,
+// depending on its phase.
 constexpr double kAsides[] = {-20, -17.5, -15, -12.5, -10, 10, 12.5, 15, 17.5, 20};
 constexpr double kReach = 8;  // search range on each side of a line [px]
 
-// Whether a diagonal of the card is near the points at which the lines of the crossing are
-// measured.
+// Returns whether a diagonal of the card is near the points at which the lines of the crossing `at`
+// are measured.
 bool isOnDiagonal(const Vector2d& at) {
   const double slope = 1.0 * (kHeight - 1) / (kWidth - 1);
   for (const double turn : {1.0, -1.0}) {
@@ -62,8 +64,8 @@ bool isOnDiagonal(const Vector2d& at) {
   return false;
 }
 
-// Whether another part of the card is near: a circle, the name in the middle, or the mark of the
-// corner that is being moved.
+// Returns whether another part of the card is near the crossing: a diagonal, a circle, the name in
+// the middle, or the mark of the corner that is being moved.
 bool isDisturbed(const Crossing& c) {
   const Vector2d at = c.pixel(), middle(kWidth / 2.0, kHeight / 2.0);
   const Vector2d from_border = at.cwiseMin(Vector2d(kWidth, kHeight) - at),
@@ -91,7 +93,8 @@ struct Geometry {
   std::size_t found = 0;
 };
 
-// Homography from pixels of the uncorrected picture to metres on the panel, by least squares.
+// Returns the homography from pixels of the uncorrected picture to metres on the panel, by least
+// squares.
 Eigen::Matrix3d fitHomography(const std::vector<std::pair<Vector2d, Vector2d>>& pairs) {
   Eigen::MatrixXd a(2 * static_cast<Eigen::Index>(pairs.size()), 9);
   Eigen::Index row = 0;
@@ -115,7 +118,7 @@ class SyntheticRoom : public testing::Test {
     hinged_ = hinged;
     const double width = kWidth * kPixel, height = kHeight * kPixel;
     const double overlap = hinged ? 0 : kOverlap * kPixel;
-    const double margin = hinged ? 0 : 0.2;  // of the part of the screen around the wall's picture
+    const double margin = hinged ? 0 : 0.2;  // margin of the panel around the wall's picture [m]
     const double turn = hinged ? 10 * std::numbers::pi / 180 : 0;
     const Vector3d middle(0, kLowest + height, kDistance), down(0, -1, 0);
     for (const int side : {-1, 1}) {
@@ -210,8 +213,8 @@ class SyntheticRoom : public testing::Test {
   }
   static std::vector<bool> only(std::size_t projector) { return {projector == 0, projector == 1}; }
 
-  // The place of a crossing of grid lines as the camera sees it [m on the panel]. `guess` has to be
-  // within 8 pixels of it.
+  // Returns the place of a crossing of grid lines as the camera sees it, in metres on the panel.
+  // `guess` has to be within 8 pixels of it.
   std::optional<Vector2d> find(const Photograph& photo, std::size_t projector,
                                Vector2d guess) const {
     const Panel& panel = projectors_[projector].panel;
@@ -267,8 +270,8 @@ class SyntheticRoom : public testing::Test {
     return result;
   }
 
-  // Largest deviation of the luminance from its mean, over blocks of 8 x 8 pixels [%], while the
-  // wall shows its background.
+  // Returns the largest deviation of the luminance from its mean [%], over blocks of 8 x 8 pixels,
+  // while the wall shows its background.
   double measureLight() {
     const Photograph photo = photograph();
     write(photo, "light");
@@ -314,7 +317,7 @@ class SyntheticRoom : public testing::Test {
     EXPECT_LE(f.light, 1);
   }
 
-  // The settings that a person would find by measuring each projector's light.
+  // Returns the settings that a person would find by measuring the light of projector `i`.
   json light(std::size_t i) const {
     const Projector& p = projectors_[i];
     const Light least = projectors_[0].full.min(projectors_[1].full);
@@ -385,18 +388,20 @@ TEST_F(SyntheticRoom, IsRightByTheConfigurationOnAPlaneScreen) {
   expectRight(measure("plane corners blend colour", true));
 }
 
-// Aligns as a script would that has nothing but photographs: first by the coloured corners of the
-// card "edges", then by the lines of the card "grid".
+// Aligns as a script would that has only photographs: first by the coloured corners of the card
+// "edges", then by the lines of the card "grid".
 class AlignedRoom : public SyntheticRoom {
  protected:
-  // Distance of a mark's centre from its corner [px]; the mark has two arms of 60 x 6 pixels.
+  // Distance of a mark's centroid from its corner along each side [px]; the mark has two arms of 60
+  // x 6 pixels.
   static constexpr double kMark = (360 * 31 + 360 * 4 - 36 * 4) / 684.0;
 
-  // Homography from pixels of the picture to metres on the panel, fitted to the corners' marks.
+  // Returns the homography from pixels of the picture to metres on the panel, fitted to the
+  // corners' marks.
   Eigen::Matrix3d fitMarks(std::size_t projector) {
     const Photograph photo = photograph(only(projector));
     const Panel& panel = projectors_[projector].panel;
-    std::array<Vector3d, 4> sums{};  // of weighted places, and of weights
+    std::array<Vector3d, 4> sums{};  // weighted sum of places, and sum of weights
     sums.fill(Vector3d::Zero());
     for (double y = 0; y < panel.height; y += kPixel) {
       for (double x = 0; x < panel.width; x += kPixel) {
@@ -420,8 +425,8 @@ class AlignedRoom : public SyntheticRoom {
     }
     return fitHomography(pairs);
   }
-  // The homography fitted to all lines of the grid; `about` is its estimate, with an error of some
-  // pixels.
+  // Returns the homography fitted to all lines of the grid; `about` is an estimate of it, with an
+  // error of at most 8 pixels.
   Eigen::Matrix3d fitGrid(std::size_t projector, const Eigen::Matrix3d& about) {
     const Photograph photo = photograph(only(projector));
     std::vector<std::pair<Vector2d, Vector2d>> pairs;
@@ -432,7 +437,7 @@ class AlignedRoom : public SyntheticRoom {
     EXPECT_GT(pairs.size(), crossings().size() / 2);
     return fitHomography(pairs);
   }
-  // Moves each corner by its present error. Returns the largest error [px].
+  // Moves each corner by its present error; returns the largest error [px].
   double moveCorners(std::size_t projector, const Eigen::Matrix3d& seen) {
     constexpr const char* kCorners[] = {"top_left", "top_right", "bottom_left", "bottom_right"};
     double most = 0;
@@ -463,7 +468,7 @@ TEST_F(AlignedRoom, IsRightByAlignAloneAndAfterARestart) {
     const double first = moveCorners(i, seen);
     EXPECT_GT(first, 5);
     fmt::print("align {}: {:.2f}", kNames[i], first);
-    // By now the picture is nearly where it belongs.
+    // By now the picture is nearly at its right place.
     seen = fitHomography({{{0, 0}, truth(i, {0, 0})},
                           {{kWidth, 0}, truth(i, {kWidth, 0})},
                           {{0, kHeight}, truth(i, {0, kHeight})},
@@ -489,7 +494,8 @@ TEST_F(SyntheticRoom, IsRightByTheConfigurationWhereLensesDistort) {
   start({withMesh(0), withMesh(1)});
   expectRight(measure("lens mesh blend colour", true));
 
-  // The same room through an MPCDI file, which has no colour: that stays in the configuration.
+  // The correction of the same room comes through an MPCDI file. The file has no colour, so that
+  // the colour remains in the configuration.
   const std::string file = dir_ / "room.mpcdi", settings = dir_ / "correction.json";
   ASSERT_EQ(run({kMerlin, "wall", "mpcdi", "export", file, "-c", config()}).status, 0);
   ASSERT_EQ(run({kMerlin, "wall", "mpcdi", "import", file, "-o", settings}).status, 0);

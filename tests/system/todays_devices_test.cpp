@@ -1,6 +1,7 @@
 // Present-day devices at a real merlind: a space mouse through the real spacenavd, a gamepad whose
 // records come over a pseudo-terminal, and the tracker of a VRPN server, which is another merlind.
-// That the kernel gives such records for real devices is tested in the virtual machine (tests/vm).
+// Whether the kernel gives such records for real devices is tested in the virtual machine
+// (tests/vm).
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -32,7 +33,7 @@ std::optional<BallSample> ballOf(Merlind& merlind) {
   return devices ? devices->ball()->samples->newest() : std::nullopt;
 }
 
-// spacenavd with a ball at this line, in a folder of its own.
+// A spacenavd process that reads a ball at this line, in a folder of its own.
 class Spacenavd {
  public:
   Spacenavd(const TempDir& dir, const std::string& line) : dir_(dir.path()) {
@@ -65,8 +66,9 @@ TEST(TodaysDevices, ASpaceMouseOfSpacenavdIsTheBallAndComesBackWithIt) {
   options.also = ballOf("spacenav", "unix:" + spacenavd.socket());
   Merlind merlind(dir, "", "mouse", options);
   ASSERT_TRUE(merlind.ready()) << merlind.process().output();
-  // The visitor turns the model now and then. spacenavd gives up on a ball that does not answer in
-  // time, as happens on a busy machine; then the test starts it again, as a service manager would.
+  // The visitor turns the model from time to time. spacenavd gives up on a ball that does not
+  // answer in time, as happens on a busy machine; the test then starts spacenavd again, as a
+  // service manager would.
   const auto turns = [&] {
     for (int attempt = 0; attempt < 6; ++attempt) {
       const auto seen = [&] {
@@ -99,7 +101,7 @@ class Gamepad {
       text += evdevRecord(EvdevRecord::kAxis, code, 0, -32768, 32767);
     text += evdevNamed(EvdevRecord::kKey, BTN_SOUTH, "SOUTH");
     text += evdevRecord(EvdevRecord::kReady);
-    (void)!::write(line_.fd(), text.data(), text.size());  // perhaps nobody has opened the line yet
+    (void)!::write(line_.fd(), text.data(), text.size());  // nobody may have opened the line yet
   }
   void report(const std::string& events) {
     const std::string bytes = events + evdevRecord(EvdevRecord::kReport);
@@ -111,7 +113,7 @@ class Gamepad {
 };
 
 // merlind reopens a line that sends nothing. The test sends the description once after each
-// opening, since bytes sent before are lost from some byte on.
+// opening, since bytes that were sent before are partly lost.
 bool isConnected(Merlind& merlind, Gamepad& pad, const std::string& name = "ball") {
   std::int64_t opened_ns = 0;
   return eventually([&] {
@@ -142,7 +144,8 @@ TEST(TodaysDevices, AGamepadMovesTheModelAndItsButtonsAct) {
   EXPECT_EQ(merlind.wall().moving, 1u);
   pad.report(evdevRecord(EvdevRecord::kMoved, ABS_RX, 0));
   EXPECT_TRUE(eventually([&] { return merlind.wall().moving == 0; }));
-  pad.report(evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 1));  // ball.button.1: reset_view
+  // ball.button.1 is bound to reset_view
+  pad.report(evdevRecord(EvdevRecord::kPressed, BTN_SOUTH, 1));
   EXPECT_TRUE(eventually([&] {
     const auto actions = merlind.actions("ball");
     return actions && actions->sequence == 1;
@@ -190,7 +193,8 @@ MerlindOptions vrpnClient(int port) {
   return options;
 }
 
-// Whether station 1 of the server and station 2 of the client have the same sample.
+// Returns whether the newest sample of the client's station 2 is a sample of the server's station
+// 1.
 bool agree(Merlind& server, Merlind& client) {
   const auto *from = server.devices(), *to = client.devices();
   const auto got = to ? to->tracker()->stations[1]->newest() : std::nullopt;
@@ -234,7 +238,7 @@ TEST(TodaysDevices, ATrackerOfAVrpnServerIsTheTrackerAndComesBackWithIt) {
   EXPECT_EQ(client.health("tracker")->reconnects, 1u);
 }
 
-// A server with an emulated tracker, and a gamepad that the test controls.
+// Options of a server with an emulated tracker, and a gamepad that the test controls.
 MerlindOptions wandServer(int port, const std::string& pad) {
   MerlindOptions options = vrpnServer(port);
   options.also["devices"] = nlohmann::json::array(
@@ -242,7 +246,7 @@ MerlindOptions wandServer(int port, const std::string& pad) {
   return options;
 }
 
-// A client that reads both devices over two connections.
+// Options of a client that reads both devices over two connections.
 MerlindOptions wandClient(int port) {
   const std::string server = fmt::format("tcp://127.0.0.1:{}", port);
   MerlindOptions options;
@@ -260,7 +264,8 @@ TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAn
   const int port = freePort();
   Gamepad pad(dir / "pad");
   Merlind server(dir, "", "server", wandServer(port, dir / "pad"));
-  ASSERT_TRUE(server.ready()) << server.process().output();  // its segment has all names now
+  // the server's segment has all names now
+  ASSERT_TRUE(server.ready()) << server.process().output();
   ASSERT_TRUE(isConnected(server, pad, "pad")) << server.process().output();
   Merlind client(dir, makeModel(dir, 5), "client", wandClient(port));
   ASSERT_TRUE(client.ready()) << client.process().output();
@@ -289,7 +294,7 @@ TEST(TodaysDevices, AWandOfAVrpnServerIsATrackerAndAPadWhoseButtonsActAndWhoseAn
   EXPECT_TRUE(client.healthIs("wand", HealthState::kAbsent));
 }
 
-// The first hand's tracker is not there, so that nothing points unless the wand's own hand does.
+// The tracker of the first hand is missing, so that only the wand's own hand can point.
 TEST(TodaysDevices, AWandOfAVrpnServerPointsWithItsOwnTracker) {
   const TempDir dir;
   const int port = freePort();
@@ -323,7 +328,8 @@ TEST(TodaysDevices, AWandOfAVrpnServerPointsWithItsOwnTracker) {
   EXPECT_TRUE(points(false));
 }
 
-// What `merlin devices --json` says about the VRPN server at this port, with these options besides.
+// Returns what `merlin devices --json` reports about the VRPN server at this port; `options`:
+// further options.
 nlohmann::json vrpnServerAt(int port, std::vector<std::string> options = {}) {
   const std::string host = fmt::format("127.0.0.1:{}", port);
   options.insert(options.begin(), {kMerlin, "devices", "--json", "--vrpn", host});
@@ -351,7 +357,8 @@ TEST(TodaysDevices, AVrpnServersDevicesAreListedWithTheEntryThatMakesThemDevices
   Merlind server(dir, "", "server", vrpnServer(port));
   ASSERT_TRUE(server.ready()) << server.process().output();
   nlohmann::json listed, entry;
-  // The test tries again, since on a busy machine a server may take longer than its half second.
+  // The test repeats this, since on a busy machine a server may take longer than the half second
+  // that it is given.
   ASSERT_TRUE(eventually([&] {
     listed = vrpnServerAt(port);
     entry = entryFor(listed, "Tracker0", "vrpn");
@@ -372,7 +379,7 @@ TEST(TodaysDevices, AVrpnServersDevicesAreListedWithTheEntryThatMakesThemDevices
   }));
   EXPECT_TRUE(entryFor(listed, "Tracker0", "vrpn").is_null()) << "it is configured now";
   EXPECT_FALSE(entryFor(listed, "Ball0", "vrpn_pad").is_null());
-  // The running merlind reports what it reads and which servers to ask.
+  // The running merlind reports which devices it reads and which servers it knows.
   nlohmann::json read_by;
   EXPECT_TRUE(eventually([&] {
     const auto all = nlohmann::json::parse(

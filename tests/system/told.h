@@ -1,4 +1,4 @@
-// The events that the program of an alarm has written into a file.
+// Reads the events that an alarm's program has received and written into a file.
 #pragma once
 
 #include <sstream>
@@ -11,7 +11,7 @@
 
 namespace merlin::test {
 
-// One JSON document for each start of the program.
+// Returns one JSON document for each start of the program, that is, for each line of the file.
 inline std::vector<nlohmann::json> told(const std::string& file) {
   std::vector<nlohmann::json> all;
   std::istringstream lines(readText(file));

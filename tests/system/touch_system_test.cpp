@@ -1,7 +1,7 @@
 // Touch surfaces and a tracker over the network at a real merlind: a touch frame whose records come
 // over a pseudo-terminal, TUIO and OSC packed by Python's standard library, and OSC from liblo's
-// oscsend; also recorded and replayed. That the kernel gives such records for real devices is
-// tested in the virtual machine (tests/vm).
+// oscsend; all also recorded and replayed. Whether the kernel gives such records for real devices
+// is tested in the virtual machine (tests/vm).
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace merlin::test {
 namespace {
 
-// A free port: the system has just assigned it to a socket that is closed again.
+// Returns a UDP port that the system has just assigned to a socket that is closed again.
 std::string freeUdpPort() {
   const UniqueFd probe(::socket(AF_INET, SOCK_DGRAM, 0));
   sockaddr_in address{};
@@ -60,16 +60,16 @@ std::optional<TrackerSample> newestPose(Merlind& merlind, std::size_t station) {
   return devices ? devices->tracker()->stations[station - 1]->newest() : std::nullopt;
 }
 
-// The device's end of the line of a touch frame.
+// The device's end of a touch frame's pseudo-terminal.
 class FrameLine {
  public:
   explicit FrameLine(const std::string& link) : line_(io::PtyMaster::open(link)) {
     EXPECT_TRUE(line_);
   }
   void say(const std::string& bytes) const {
-    (void)!::write(line_->fd(), bytes.data(), bytes.size());  // perhaps nobody has opened it yet
+    (void)!::write(line_->fd(), bytes.data(), bytes.size());  // nobody may have opened the line yet
   }
-  // Sends the description until merlind's device works.
+  // Sends the description repeatedly until merlind's device works.
   bool opens(Merlind& merlind, const std::string& device, const std::string& description) const {
     return eventually([&] {
       say(description);
@@ -152,7 +152,7 @@ TEST(TouchSystem, AMousesWheelMovesTheModelAndItsRightButtonActs) {
   const auto line = io::PtyMaster::open(dir / "mouse");
   ASSERT_TRUE(line);
   const auto say = [&](const std::string& bytes) {
-    (void)!::write(line->fd(), bytes.data(), bytes.size());  // perhaps nobody receives yet
+    (void)!::write(line->fd(), bytes.data(), bytes.size());  // nobody may receive yet
   };
   MerlindOptions options;
   options.emulate = false;

@@ -20,8 +20,8 @@ const std::string kUnits = MERLIN_SOURCE_DIR "/systemd/";
 
 bool installed(const char* program) { return run({"which", program}).status == 0; }
 
-// Copies of the unit, in which the paths of the installed programs are replaced by those of this
-// build, which are always there, and of these of its drop-ins into `dir`. Returns the unit's path.
+// Copies the unit and the given drop-ins into `dir`. In the unit, the paths of installed programs
+// are replaced by those of this build, which always exist. Returns the unit's path.
 std::string localCopy(const TempDir& dir, const std::string& name,
                       const std::vector<std::string>& drop_ins = {}) {
   std::string unit = readText(kUnits + name);
@@ -43,7 +43,7 @@ std::string localCopy(const TempDir& dir, const std::string& name,
   return dir / name;
 }
 
-// Expects that systemd finds no fault in the unit, and nothing to say about these files.
+// Expects that systemd finds no fault in the unit, and reports nothing about these files.
 void expectNoFault(const std::string& unit, const std::vector<std::string>& files) {
   const Outcome verified = run({"systemd-analyze", "verify", "--man=no", unit});
   EXPECT_EQ(verified.status, 0) << verified.output;
@@ -51,7 +51,7 @@ void expectNoFault(const std::string& unit, const std::vector<std::string>& file
     EXPECT_EQ(verified.output.find(file + ":"), std::string::npos) << verified.output;
 }
 
-// Expects that systemd's score of the unit is at most `most` tenths.
+// Expects that systemd's exposure score of the unit is at most `most` tenths.
 void expectExposure(const std::string& unit, int most) {
   const Outcome judged = run({"systemd-analyze", "security", "--offline=true",
                               "--threshold=" + std::to_string(most), unit});
@@ -71,7 +71,7 @@ class Unit : public testing::TestWithParam<const char*> {
 TEST_P(Unit, SystemdFindsNoFault) { expectNoFault(localCopy(dir_, GetParam()), {GetParam()}); }
 
 TEST_P(Unit, IsExposedLittle) {
-  // merlin-rfb listens on the network.
+  // merlin-rfb listens on the network, which raises its score.
   const bool listens = std::string(GetParam()) == "merlin-rfb.service";
   expectExposure(localCopy(dir_, GetParam()), listens ? 16 : 15);
 }
@@ -108,7 +108,8 @@ TEST(DaemonsUnits, SayWhatTheDaemonReliesOn) {
       << "the wall's process is to end first";
 }
 
-// Other people's programs run under this unit, and it has to report faults of the start.
+// Other people's programs run under this unit, and the unit has to report faults that happen at the
+// start.
 TEST(AlarmsUnit, GivesItsProgramsAnErrorAndWaitsForTheNetworkAlone) {
   const std::string unit = readText(kUnits + "merlin-alarms.service");
   EXPECT_NE(unit.find("\nSystemCallErrorNumber=EPERM\n"), std::string::npos)
@@ -125,7 +126,7 @@ void PrintTo(const DropIn& drop_in, std::ostream* out) {
   *out << drop_in.unit << ".d/" << drop_in.name;
 }
 
-// All that are in the repository.
+// Returns all drop-ins in the repository.
 std::vector<DropIn> dropIns() {
   std::vector<DropIn> all;
   for (const auto& folder : fs::directory_iterator(kUnits)) {
@@ -146,12 +147,12 @@ TEST_P(ShippedDropIn, HasNoFaultAndExposesItsUnitNoMoreThanWasMeant) {
   const TempDir dir;
   const std::string copy = localCopy(dir, unit, {name});
   expectNoFault(copy, {unit, name});
-  // Sockets of the network cost 0.9, and mail.conf takes away every filter, as it says itself.
+  // Network sockets add 0.9 to the score, and mail.conf removes every filter, as it says itself.
   expectExposure(copy, name == "mail.conf" ? 82 : name == "network.conf" ? 20 : 15);
 }
 
-// Of each the administrator learns what it is for, and the virtual machine shows that what it
-// allows is allowed with it and forbidden without.
+// For each drop-in, administrators must find a description, and a probe in the virtual machine must
+// show that what the drop-in allows is allowed with it and forbidden without it.
 TEST_P(ShippedDropIn, IsDescribedAndTried) {
   const auto& [unit, name] = GetParam();
   const std::string service = unit.substr(0, unit.find('.'));
@@ -169,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(DropIns, ShippedDropIn, testing::ValuesIn(dropIns()), [
   return name;
 });
 
-// An administrator may need all of them.
+// An administrator may need all drop-ins of a unit at once.
 TEST(AllDropInsOfAUnit, HaveNoFaultTogether) {
   if (!installed("systemd-analyze")) GTEST_SKIP() << "systemd is not installed";
   std::map<std::string, std::vector<std::string>> names;

@@ -1,4 +1,5 @@
-// merlin-rfb with real VNC clients: what they see, what they may do, and how far hostile ones get.
+// merlin-rfb with real VNC clients: what they see, what they may do, and how little hostile ones
+// achieve.
 #include <charconv>
 #include <memory>
 #include <sstream>
@@ -70,7 +71,7 @@ class RfbTest : public testing::Test {
     EXPECT_TRUE(wall->ready()) << wall->process().output();
     return wall;
   }
-  // The picture of `merlin snapshot`, once the wall shows full detail.
+  // Returns the picture of `merlin snapshot`, once the wall shows full detail.
   Image snapshot(Merlind& wall, bool whole_frame = false) {
     EXPECT_TRUE(eventually([&] { return wall.wall().full_detail == 1; }));
     Arguments command = {kMerlin, "snapshot", "--instance", wall.instance(), "-o", dir_ / "s.png"};
@@ -234,7 +235,7 @@ void sendBytes(const UniqueFd& fd, const std::string& bytes) {
   (void)!::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-// A handshake of RFB 3.8 without a password, then `count` requests for the whole picture.
+// Returns a handshake of RFB 3.8 without a password, then `count` requests for the whole picture.
 std::string requests(int count) {
   std::string all = "RFB 003.008\n\x01\x01";
   for (int i = 0; i < count; ++i)
@@ -242,16 +243,16 @@ std::string requests(int count) {
   return all;
 }
 
-// A picture takes 3.7 MB, a frame 4.9 MB, and the library some more. The address sanitizer keeps
-// freed memory.
+// A picture takes 3.7 MB, a frame 4.9 MB, and the library some more. The address sanitizer also
+// keeps freed memory.
 #if defined(MERLIN_ANY_SANITIZER)
 constexpr std::size_t kMostMemory_kb = 1'000'000;
 #else
 constexpr std::size_t kMostMemory_kb = 50'000;
 #endif
 
-// While several clients misbehave in different ways, one that behaves sees every change, and no
-// process grows.
+// While several clients misbehave in different ways, a well-behaved client sees every change, and
+// no process grows.
 TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
   const auto wall = start("visit");
   Rfb rfb(wall->instance(), {"--clients", "6", "--allow-input"});
@@ -272,7 +273,8 @@ TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
     for (const Rfb::Child& child : rfb.children()) EXPECT_LT(child.memory_kb, kMostMemory_kb);
     return seen;
   };
-  // One frame, since a busy machine may need longer for ten than the server waits for the other.
+  // Only one frame is awaited: on a busy machine, ten may take longer than the server's patience
+  // with the client that never reads.
   const int before = good.updates();
   EXPECT_TRUE(good.until([&] { return good.updates() > before && rfb.children().size() == 2; }))
       << "the other one only went on after it was disconnected";
@@ -280,7 +282,7 @@ TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
   join(std::string(100'000, '\xFF'));
   join("GET / HTTP/1.1\r\n\r\n");
   join("RFB 003.008\n\x01\x01" + std::string(100'000, '\xA5'));
-  // a clipboard of 4 GiB, a file transfer, encodings without end
+  // These clients announce a clipboard of 4 GiB, a file transfer, and far too many encodings.
   join(requests(0) + std::string("\x06\x00\x00\x00\xFF\xFF\xFF\xFF", 8));
   join(requests(0) + std::string("\x07\x03\x00\x00\x00\x00\x00\x00\x00\x00\x00\x01/", 13));
   join(requests(0) + std::string("\x02\x00\xFF\xFF", 4) + std::string(70'000, '\x01'));
@@ -289,7 +291,7 @@ TEST_F(RfbTest, HostileClientsDisturbNobodyElse) {
   EXPECT_TRUE(sees(10)) << "half handshakes";
   EXPECT_LE(rfb.children().size(), 6U);
 
-  // The client that never reads is disconnected, and all places are free for others.
+  // By then the client that never reads is disconnected, and all places are free for others.
   const auto left = [&] { return rfb.children().size() == 1; };
   EXPECT_TRUE(good.until(left)) << rfb.process().output();
   hostile.clear();

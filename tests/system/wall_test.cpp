@@ -1,4 +1,5 @@
-// The whole system: real merlind, real emulators on ptys, real ZeroMQ, real EGL.
+// The whole system: a real merlind, with real emulators on pseudo-terminals, real ZeroMQ and real
+// EGL.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -90,7 +91,7 @@ TEST_F(Wall, AFistWithTheTrackerGrabs) {
   EXPECT_TRUE(eventually([&] { return m.wall().grabbed == 0; }));
 }
 
-// The emulated person makes a fist and opens it in turn.
+// The emulated person makes a fist and opens it repeatedly.
 TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
   const std::string folder = *dir_ / "taken";
   const nlohmann::json bindings = {
@@ -115,7 +116,8 @@ TEST_F(Wall, AFistPointsAndItsEndTakesASnapshot) {
   EXPECT_GE(m.status()["snapshots"], 1);
 }
 
-// Expects that samples have come since `from`, and that none of the newest ones is missing.
+// Expects that samples have arrived since number `from`, and that none of the newest 200 is
+// missing.
 template <typename T>
 void expectContiguous(const shm::Channel<T>& channel, std::uint64_t from, const char* what) {
   const std::uint64_t to = channel.count();
@@ -143,7 +145,7 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
   std::vector<std::unique_ptr<Process>> restarted;
 
   for (const auto& victim : kDevices) {
-    // The status document is updated only now and then, the shared memory at once.
+    // The status document is updated only from time to time, the shared memory at once.
     const auto status_says = [&](const char* health) {
       return m.status()["devices"][victim.name]["health"] == health;
     };
@@ -162,8 +164,8 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
                                  *dir_ / fmt::format("{}-{}.pty", m.instance(), victim.name)}));
     EXPECT_TRUE(m.healthIs(victim.name, HealthState::kOk)) << victim.name;
     EXPECT_TRUE(eventually([&] { return status_says("ok"); })) << victim.name;
-    // At least once: on a busy machine, a new emulator's first record may come too late and cause
-    // another one.
+    // There may be more reconnects: on a busy machine, the first record of a new emulator may come
+    // too late and cause another one.
     EXPECT_GE(m.health(victim.name)->reconnects, 1u);
     EXPECT_GT(m.wall().updated_ns, drawn) << "the wall never stops";
 
@@ -175,7 +177,7 @@ TEST_F(Wall, EachDeviceMayDieAndComeBackWithoutTheOthersNoticing) {
   EXPECT_EQ(m.process().kill(SIGTERM), 0);
 }
 
-// The outputs get black, so a snapshot shows black too.
+// The outputs are black, so a snapshot is black too.
 TEST_F(Wall, BlankMakesEverythingBlackUntilSomebodyMovesIt) {
   Merlind m(*dir_, model_, "blank", {.script = "still"});
   ASSERT_TRUE(m.ready()) << m.process().output();
@@ -235,7 +237,7 @@ TEST_F(Wall, SharedMemoryIsReadByItsDumpAndByPython) {
     fields = dump["/" + m.instance() + "-devices"];
     return fields["glove.health.state"]["value"] == 2;
   };
-  // On a busy machine, the emulated glove may be silent for too long just now.
+  // On a busy machine, the emulated glove may be silent for too long at this moment.
   EXPECT_TRUE(eventually(dumped)) << fields["glove.health.state"];
   EXPECT_EQ(fields["glove.angle_rad"]["value"].size(), 23u);
   EXPECT_EQ(fields["glove.angle_rad"]["unit"], "rad");
@@ -255,7 +257,7 @@ TEST_F(Wall, TheTwoRolesRunAsTwoProcesses) {
   EXPECT_TRUE(eventually([&] { return wall.wall().moving == 1 && wall.wall().frames > 20; }))
       << "the ball is twisted";
   EXPECT_EQ(devices.status()["roles"].size(), 2u);
-  // The wall goes on without the devices' process, and finds the next one.
+  // The wall goes on without the devices' process, and connects to the next one.
   EXPECT_EQ(devices.process().kill(SIGKILL), 128 + SIGKILL);
   EXPECT_TRUE(eventually([&] { return wall.wall().moving == 0; }));
   Merlind again(*dir_, model_, "roles", {.script = "turning", .role = "devices"});

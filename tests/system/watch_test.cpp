@@ -11,7 +11,7 @@ namespace {
 class Watch : public testing::Test {
  protected:
   void start() {
-    daemon_.reset();  // frees the daemon's addresses
+    daemon_.reset();  // frees the daemon's addresses before the next start
     daemon_ =
         std::make_unique<Merlind>(dir_, model_, "watched", MerlindOptions{.script = "turning"});
     ASSERT_TRUE(daemon_->ready()) << daemon_->process().output();
@@ -83,7 +83,7 @@ TEST_F(Watch, SaysThatARoleWasKilled) {
 
 TEST_F(Watch, LinesStayWhereTheyAreAskedForOrTheTerminalCannotPlaceText) {
   start();
-  // A status document comes once a second, and later on a busy machine.
+  // A status document is published once a second, on a busy machine less often.
   const std::vector<std::string> words = {kMerlin, "watch",      "--for",
                                           "8",     "--instance", daemon_->instance()};
   auto lines = words, json = words;

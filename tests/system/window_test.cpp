@@ -22,7 +22,7 @@ constexpr int kWidth = 320, kHeight = 240;  // of a tile; the frame has two by t
 
 class WindowOutput : public testing::Test {
  protected:
-  // A wall with one window, 640 x 480, at the screen's upper left corner.
+  // Shows a wall with one window of 640 x 480 pixels at the screen's upper left corner.
   void show(const json& window = json::object(), const std::string& script = "still",
             std::map<std::string, std::string> environment = {}) {
     json settings = {{"x", 0}, {"y", 0}, {"title", "wall"}};
@@ -62,7 +62,7 @@ class WindowOutput : public testing::Test {
     return eventually([&] { return output("window").value("health", "") == "ok"; });
   }
   // Waits until the window's upper left corner shows the frame's background. The output's health
-  // alone does not tell, since it is "ok" before the window is open.
+  // alone is not enough, since it is "ok" before the window is open.
   bool isThere() {
     return eventually([&] {
       const Image screen = x_.screenshot();
@@ -74,7 +74,7 @@ class WindowOutput : public testing::Test {
     return eventually(
         [&] { return output("window").value("reason", "").find(why) != std::string::npos; });
   }
-  // Whether the wall goes on drawing and its other output works.
+  // Returns whether the wall goes on drawing and its other output works.
   bool wallGoesOn() {
     const auto before = wall_->wall().frames;
     return eventually([&] { return wall_->wall().frames > before + 5; }) &&
@@ -92,7 +92,7 @@ class WindowOutput : public testing::Test {
     }
     return image;
   }
-  // The part of the screen at (x, y) with the size of the frame.
+  // Returns the part of the screen at (x, y) with the size of the frame.
   Image shownAt(int x, int y) const {
     const Image screen = x_.screenshot();
     Image part{2 * kWidth, 2 * kHeight, {}};
@@ -159,7 +159,7 @@ TEST_F(WindowOutput, TheWallGoesOnWithoutItsXServerAndTheWindowComesBackWithIt) 
   EXPECT_TRUE(isThere());
 }
 
-// The output's health is reported though no frame is drawn. When the display is back, the window
+// The output's health is reported although no frame is drawn. When the display is back, the window
 // shows the last frame.
 TEST_F(WindowOutput, AWallAtRestTellsAsWell) {
   show();
@@ -245,7 +245,7 @@ TEST_F(WindowOutput, KeysAreCommandsUnlessTheyAreOff) {
   show({{"input", false}});
   ASSERT_TRUE(isThere());
   x_.key("wall", XK_m);
-  x_.close("wall");  // the key's effect is complete before the event that follows it
+  x_.close("wall");  // the key takes effect before the next event is handled
   ASSERT_TRUE(saysWhy("a person closed"));
   EXPECT_EQ(mode(), before);
 }
@@ -277,8 +277,8 @@ TEST_F(WindowOutput, TheMouseWorksTheOperatorsPanel) {
     x_.drag(1, {640 + panel->at.x + r.x + r.width / 2, 480 + panel->at.y + r.y + r.height / 2}, {});
   };
   const double before = asked();
-  // A press that the daemon has not received for 1.5 s is released without a click, so a busy
-  // machine may need two.
+  // merlind releases a press that it has not received for 1.5 s without a click, so a busy machine
+  // may need two presses.
   for (int tries = 0; tries < 3 && asked() == before; ++tries) {
     click(render::panel::ControlId::kRateLess);
     (void)eventually([&] { return asked() < before; }, std::chrono::seconds(10));
@@ -287,7 +287,7 @@ TEST_F(WindowOutput, TheMouseWorksTheOperatorsPanel) {
   EXPECT_EQ(wall_->wall().moving, 0) << "the model is not dragged";
 }
 
-// As in a build without SDL2: the program is not in the folder of merlind.
+// As in a build without SDL2, the window program is not in merlind's folder.
 TEST_F(WindowOutput, TheCheckOfAConfigurationSaysThatItIsNotBuilt) {
   std::filesystem::copy_file(kMerlind, dir_ / "merlind");
   const std::string config = dir_ / "wall.json";

@@ -1,9 +1,9 @@
-// draw_display CARD CONNECTOR FOLDER: the way of a signal without a copy, for the tests in the
-// virtual machine: a shader's render target is the memory that a display shows. In place of a GPU,
-// Mesa's software renderer draws, which can use the card's memory when its EGL display is the
-// card's own (platform GBM); merlind takes no such display. Shows one picture after another, says
-// what it found of each, writes to FOLDER/N.ppm what the display has to show, and goes on at each
-// line of its input.
+// draw_display CARD CONNECTOR FOLDER: draws signals into a display's memory without a copy, for the
+// tests in the virtual machine: a shader's render target is the memory that the display shows.
+// Mesa's software renderer takes the place of a GPU. It can use the card's memory when its EGL
+// display is the card's own (platform GBM); merlind does not use such an EGL display. Shows one
+// picture after another, prints what it found of each, writes the picture that the display has to
+// show to FOLDER/N.ppm, and goes on at each line of its input.
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -36,10 +36,12 @@
 namespace merlin {
 namespace {
 
-constexpr int kWidth = 600, kHeight = 440;          // of the picture
-constexpr int kModeWidth = 640, kModeHeight = 480;  // of the display: black around the picture
+constexpr int kWidth = 600, kHeight = 440;  // size of the picture
+// size of the display, which is black around the picture
+constexpr int kModeWidth = 640, kModeHeight = 480;
 constexpr int kFrames = 6;
-constexpr const char* kRenderNode = "/dev/dri/renderD128";  // of the machine's only card
+// render node of the machine's only card
+constexpr const char* kRenderNode = "/dev/dri/renderD128";
 
 template <typename T>
 T orFail(Result<T> result, const char* step) {
@@ -110,7 +112,7 @@ render::correct::CorrectionMap corrected() {
   return render::correct::makeCorrectionMap(s, kWidth, kHeight, nullptr, 1);
 }
 
-// Another one for each `n`.
+// Returns picture number `n`; each number gives another picture.
 std::vector<std::uint8_t> picture(int n) {
   std::vector<std::uint8_t> pixels;
   for (int y = 0; y < kHeight; ++y) {
@@ -123,7 +125,7 @@ std::vector<std::uint8_t> picture(int n) {
   return pixels;
 }
 
-// The signal in the middle of a black picture of the display's size.
+// Writes the signal, in the middle of a black picture of the display's size, as a PPM file.
 void write(const std::string& path, const render::out::Signal& signal) {
   std::vector<char> rgb(std::size_t{3} * kModeWidth * kModeHeight);
   for (int y = 0; y < kHeight; ++y) {
@@ -169,7 +171,8 @@ int run(const std::string& card, const std::string& connector, const std::string
     const auto shown =
         displays.present(0, signal.drawn ? std::span<const std::uint8_t>() : signal.pixels,
                          static_cast<std::uint64_t>(n) + 1);
-    bool same = false;  // the emulated machine may need several steps until the display has it
+    // the emulated machine may need several steps until the display shows the picture
+    bool same = false;
     for (int i = 0; i < 200 && !same; ++i) {
       displays.step(std::chrono::milliseconds(50));
       const auto read = displays.readBack(0);

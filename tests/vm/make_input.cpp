@@ -1,7 +1,7 @@
-// make_input KIND: makes an input device of the kernel by uinput, for the tests in the virtual
-// machine: a gamepad with two sticks and two buttons, a touch frame with ten slots, or a mouse.
-// Prints the path of its file. Then each line of its input becomes a report: several "TYPE CODE
-// VALUE" in numbers of linux/input-event-codes.h. The device is unplugged when the input ends, or
+// make_input KIND: makes a kernel input device by uinput, for the tests in the virtual machine: a
+// gamepad with two sticks and two buttons, a touch frame with ten slots, or a mouse. Prints the
+// path of the device's file. Then each line of its input becomes a report: several "TYPE CODE
+// VALUE", as numbers of linux/input-event-codes.h. The device is unplugged when the input ends, or
 // by a signal.
 #include <cstdio>
 #include <cstdlib>

@@ -81,7 +81,7 @@ std::span<std::uint8_t> map(int card, std::uint32_t handle, std::size_t size) {
   return {static_cast<std::uint8_t*>(at), size};
 }
 
-// The memory of the buffer that the CRTC shows.
+// Returns the memory of the buffer that the CRTC shows.
 std::span<std::uint8_t> shownBy(int card, std::uint32_t crtc) {
   drmModeCrtc* const found = drmModeGetCrtc(card, crtc);
   if (!found || found->buffer_id == 0) fail("the buffer that is shown");

@@ -1,7 +1,7 @@
-// take_display CARD [PID]: a program that takes the displays, for the tests in the virtual machine.
-// It becomes DRM master, paints every connected display in one colour, and keeps them until
-// SIGTERM. With PID it first takes them from that process, as logind does when the session changes:
-// with a copy of the process's descriptor.
+// take_display CARD [PID]: a program that takes over the displays, for the tests in the virtual
+// machine. It becomes DRM master, paints every connected display in one colour, and keeps the
+// displays until SIGTERM. With PID, it first takes DRM master from that process, by a copy of the
+// process's descriptor, as logind does when the session changes.
 #include <cerrno>
 #include <csignal>
 #include <cstdio>

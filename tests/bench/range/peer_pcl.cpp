@@ -1,10 +1,10 @@
-// The steps from an organised cloud to a mesh with the Point Cloud Library, for ./dev bench range:
+// Turns an organised cloud into a mesh with the Point Cloud Library, for ./dev bench range:
 //
 //   range_peer_pcl IN.pcd OUT.ply MOST_EDGE ROUNDS
 //
-// reads, median-filters, triangulates and writes so many times, and prints the medians of the steps
-// as one JSON object [ms]. It has no filter for spikes and computes no normals, so it does less.
-// Why it is the only peer: render/range/README.md.
+// reads, median-filters, triangulates and writes ROUNDS times, and prints the medians of the steps
+// as one JSON object [ms]. It has no filter for spikes and computes no normals, so it does less
+// than MERLIN. render/range/README.md says why it is the only peer.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

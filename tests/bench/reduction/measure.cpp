@@ -10,7 +10,7 @@
 namespace merlin::bench {
 namespace {
 
-// The value of a line "KEY:   1234 kB" in /proc/self/status, in bytes.
+// Returns the value of a line "KEY:   1234 kB" in /proc/self/status, in bytes.
 std::size_t statusBytes(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -19,8 +19,8 @@ std::size_t statusBytes(const std::string& key) {
   return 0;
 }
 
-// Resets the kernel's peak of this process; getrusage()'s peak would include the loading of the
-// file.
+// Resets the kernel's peak of this process's memory; the peak from getrusage() would include the
+// loading of the file.
 void forgetPeak() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 double cpuSeconds() {

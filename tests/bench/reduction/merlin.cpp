@@ -4,9 +4,10 @@
 //   bench_merlin COST THREADS WEIGHTS IN.ply OUT TRIANGLES...
 //
 // The second form reduces as far as possible, since the whole hierarchy is MERLIN's product, and
-// writes OUT.mrm and, for each number of triangles N, OUT.N.ply. COST may be "fast": the cost
-// quadric with ReduceSettings::fast. WEIGHTS is "default" or NAME=W,NAME=W, which override the
+// writes OUT.mrm and, for each number N in TRIANGLES, OUT.N.ply. COST may be "fast": the cost
+// quadric with ReduceSettings::fast. WEIGHTS is "default" or NAME=W,NAME=W, which overrides the
 // defaults. Each step is measured separately: normals, reduce (which records every collapse),
+// dendrogram, write.
 // dendrogram, write.
 #include <cstdlib>
 #include <optional>

@@ -1,5 +1,5 @@
-// CGAL: edge collapse with the cost of Lindstrom and Turk (its default) and that of Garland and
-// Heckbert, as in CGAL's own examples. Supports manifold meshes only, without colours.
+// CGAL as a peer: edge collapse with the cost of Lindstrom and Turk (CGAL's default) and that of
+// Garland and Heckbert, as in CGAL's own examples. Supports manifold meshes only, without colours.
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
@@ -17,7 +17,8 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// CGAL's own stop predicates count edges; all programs here stop at the same number of triangles.
+// CGAL's own stop predicates count edges, whereas all programs here stop at the same number of
+// triangles.
 struct StopAtTriangles {
   std::size_t triangles;
   template <typename Cost, typename Profile>

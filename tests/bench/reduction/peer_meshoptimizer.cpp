@@ -1,5 +1,5 @@
-// meshoptimizer: plain simplify, which keeps a subset of the vertices; from version 1 on also the
-// attribute mode, which moves vertices and fits their colours anew.
+// meshoptimizer as a peer: plain simplify, which keeps a subset of the vertices. From version 1 on
+// also the attribute mode, which moves vertices and fits their colours anew.
 #include <limits>
 
 #include <fmt/format.h>
@@ -40,7 +40,8 @@ class WithColour : public Peer {
   explicit WithColour(Mesh mesh) : mesh_(std::move(mesh)) {}
 
   void reduce(std::size_t triangles) override {
-    const float weights[] = {0.5F, 0.5F, 0.5F};  // the best weights of those tried on range images
+    // the best of the weights that were tried on range images
+    const float weights[] = {0.5F, 0.5F, 0.5F};
     auto& colours = mesh_.find("colour")->values;
     mesh_.triangles.resize(meshopt_simplifyWithUpdate(
         mesh_.triangles.data(), mesh_.triangles.size(), mesh_.positions.data(), mesh_.vertexCount(),

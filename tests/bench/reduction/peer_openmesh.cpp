@@ -1,5 +1,5 @@
-// OpenMesh: its decimater with the quadric module only. It collapses half-edges, so the result is a
-// subset of the vertices with their colours.
+// OpenMesh as a peer: its decimater with the quadric module only. It collapses half-edges, so the
+// result has a subset of the vertices with their colours.
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/config.h>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>

@@ -1,4 +1,4 @@
-// VTK: vtkQuadricDecimation by position, and with its attribute error metric for colours.
+// VTK as a peer: vtkQuadricDecimation by position, and with its attribute error metric for colours.
 #include <array>
 #include <cstdlib>
 #include <string_view>
@@ -22,7 +22,8 @@ template <typename T>
 using Pointer = vtkSmartPointer<T>;
 
 // VTK's attribute quadrics treat small triangles as singular, by an absolute threshold, and weigh
-// attributes in absolute units. So the mesh is scaled to a fixed size, and back afterwards.
+// attributes in absolute units. The mesh is therefore scaled to this diagonal, and scaled back
+// afterwards.
 constexpr double kDiagonal = 1000;
 
 double scaleOf(const render::mesh::Mesh& mesh) {
@@ -110,7 +111,7 @@ class VtkPeer : public Peer {
   double scale_;
 };
 
-// The prefix of a variant; the weight follows it, as a share of the diagonal.
+// The prefix of a variant; after it comes the weight of colours, as a share of the diagonal.
 constexpr std::string_view kColour = "colour=";
 
 Result<std::unique_ptr<Peer>> make(render::mesh::Mesh mesh, const std::string& variant) {

@@ -36,8 +36,8 @@ class Groups {
 
 // A half-edge: an edge as a side of one triangle.
 struct Side {
-  std::uint32_t low, high;  // its vertices
-  std::size_t from, to;     // its corners: 3 * triangle + 0..2
+  std::uint32_t low, high;  // indices of its vertices
+  std::size_t from, to;     // indices of its corners: 3 * triangle + 0..2
 
   bool sameEdge(const Side& o) const { return low == o.low && high == o.high; }
 };
@@ -88,7 +88,7 @@ std::size_t splitManifold(Mesh& mesh) {
   forEachEdge(sortedSides(mesh), [&](auto first, auto last) {
     if (last - first != 2) return;
     const Side &a = first[0], &b = first[1];
-    // Both triangles use the same direction.
+    // Both triangles traverse the edge in the same direction, so they belong to different fans.
     if (mesh.triangles[a.from] != mesh.triangles[b.to]) return;
     fans.join(a.from, b.to);
     fans.join(a.to, b.from);

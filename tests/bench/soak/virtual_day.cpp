@@ -16,7 +16,7 @@ constexpr std::array<float, 6> kRest{}, kSpin = {0, 0, 0, 0.1F, 0.6F, 0},
                                         kPush = {0, 0, -0.7F, 0, 0, 0},
                                         kTumble = {0, 0, 0, 0.5F, 0.3F, 0.2F};
 constexpr emulate::HandPlace kFar{{0.9F, 0.3F, 0.1F}, 0.8};
-// The first phase is that of everybody who is not there.
+// The first phase is that of a person who is absent.
 constexpr emulate::Phase kPhases[] = {
     {1, "open", kRest, 0, false},      {1, "open", kSpin, 0, true},
     {1, "point", kPush, 0, false},     {1, "fist", kRest, 0, true},
@@ -24,7 +24,7 @@ constexpr emulate::Phase kPhases[] = {
     {1, "thumb-up", kSpin, 0, false},  {1, "open", kRest, 1, false},
     {1, "victory", kRest, 0, true},    {1, "pinch", kTumble, 0, false},
     {1, "open", kRest, 2, false},      {1, "hook", kPush, 0, true, kFar}};
-// Visits in an hour, by the hour of the day.
+// Number of visits in an hour, by the hour of the day.
 constexpr std::array<double, 24> kVisits = {0, 0, 0, 0, 0, 0, 0, 0, 2, 4, 6, 6,
                                             2, 4, 6, 6, 5, 3, 2, 1, 1, 0, 0, 0};
 
@@ -158,7 +158,7 @@ void VirtualDay::mainThread(const std::stop_token& stop) {
   }
 }
 
-// Called once a second.
+// Does the periodic work of merlind's main thread; called once a second.
 void VirtualDay::tend(Timestamp now) {
   std::string happened;
   const auto look = [&happened](const Result<std::string>& mended) {
@@ -214,7 +214,7 @@ void VirtualDay::judge(const page::LoggedEvent& event) {
     ++e.count;
     found = e.fault;
   }
-  // The names of flight recordings contain the time of day, so they are left out.
+  // The names of flight recordings contain the time of day, so they are not part of the digest.
   mix(counts_.digest, fmt::format("{} {} {}", toNanoseconds(now), event.kind,
                                   event.kind == kFlightEvent.name ? "" : event.what));
   if (found.empty()) {

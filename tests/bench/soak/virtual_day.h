@@ -1,6 +1,6 @@
 // A lab's day on virtual time: people who come and go, faults, reloads; and merlind's main thread,
 // which writes heartbeats, repairs shared memory, and publishes events, status and alarms. Each
-// fault says which events it explains.
+// simulated fault declares which events it explains.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +27,12 @@
 
 namespace merlin::bench {
 
-// The present activity of each person, as the number of a phase of the emulators' script.
+// What each person does at present, as the number of a phase of the emulators' motion script.
 struct Persons {
   std::size_t first = 0, guest = 0;
 };
 
-// The script of a person. `held`: the member of Persons with the phase.
+// Returns the motion script of a person. `held`: the member of Persons that has the person's phase.
 const emulate::MotionScript& scriptOf(const std::size_t& held);
 
 // The storage of the state file, whose disk can be full.
@@ -54,7 +54,7 @@ class VirtualDisk final : public state::StateFiles {
 struct DayCounts {
   std::uint64_t visits = 0, faults = 0, reloads = 0, alarms = 0, documents = 0;
   std::map<std::string, std::map<std::string, std::uint64_t>>
-      events;                      // by kind and what explains it
+      events;                      // number of events by their kind, then by what explains them
   std::vector<std::string> wrong;  // unexplained or missing events, wrong answers to reloads
   std::uint64_t digest = 0xcbf29ce484222325;  // hash of all events and their times
 };
@@ -63,9 +63,9 @@ struct DayCounts {
 class VirtualDay {
  public:
   struct Parts {
-    nlohmann::json configuration;  // from which the settings were read
-    std::string folder;            // its paths are relative to
-    Settings& settings;            // in effect; changed by reloads
+    nlohmann::json configuration;  // configuration from which the settings were read
+    std::string folder;            // folder to which the configuration's paths are relative
+    Settings& settings;            // settings in effect; reloads change them
     Fibers& fibers;
     VirtualClock& clock;
     VirtualDevices& devices;
@@ -74,13 +74,13 @@ class VirtualDay {
   };
   VirtualDay(const Parts& parts, std::uint64_t seed);
 
-  // Starts the fibers of people, faults and merlind's main thread. Faults end before `end`.
+  // Starts the fibers of people, faults and merlind's main thread. All faults end before `end`.
   void start(const std::stop_token& stop, Timestamp end);
 
   const DayCounts& counts() const { return counts_; }
-  // Whether the renderer is slow on purpose now, or was a moment ago.
+  // Returns whether the renderer is slow on purpose now, or was a moment ago.
   bool isSlow() const { return parts_.clock.now() < slow_until_; }
-  // The events that had to come and did not; to be called at the end.
+  // Returns the events that were expected and did not come; to be called at the end of the day.
   std::vector<std::string> untold() const;
 
  private:

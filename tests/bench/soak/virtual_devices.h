@@ -1,5 +1,6 @@
-// Emulated devices on virtual lines, and what merlind's role devices does with them, except for its
-// threads: loops, drivers, chains, flight recorder and shared memory are the product's.
+// Emulated devices on virtual lines, and what merlind's role devices does with them. Except for the
+// threads, everything is the product's own code: loops, drivers, chains, flight recorder and shared
+// memory.
 #pragma once
 
 #include <memory>
@@ -16,18 +17,18 @@
 
 namespace merlin::bench {
 
-// A device at the end of a line, and what can happen to both. Thread-bound.
+// A device at the end of a line, and the faults that the script causes at both. Thread-bound.
 class VirtualLine {
  public:
   using Maker = std::function<std::unique_ptr<emulate::Emulator>(Timestamp start)>;
   VirtualLine(Fibers& fibers, Maker make) : fibers_(fibers), make_(std::move(make)) { power(true); }
 
-  // Opens the port. Errors: kClosed (unplugged).
+  // Opens the port. Errors: kClosed while unplugged.
   Result<std::unique_ptr<ByteStream>> open();
 
-  // Plugs the adapter in or out. When it is plugged out, open streams are closed.
+  // Plugs the adapter in, or unplugs it, which closes open streams.
   void plug(bool in);
-  // Switches the device off, or on again, after which it starts anew; the line stays.
+  // Switches the device off, or on again; it then starts anew. The line remains plugged in.
   void power(bool on) { emulator_ = on ? make_(fibers_.now()) : nullptr; }
   // Inserts bytes that no device has sent, as a bad contact does.
   void disturb(const std::string& bytes) { input_ += bytes; }
@@ -38,7 +39,8 @@ class VirtualLine {
   Maker make_;
   std::unique_ptr<emulate::Emulator> emulator_;  // null: switched off
   std::string input_;
-  std::uint64_t plugged_ = 1;  // odd: plugged in; a stream is valid for one number
+  // incremented at each change; odd while plugged in. A stream is valid for one value.
+  std::uint64_t plugged_ = 1;
 };
 
 // The devices of merlind's role devices. Thread-bound.
@@ -48,13 +50,15 @@ class VirtualDevices {
     std::string name;
     std::unique_ptr<VirtualLine> line;
   };
-  // `lines`: one for each device of the settings. Ends the benchmark if merlind would not start.
+  // `lines`: one for each device of the settings. Ends the benchmark if merlind would not start
+  // with these settings.
   VirtualDevices(const Settings& settings, std::vector<Line> lines, Fibers& fibers, Clock& clock);
 
   // Starts a fiber for each device.
   void start(const std::stop_token& stop);
 
-  // Does what merlind's role does on a reload, except for changes of lines.
+  // Applies a reload as merlind's role devices does, except for changes of lines; each flag says
+  // whether that part of the settings changed.
   void reload(const Settings& settings, bool bindings, bool hand, bool postures);
 
   VirtualLine& line(std::size_t device) { return *lines_[device].line; }
@@ -63,7 +67,7 @@ class VirtualDevices {
   shm::SegmentWriter<shm::DevicesSegment>& segment() { return *segment_; }
   const shm::DeviceSlots& slots() const { return *slots_; }
   devices::FlightRecorder& flight() { return *flight_; }
-  // Number of samples of all devices so far.
+  // Returns the number of samples of all devices so far.
   std::uint64_t samples() const;
 
  private:

@@ -50,11 +50,11 @@ void VirtualDay::switchDeviceOff() {
   const std::size_t device = below(parts_.devices.count());
   explainDevice("device switched off", device);
   parts_.devices.line(device).power(false);
-  (void)sleep(between(12, 60));  // long, since a ball at rest is silent for seconds too
+  (void)sleep(between(12, 60));  // long, since even a working ball at rest is silent for seconds
   parts_.devices.line(device).power(true);
 }
 
-// The disturbance may be too short for the driver to give the device up.
+// Inserts a disturbance, which may be too short to make the driver reconnect.
 void VirtualDay::disturbLine() {
   const std::size_t device = below(parts_.devices.count());
   const std::string& name = parts_.devices.name(device);
@@ -84,7 +84,8 @@ void VirtualDay::fillDisk() {
   (void)sleep(between(3, 30));
   disk_->full = false;
   change();
-  // The keeper's thread runs in real time, so virtual time stands still until it has saved.
+  // The state keeper's thread runs in real time, so virtual time stands still until it has saved
+  // the state.
   SystemClock system;
   for (int i = 0; !keeper_.fault().empty() && i < 5000; ++i)
     (void)system.sleepUntil(system.now() + std::chrono::milliseconds(1), {});
@@ -102,7 +103,7 @@ void VirtualDay::slowRenderer() {
 void VirtualDay::unplugOutput() {
   explain("output unplugged", "wall", "^output shared failed: the display was unplugged", true);
   explain("output unplugged", "wall", "^output shared works again", true);
-  // The output no longer shows what it should, so the picture checks may report that too.
+  // The unplugged output does not show what it should, so the picture checks may report that too.
   explain("output unplugged", "picture", "^output shared ");
   parts_.wall.faults().unplugged = true;
   (void)sleep(between(3, 25));
@@ -144,7 +145,7 @@ void VirtualDay::reloadBadly() {
   if (!reload(json::object())) counts_.wrong.emplace_back("a good reload was refused");
 }
 
-// Does what merlind's Reloader does, but without its thread.
+// Does what merlind's Reloader does, but without the Reloader's thread.
 bool VirtualDay::reload(const json& patch) {
   ++counts_.reloads;
   json changed = parts_.configuration;

@@ -16,19 +16,19 @@ constexpr std::size_t kStack = std::size_t{1} << 20;
 struct Fibers::Fiber {
   ucontext_t context{};
   std::function<void()> body;
-  std::unique_ptr<std::byte[]> stack;  // not initialised, so only the used part takes memory
+  std::unique_ptr<std::byte[]> stack;  // not initialised, so only the used part occupies memory
   bool returned = false;
 };
 
 Fibers::Fibers() : main_(std::make_unique<Fiber>()) {}
 Fibers::~Fibers() { assert(waiting_.empty()); }
 
-// makecontext() passes integers only: the two halves of a pointer.
+// makecontext() passes integers only, so the pointer is passed as two halves.
 void Fibers::enter(unsigned high, unsigned low) {
   auto* const fiber = reinterpret_cast<Fiber*>(std::uintptr_t{high} << 32 | std::uintptr_t{low});
   fiber->body();
   fiber->returned = true;
-  // The fiber's context continues with the main context.
+  // When this function returns, the main context continues.
 }
 
 void Fibers::start(std::function<void()> body) {
@@ -63,7 +63,7 @@ void Fibers::runUntil(Timestamp end) {
 
 void Fibers::waitUntil(Timestamp when) {
   assert(current_);
-  // Most waits end before those of all other fibers; then no switch is needed.
+  // Most waits end before those of all other fibers; then no switch of fibers is needed.
   if (when <= end_ && (waiting_.empty() || when < waiting_.top().when)) {
     now_ = std::max(now_, when);
     return;

@@ -1,6 +1,6 @@
-// Virtual time for code that blocks. The threads of that code are fibers of one thread, which run
-// one at a time, in the order of the times for which they wait. So hours pass as fast as the
-// computation in them, and each run with the same seeds is the same.
+// Virtual time for code that blocks. The threads of that code become fibers of one thread. One
+// fiber runs at a time, in the order of the times for which the fibers wait. Hours therefore pass
+// as fast as the computation in them, and runs with the same seeds are equal.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +25,12 @@ class Fibers {
   // Adds a fiber, which begins at the present time. `body` must not throw.
   void start(std::function<void()> body);
 
-  // Runs all fibers until virtual time `end`, or until all have returned. Not within a fiber.
+  // Runs all fibers until virtual time `end`, or until all have returned. REQUIRES: the caller is
+  // not a fiber.
   void runUntil(Timestamp end);
 
-  // To be called within a fiber: other fibers run until `when`. Fibers that wait for the same time
-  // continue in the order in which they began to wait.
+  // Lets other fibers run until virtual time `when`. Fibers that wait for the same time continue in
+  // the order in which they began to wait. REQUIRES: the caller is a fiber.
   void waitUntil(Timestamp when);
 
   Timestamp now() const noexcept { return now_; }
@@ -55,7 +56,7 @@ class Fibers {
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting_;
 };
 
-// The clock of all code that runs in fibers. sleepUntil() may be called in a fiber only.
+// The clock of all code that runs in fibers. Only a fiber may call sleepUntil().
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(Fibers& fibers) : fibers_(fibers) {}

@@ -14,12 +14,13 @@ namespace {
 
 namespace out = render::out;
 
-// The frame is small, since drawing costs virtual time only.
+// The frame is small, since drawing takes virtual time only.
 constexpr int kWidth = 64, kHeight = 48;
 constexpr Duration kPerTriangle = std::chrono::microseconds(6),
                    kFixed = std::chrono::milliseconds(4);
 constexpr Duration kSlice = std::chrono::milliseconds(3);
-constexpr int kSlices = 20;  // a slice of full detail while nothing moves
+// number of slices of a frame of full detail, which is drawn while nothing moves
+constexpr int kSlices = 20;
 
 render::tiles::TilePlan smallPlan() {
   render::tiles::TilesSettings settings;
@@ -44,7 +45,7 @@ class FaultyOutput final : public out::Output {
     black_.resize(signal.pixels.size());
     return inner_->present({signal.width, signal.height, black_}, info);
   }
-  // True after a change of the fault, so that it shows although nothing moves.
+  // Returns true after a change of the fault, so that the change is shown although nothing moves.
   bool wantsFrame(Timestamp) const override { return std::exchange(was_, now()) != now(); }
   bool canReadBack() const override { return true; }
   Result<std::vector<out::DisplayReading>> readBack() override { return inner_->readBack(); }
@@ -61,8 +62,8 @@ class FaultyOutput final : public out::Output {
 
 }  // namespace
 
-// Draws only a pattern that changes from frame to frame. It takes as long as a model of a renderer
-// says, with noise and occasional spikes.
+// Draws only a pattern that changes from frame to frame. The time that this takes is that of a
+// model of a renderer, with noise and occasional spikes.
 class VirtualWall::Painter final : public render::frame::FramePainter {
  public:
   Painter(const VirtualWall& wall, VirtualClock& clock, double cost, std::uint64_t seed)

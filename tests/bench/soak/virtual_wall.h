@@ -1,6 +1,6 @@
-// The wall's loop on a virtual clock. Real: input, turns, scene, governor, ladder, playlist,
+// The wall's loop on a virtual clock. Real parts: input, turns, scene, governor, ladder, playlist,
 // attendance, delivery, the output in shared memory, its picture checks, statistics. Simulated: the
-// painter, whose cost the script determines.
+// painter, whose frame times a formula gives.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ namespace merlin::bench {
 struct WallFaults {
   double slower = 1;       // factor of all drawing times
   bool unplugged = false;  // the output fails
-  bool blackened = false;  // the output shows black, whatever it is sent
+  bool blackened = false;  // the output shows black instead of the frame that it is sent
 };
 
 // Thread-bound.
@@ -35,7 +35,8 @@ class VirtualWall {
   // Starts the fibers of the loop and of the picture checks.
   void start(const std::stop_token& stop);
 
-  // Does what merlind's role does on a reload.
+  // Applies a reload as merlind's role wall does; each flag says whether that part of the settings
+  // changed.
   void reload(const Settings& settings, bool rate, bool playlist, bool scene, bool input);
 
   WallFaults& faults() { return faults_; }
