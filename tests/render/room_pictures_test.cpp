@@ -1,6 +1,5 @@
-// For each preset except the arcs (whose angles tests/render/room_test.cpp checks), the tiles
-// together must show one view: each tile equals a part of one larger rendering in its panel's
-// plane, and neighbours meet at their seams.
+// For each preset, the tiles together must show one view: each tile equals a part of one larger
+// rendering in its panel's plane, and neighbours meet at their seams.
 //
 // The test prints its figures. If the environment variable MERLIN_PICTURES is set, it writes
 // pictures of the seams into that folder, for people to look at: both tiles side by side, and below
@@ -418,7 +417,8 @@ std::string nameOfCase(const testing::TestParamInfo<room::RoomPreset>& info) {
 INSTANTIATE_TEST_SUITE_P(Rooms, PresetPictures,
                          testing::Values(room::RoomPreset::kFlat, room::RoomPreset::kThree160,
                                          room::RoomPreset::kThree120, room::RoomPreset::kSix,
-                                         room::RoomPreset::kHexagon),
+                                         room::RoomPreset::kHexagon, room::RoomPreset::kArc160,
+                                         room::RoomPreset::kArc120),
                          nameOfCase);
 
 // If all panels are in one plane, all tiles together equal one rendering.
