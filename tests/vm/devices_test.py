@@ -224,10 +224,15 @@ class Devices(unittest.TestCase):
         pad, path = self.plug("gamepad")
         bindings = [{"input": "pad.button.1", "action": "align_corner_next"},
                     {"input": "pad.axis.ry+", "action": "align_right"}]
+        with open(f"{MACHINE.shared}/triangle.ply", "w", encoding="utf-8") as file:
+            file.write("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        subprocess.run([f"{OPTIONS.bin}/merlin", "mesh", "reduce", f"{MACHINE.shared}/triangle.ply",
+                        "-o", f"{MACHINE.shared}/triangle.mrm"], check=True, capture_output=True)
         tiles = {"tile_width": 64, "tile_height": 48, "frame_width": 64, "frame_height": 48, "tiles": [{"name": "left"}]}
         output = {"kind": "png", "name": "left", "path": "/run/left.png", "interval_s": 86400, "tiles": [{"tile": "left"}]}
         pid = start({"name": "pad", "driver": "evdev", "port": f"evdev:{path}"}, role="all", bindings=bindings,
-                    state_file="/run/state.json", wall={"tiles": tiles, "outputs": [output]})
+                    state_file="/run/state.json", wall={"model": "/mnt/triangle.mrm", "tiles": tiles, "outputs": [output]})
         vm.until(lambda: health()["pad"] == "ok", "the gamepad streams")
 
         def moved():
