@@ -54,17 +54,17 @@ void describeCorrection(render::correct::CorrectionSettings& c, SettingsVisitor&
                "other tiles on the same screen show as well, which follow from /wall/room or from "
                "screen_m of the tiles. Only for an output that shows a single tile.");
         v.number("left", c.blend.left, pixels,
-                 "Width of the strip at the left border, in pixels of the picture before the warp; "
-                 "0: no strip.");
+                 "Width of the strip at the left border that a neighbour shows as well and that is "
+                 "blended, in pixels of the picture before the warp; 0: no strip.");
         v.number("right", c.blend.right, pixels,
-                 "Width of the strip at the right border, in pixels of the picture before the "
-                 "warp; 0: no strip.");
+                 "Width of the strip at the right border that a neighbour shows as well and that "
+                 "is blended, in pixels of the picture before the warp; 0: no strip.");
         v.number("top", c.blend.top, pixels,
-                 "Height of the strip at the top border, in pixels of the picture before the warp; "
-                 "0: no strip.");
+                 "Height of the strip at the top border that a neighbour shows as well and that is "
+                 "blended, in pixels of the picture before the warp; 0: no strip.");
         v.number("bottom", c.blend.bottom, pixels,
-                 "Height of the strip at the bottom border, in pixels of the picture before the "
-                 "warp; 0: no strip.");
+                 "Height of the strip at the bottom border that a neighbour shows as well and that "
+                 "is blended, in pixels of the picture before the warp; 0: no strip.");
         v.number(
             "gamma", c.blend.gamma, {render::correct::kLeastGamma, render::correct::kMostGamma},
             "Gamma of the projector or display: light = signal ^ gamma. Blend, colour and black "

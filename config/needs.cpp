@@ -116,8 +116,8 @@ void checkEyeSize(const render::stereo::StereoSettings& stereo, LoadedSettings& 
   if (!one_each || stereo.size != render::stereo::EyeSize::kFull) return;
   const std::string at = "/wall/stereo/size";
   loaded.add({true, loaded.lineOf(at), at,
-              fmt::format("is full, which has no effect in stereo mode {}: it is for side_by_side "
-                          "and top_bottom; leave it out",
+              fmt::format("is \"full\", which has no effect in stereo mode {}: \"full\" is for "
+                          "side_by_side and top_bottom; leave it out",
                           nameOf(stereo.mode))});
 }
 

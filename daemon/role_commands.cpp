@@ -181,10 +181,12 @@ Answer operatorPointer(wall::OperatorPanel& panel, std::string_view argument) {
   const bool good = readNumbers(argument, numbers, [](std::size_t) { return 1'000'000; }) &&
                     (numbers[2] == 0 || numbers[2] == 1);
   if (!good && argument != "out") {
-    return Error{Errc::kInvalidArgument,
-                 fmt::format("\"{}\" is neither X Y 0, X Y 1 nor out; X and Y are a pixel of the "
-                             "frame",
-                             argument.substr(0, 64))};
+    return Error{
+        Errc::kInvalidArgument,
+        fmt::format("\"{}\" is neither X Y 0, X Y 1 nor out: the pointer at pixel X, Y of the "
+                    "frame with its button released (0) or pressed (1), or outside the "
+                    "frame",
+                    argument.substr(0, 64))};
   }
   if (good)
     panel.point(render::panel::Point{numbers[0], numbers[1]}, numbers[2] == 1);

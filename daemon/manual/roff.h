@@ -10,7 +10,8 @@ namespace merlin::manual {
 // taken for an instruction; a hyphen that does not join two letters can be copied to a shell.
 std::string roffText(std::string_view text);
 
-// Text in bold and in italics; every hyphen can be copied.
+// The text in bold and in italics. Every '-' becomes "\-", which man shows as an ASCII hyphen, so
+// that a command copied from the page works in a shell.
 std::string roffBold(std::string_view text);
 std::string roffItalic(std::string_view text);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -112,9 +113,10 @@ void ModelWatch::readAsked(Progress& progress) {
       asked_.erase(asked_.begin());
     }
     const Progress::Pause pause(progress);
-    Result<ReadyModel> ready = Error{Errc::kIo, "there is not enough memory"};
+    Result<ReadyModel> ready = Error{Errc::kNoMemory, "there is not enough memory"};
     try {
       ready = asked.read();
+    } catch (const std::bad_alloc&) {  // `ready` says so
     } catch (const std::exception& e) {
       ready = Error{Errc::kIo, e.what()};
     }
@@ -161,9 +163,10 @@ void ModelWatch::lookAt(std::size_t place, Progress& progress) {
   const bool due = missing && found && now - tried_[place] >= try_again_;
   if (!replaced_[place].look(found, now) && !due) return;
   tried_[place] = now;
-  Result<ReadyModel> ready = Error{Errc::kIo, path + ": not enough memory"};
+  Result<ReadyModel> ready = Error{Errc::kNoMemory, path + ": there is not enough memory"};
   try {
     ready = make_(place, path);
+  } catch (const std::bad_alloc&) {  // `ready` says so
   } catch (const std::exception& e) {
     ready = Error{Errc::kIo, fmt::format("{}: {}", path, e.what())};
   }

@@ -23,7 +23,7 @@ namespace merlin {
 inline constexpr std::size_t kVrpnCookieLength = 24;
 inline constexpr std::size_t kVrpnHeaderLength = 24;
 
-// Types that need no description.
+// Message types of VRPN itself: their numbers are fixed, so no message has to announce them.
 inline constexpr std::int32_t kVrpnDescribeSender = -1, kVrpnDescribeType = -2,
                               kVrpnDisconnect = -5;
 

@@ -14,8 +14,8 @@ constexpr double kSlack = 1e-3;  // tolerance at the border of a patch, as a sha
 constexpr Place kNowhere{std::numeric_limits<float>::quiet_NaN(),
                          std::numeric_limits<float>::quiet_NaN()};
 
-// Twice the signed area of a triangle; positive if a, b, c have the orientation of a picture that
-// is not mirrored.
+// Twice the signed area of the triangle a, b, c. Positive if the corners are in clockwise order (y
+// points down), as the upper left, upper right and lower left corner of an unmirrored picture.
 double turn(Point a, Point b, Point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }

@@ -147,7 +147,8 @@ void Clusters::Builder::numberClusters() {
   c.bounds_.resize(roots.empty() ? 0 : places / share + 1);
 }
 
-// Returns the group (see DetailStep) of each triangle that is alive at the finest level.
+// Returns the group of each triangle at the level `finest`, by rank: 2 k if it belongs to cluster k
+// and all its corners do, 2 k + 1 if not all do, 2 c.size() if it belongs to no cluster.
 std::vector<std::uint32_t> Clusters::Builder::groupTriangles(
     std::span<const std::uint32_t> corners) const {
   std::vector<std::uint32_t> group(corners.size() / 3, static_cast<std::uint32_t>(2 * c.size()));

@@ -234,8 +234,8 @@ TEST(WallConfig, StereoThatIsProbablyNotMeantIsSaidAndUsed) {
       loadSettings(R"({"wall": {"stereo": {"mode": "anaglyph", "size": "full"}}})", "");
   EXPECT_EQ(whole.verdict(), Verdict::kAdjusted);
   EXPECT_EQ(findingsOf(whole),
-            "f.json:1: /wall/stereo/size is full, which has no effect in stereo mode anaglyph: it "
-            "is for side_by_side and top_bottom; leave it out\n");
+            "f.json:1: /wall/stereo/size is \"full\", which has no effect in stereo mode anaglyph: "
+            "\"full\" is for side_by_side and top_bottom; leave it out\n");
   EXPECT_EQ(wallIs(R"("stereo": {"mode": "top_bottom", "size": "full"})"), "");
 }
 

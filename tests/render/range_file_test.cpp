@@ -239,7 +239,7 @@ TEST(RawLayout, HasAtMost64Planes) {
   EXPECT_TRUE(parseRawLayout(text).ok());
   const auto layout = parseRawLayout(text + ",-=u8");
   ASSERT_FALSE(layout);
-  EXPECT_NE(layout.error().what.find("\": more than 64 planes are given; allowed: "),
+  EXPECT_NE(layout.error().what.find("\": more than 64 planes NAME=TYPE are given; allowed: "),
             std::string::npos)
       << layout.error().what;
 }

@@ -55,7 +55,7 @@ std::string addPlane(std::string_view text, RawLayout& layout) {
   if (name.empty() || type.empty())
     return fmt::format("\"{}\" is not NAME=TYPE", oneLine(excerpt(text)));
   if (layout.planes.size() == kMostPlanes)
-    return fmt::format("more than {} planes are given", kMostPlanes);
+    return fmt::format("more than {} planes NAME=TYPE are given", kMostPlanes);
   for (const RawPlane& plane : layout.planes) {
     if (plane.name == name && name != "-") return fmt::format("two planes are named {}", name);
   }
