@@ -12,8 +12,6 @@ namespace merlin {
 
 void giveWay() noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10); }
 
-void goFirst() noexcept { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), -10); }
-
 void nameThread(const std::string& name) noexcept { ::prctl(PR_SET_NAME, name.c_str()); }
 
 std::vector<ThreadState> ThreadWatch::threads() const {

@@ -52,11 +52,6 @@ class Progress {
 // nice 19 gets a hundredth of a processor, and a reload takes minutes.
 void giveWay() noexcept;
 
-// Gives the calling thread, and threads that it starts, a higher priority than other programs have
-// (nice -10), so that a program that starts delays no frame. Without effect where the process may
-// not do so: root and the unit of the wall (LimitNICE) may.
-void goFirst() noexcept;
-
 // Names the calling thread for `top -H` and debuggers, which show the first 15 characters.
 void nameThread(const std::string& name) noexcept;
 

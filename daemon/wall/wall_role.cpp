@@ -166,7 +166,6 @@ WallRole::~WallRole() {
 std::future<Result<std::string>> WallRole::start() {
   auto ready = ready_.get_future();
   thread_ = WatchedThread(watch_, "wall", [this](const std::stop_token& stop, Progress& progress) {
-    goFirst();
     run(stop, progress);
   });
   return ready;

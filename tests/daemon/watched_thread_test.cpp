@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "daemon/base/token_bucket.h"
 #include "tests/support/eventually.h"
@@ -52,21 +51,6 @@ TEST(WatchedThread, OneThatEndsByItselfIsSeenWithTheReason) {
   }));
   EXPECT_EQ(watch.threads()[0].reason, "no memory");
   EXPECT_EQ(watch.threads()[1].reason, "returned without having been asked to stop");
-}
-
-TEST(WatchedThread, GoesFirstWhereTheProcessMayAndSoDoTheThreadsThatItStarts) {
-  bool may = false;
-  int own = 0, started = 0, unchanged = 0;
-  std::thread([&] { may = ::setpriority(PRIO_PROCESS, 0, -10) == 0; }).join();
-  std::thread([&] {
-    goFirst();
-    own = ::getpriority(PRIO_PROCESS, 0);
-    std::thread([&] { started = ::getpriority(PRIO_PROCESS, 0); }).join();
-  }).join();
-  unchanged = ::getpriority(PRIO_PROCESS, 0);
-  EXPECT_EQ(own, may ? -10 : unchanged);
-  EXPECT_EQ(started, own);
-  EXPECT_NE(unchanged, -10) << "only the thread that asks goes first";
 }
 
 TEST(TokenBucket, GivesItsBurstAndThenItsRate) {

@@ -101,7 +101,7 @@ TEST(DaemonsUnits, SayWhatTheDaemonReliesOn) {
       << "the displays are black while the wall is restarted";
   EXPECT_EQ(wall.find("\nMemoryDenyWriteExecute=yes"), std::string::npos)
       << "llvmpipe dies with it";
-  EXPECT_NE(wall.find("\nLimitNICE=-10\nSlice=merlin.slice\n"), std::string::npos)
+  EXPECT_NE(wall.find("\nNice=-10\nSlice=merlin.slice\n"), std::string::npos)
       << "any program that starts would delay frames";
   EXPECT_NE(wall.find("\nMemoryMax=80%\nOOMScoreAdjust=300\n"), std::string::npos);
   EXPECT_NE(devices.find("\nOOMScoreAdjust=-300\n"), std::string::npos)
