@@ -19,14 +19,6 @@ std::size_t characterAt(std::string_view bytes) noexcept {
   return control || (code == kNoCharacter && size == 1) ? 0 : size;
 }
 
-// Returns the size of the character that begins with this byte [bytes]; 0 if none can.
-std::size_t sizeByFirst(char first) noexcept {
-  const auto byte = static_cast<std::uint8_t>(first);
-  if (byte < 0x80) return 1;
-  if (byte < 0xC2 || byte > 0xF4) return 0;
-  return byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : 4;
-}
-
 }  // namespace
 
 bool isText(std::string_view bytes) noexcept {
@@ -40,7 +32,7 @@ bool isText(std::string_view bytes) noexcept {
 
 std::string_view wholeCharacters(std::string_view bytes) noexcept {
   for (std::size_t cut = 1; cut < 4 && cut <= bytes.size(); ++cut) {
-    const std::size_t size = sizeByFirst(bytes[bytes.size() - cut]);
+    const std::size_t size = characterLength(bytes[bytes.size() - cut]);
     if (size == 0) continue;
     return size > cut ? bytes.substr(0, bytes.size() - cut) : bytes;
   }

@@ -1,19 +1,9 @@
 #include "daemon/base/utf8.h"
 
 #include <cassert>
-#include <cstddef>
 
 namespace merlin {
 namespace {
-
-// Returns the number of bytes of the character whose first byte is `first`; 0 if no character
-// begins with this byte.
-std::size_t lengthOf(char32_t first) {
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first < 0xE0) return 2;
-  if (first >= 0xE0 && first < 0xF0) return 3;
-  return first >= 0xF0 && first < 0xF5 ? 4 : 0;
-}
 
 bool isCharacter(char32_t code, std::size_t length) {
   constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -22,12 +12,20 @@ bool isCharacter(char32_t code, std::size_t length) {
 
 }  // namespace
 
+std::size_t characterLength(char first) noexcept {
+  const auto byte = static_cast<unsigned char>(first);
+  if (byte < 0x80) return 1;
+  if (byte >= 0xC2 && byte < 0xE0) return 2;
+  if (byte >= 0xE0 && byte < 0xF0) return 3;
+  return byte >= 0xF0 && byte < 0xF5 ? 4 : 0;
+}
+
 char32_t takeCharacter(std::string_view& rest) noexcept {
   assert(!rest.empty());
   const auto byte = [&rest](std::size_t i) -> char32_t {
     return static_cast<unsigned char>(rest[i]);
   };
-  const std::size_t length = lengthOf(byte(0));
+  const std::size_t length = characterLength(rest[0]);
   char32_t code = length < 2 ? byte(0) : byte(0) & (0x7FU >> length);
   bool valid = length > 0 && length <= rest.size();
   for (std::size_t i = 1; valid && i < length; ++i) {

@@ -1,9 +1,14 @@
 // Reads UTF-8 (RFC 3629) character by character, whatever the bytes are. Pure.
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 namespace merlin {
+
+// Returns the number of bytes of the character whose first byte is `first`; 0 if no character
+// begins with this byte.
+std::size_t characterLength(char first) noexcept;
 
 // Stands for a byte that belongs to no character.
 inline constexpr char32_t kNoCharacter = 0xFFFD;
